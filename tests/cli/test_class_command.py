@@ -27,6 +27,7 @@ from tests.support.pty_robot import on
 from tests.support.rows import each_row
 from tests.support.waiting import HANGS_S, until
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.options import Options
 from tiniscript.cli.robot import classroom, robot_broker
 from tiniscript.cli.robot.classroom import Classroom, Listener
 from tiniscript.cli.robot.connect import Connection
@@ -187,6 +188,21 @@ def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
         assert options.ports == ["mqtt://h:1/c/00000001"]
 
 
+def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
+    """What the class does not take is as the verb of a fleet has it where nobody gave it."""
+    own = Options("class", "en").read(["upload"])
+    room = SimpleNamespace(
+        place=("h", 1), group="c", options=own, broker=SimpleNamespace(attend=print)
+    )
+    alone = Options("upload", "en").read([])
+    assert own is not None and alone is not None
+    for verb in ("class", "stop", "upload"):
+        options = vars(Classroom.targets(cast(Classroom, room), [], verb))
+        lacks = {name: value for name, value in vars(alone).items() if name not in vars(own)}
+        assert len(lacks) > 5
+        assert {name: options.get(name, "none") for name in lacks} == lacks
+
+
 def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     text = "SI|LOOP(FOREVER); SHOW(5); W(0.3); END_LOOP"
     tsc(room, "upload", "-e", text, "--detach").gives(0)
@@ -246,8 +262,10 @@ def test_what_became_of_the_robots_is_the_exit_code(
     ))  # fmt: skip
     monkeypatch.setattr(classroom, "together", lambda *_: code)
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
-    for name in ("upload", "stop"):
-        monkeypatch.setattr(f"tiniscript.cli.commands.{name}.run", lambda *_: code)
+    monkeypatch.setattr("tiniscript.cli.inputs.program", lambda *_: SimpleNamespace(name="P"))
+    monkeypatch.setattr("tiniscript.cli.inputs.robot_for", lambda *_: None)
+    monkeypatch.setattr("tiniscript.cli.images.ready", lambda *_, **__: "a program")
+    monkeypatch.setattr(classroom, "upload_to_many", lambda *_: code)
     done = {"list": classroom.list_robots, "upload": classroom.upload, "stop": classroom.stop}
     is_usual = verb.startswith("show") and code == 2
     assert done.get(verb, classroom.show)(room) == (0 if is_usual else code)
@@ -281,7 +299,8 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
         asked.append(given)
         return 7
 
-    monkeypatch.setattr("tiniscript.cli.commands.stop.run", ask)
+    monkeypatch.setattr(classroom, "together", ask)
+    monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
     if is_there:
         assert classroom.stop(cast(Classroom, room)) == 7 and len(asked) == 1
     else:

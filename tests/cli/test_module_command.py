@@ -108,7 +108,7 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     [
         (["--name", "A" * 21], "at most 20"),
         (["--name", ""], "at most 20"),
-        (["--name", "ÑU"], "ÑU is no such name"),
+        (["--name", "ÑU"], "ÑU is not such a name"),
         (["--pin", "12"], "PIN of this kind of module has"),
         (["--baud", "300"], "9600, 19200, 38400, 57600, 115200, not 300"),
         (["--id", "xyz"], "takes the id"),

@@ -77,6 +77,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         "outputs.write(Path(options.csv),": "csv",
         "outputs.write(Path(options.plot),": "plot",
         "outputs.write(Path(options.report),": "report",
+        "outputs.write(Path(options.record),": "record",  # of run, as a whole
         "outputs.write(Path(self.options.memory),": "memory",
         "outputs.write(given.path,": "program",  # fmt, in place; check --fix of one program
         "outputs.write(Path(given.name),": "programs",  # check --fix, in place

@@ -16,16 +16,18 @@ from tests.firmware.test_uno_robot import BAUD, NAMES
 from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_port import simulated
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.conformance.comparing import AGREES
 from tiniscript.conformance.kit import link_kit
 from tiniscript.conformance.port_checks import all_checks, met, verdicts
 from tiniscript.conformance.wire_robot import WireRobot
 from tiniscript.link import ports
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import BY_NAME
+from tiniscript.link.messages import BY_NAME, MAJOR, MINOR
 from tiniscript.link.wire import Wire
 from tools.uno import Uno
 
+LINK, ISA = f"{MAJOR}.{MINOR}", f"{ISA_MAJOR}.{ISA_MINOR}"
 Change = Callable[[Frame], "Frame | None"]
 
 
@@ -62,7 +64,7 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
     done = tsc("doctor", "--conform", "--port", pty_robot.port).gives(0)
     count = len(all_checks(link_kit()))
     assert count > 200
-    assert done.out == f"{count} of {count} checks agree. Kit 1, link 2.1, bytecode 2.1.\n"
+    assert done.out == f"{count} of {count} checks agree. Kit 1, link {LINK}, bytecode {ISA}.\n"
     assert not any("MOTORS" in row and row != "MOTORS 0 0" for row in pty_robot.did)
 
 
@@ -156,7 +158,7 @@ def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
 def test_json_names_the_checks(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "doctor", "--conform", "--only", "link: PING", "--json")
     assert json.loads(done.out) == {
-        "version": "1", "link": "2.1", "isa": "2.1",
+        "version": "1", "link": LINK, "isa": ISA,
         "cases": 1, "agree": 1, "differ": 0, "found": [],
     }  # fmt: skip
 

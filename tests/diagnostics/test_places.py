@@ -161,6 +161,17 @@ def test_any_text_is_told_well(seed: int) -> None:
         is_told_well(check_text(some_characters(dice), KIT))
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["BREAK F2", "BREAK;\nF2\nS", "S\nhello", "SI|F(1,80)\nhello there", "F(1,80) SI|S\nFin",
+     "IF(TRUE)\nS\nF(1 80)\nEND", "LOOP(2)\nF(1,80)\nLOOP(3)\nfoo\nEND_LOOP"],
+)  # fmt: skip
+def test_each_end_of_a_line_is_one(text: str) -> None:
+    found = check_text(text, KIT)
+    is_told_well(found)
+    assert check_text(text.replace("\n", "\r"), KIT).diagnostics == found.diagnostics
+
+
 def test_letters_of_no_name_where_a_number_goes_are_told_well() -> None:
     is_told_well(check_text("X=é", KIT))
 

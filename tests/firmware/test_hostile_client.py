@@ -19,6 +19,7 @@ from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
     FIRST_ACTING,
+    FIRST_EVENT,
     MAJOR,
     MINOR,
     OF_RADIO,
@@ -32,9 +33,9 @@ from tiniscript.link.messages import (
 SEEDS = 12  # in the tests; a campaign runs more
 TURNS = 120
 LARGEST = 63
-EVENTS = range(32, 36)
+EVENTS = {number for number in BY_NUMBER if number >= FIRST_EVENT}
 REQUESTS = tuple(message for message in BY_NUMBER.values() if message.number not in EVENTS)
-UNKNOWN = (*RETIRED, *range(REQUESTS[-1].number + 1, EVENTS[0]))
+UNKNOWN = (*RETIRED, *range(REQUESTS[-1].number + 1, FIRST_EVENT))
 MOST_RETIRED = 20  # bytes of a payload: where the first byte on the wire is small, no line ends
 OK, STALE, BUSY = STATUSES["OK"], STATUSES["STALE"], STATUSES["BUSY"]
 NO_ACT = {STATUSES[name] for name in ("STALE", "BAD_LENGTH", "UNKNOWN_MESSAGE")}

@@ -32,18 +32,18 @@ PRESS = '[[presses]]\nat_seconds = 1\nseconds = 2\nkey = "KEY_A"\n'
 CASES = [
     (HEAD, "The lesson has no criteria. Add one"),
     (HEAD + '[[criteria]]\nkind = "never_touch"\n', "Did you mean never_touches?"),
-    (HEAD + '[[criteria]]\nkind = "flies"\n', "which is no criterion. Write one of these: ends_in"),
+    (HEAD + '[[criteria]]\nkind = "flies"\n', "which is not a criterion. Write one of these: ends_in"),
     (HEAD + TOUCH + "within_cm = 3\n", "criteria[1].within_cm means nothing in a lesson."),
     (HEAD + '[[criteria]]\nkind = "ends_in"\n', 'criteria[1].at is missing. Add it, for example: at = "start"'),
-    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = 5\n', "criteria[1].at is no place."),
-    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = []\n', "criteria[1].at is no place."),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = 5\n', "criteria[1].at is not a place."),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = []\n', "criteria[1].at is not a place."),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "boxes[1]"\n', "world.toml has 0 of them"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "moon"\n', "Write start, or one of walls"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nwithin_cm = 900\n', "from 1 to 500"),
     (HEAD + '[[criteria]]\nkind = "follows"\nat_least_cm = 0\n', "from 1 to 10000"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nen = ""\n', "criteria[1].en"),
     (HEAD + '[[criteria]]\nkind = "uses"\nwords = ["LOP"]\n', "Did you mean LOOP?"),
-    (HEAD + '[[criteria]]\nkind = "uses"\nwords = "LOOP"\n', "is no list of words"),
+    (HEAD + '[[criteria]]\nkind = "uses"\nwords = "LOOP"\n', "is not a list of words"),
     (HEAD + '[[criteria]]\nkind = "order"\nwords = ["sings"]\n', "sings, which is not a known word"),
     (HEAD + '[[criteria]]\nkind = "shows"\nwhat = "LINE_L"\n', "Write one of these: LIGHT_R"),
     (HEAD + '[[criteria]]\nkind = "stands_before"\nlow_cm = 9\nhigh_cm = 5\n', "is larger than criteria[1].high_cm"),
@@ -137,6 +137,6 @@ def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:
     with pytest.raises(LessonRefused) as exception_info:
         catalogue.page(folder, catalogue.PUPIL, "en")
     (said,) = describe(exception_info.value, "en")
-    assert "pupil.en.md has {pauses.seconds}, which is no number of this lesson" in said
+    assert "pupil.en.md has {pauses.seconds}, which is not a number of this lesson" in said
     assert "pauses.at_least_seconds" in said
     assert describe(exception_info.value, "es") != [said]

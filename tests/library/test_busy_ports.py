@@ -1,15 +1,29 @@
-"""How long a busy port is waited for, from when its address is known: on a fake clock."""
+"""How long a busy port is waited for, from when its address is known: on a fake clock. A connection
+that fails leaves nothing open."""
 
 from __future__ import annotations
 
+import os
 import random
-from typing import Any
+import socket
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from threading import Thread
+from typing import Any, ClassVar
 
 import pytest
 
+from tests.support.waiting import HANGS_S
+from tiniscript import robots
+from tiniscript.base.version import __version__
 from tiniscript.library import opening
+from tiniscript.library.client import Client
 from tiniscript.library.errors import RobotError
 from tiniscript.library.opening import AGAIN_S, BUSY_S
+from tiniscript.link.errors import PortError
+from tiniscript.link.sharing import registry
+from tiniscript.link.sharing.registry import Registration
 
 SEARCH_S = 0.5 * BUSY_S, BUSY_S + 1, 10 * BUSY_S
 
@@ -76,3 +90,133 @@ def test_a_port_that_stays_busy_is_said_to_be(
     with pytest.raises(RobotError) as gone:
         opening.connection_to(port, "upload", 9600, 1)
     assert (gone.value.reason, place.tries) == ("port_gone", 1), "nothing else is waited for"
+
+
+class Device:
+    """What is opened at a port, until it is closed."""
+
+    opened: ClassVar[list[Device]] = []
+
+    def __init__(self, *_: object) -> None:
+        self.is_open = True
+        Device.opened.append(self)
+
+    def close(self) -> None:
+        self.is_open = False
+
+
+class Line:
+    """A connection that owns a device and a lock."""
+
+    held_by = ""
+
+    def __init__(self, device: Device, session: object, lock: Any, address: str) -> None:
+        self.device, self.lock, self.address = device, lock, address
+
+    def close(self) -> None:
+        self.device.close()
+        self.lock.close()
+
+
+# The steps of a connection that may fail, each by its place.
+STEPS = (
+    "tiniscript.link.ports.opened",
+    "tiniscript.library.opening.directory.is_of_another",
+    "tiniscript.link.keys.KeyFile",
+    "tiniscript.link.session.Session",
+    "tiniscript.library.client.Client._shared",
+)
+ADDRESS = "socket://127.0.0.1:9"
+
+
+def fails(why: BaseException | bool) -> Callable[..., object]:
+    def does(*_: object, **__: object) -> object:
+        if isinstance(why, BaseException):
+            raise why
+        return why
+
+    return does
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, step: str
+) -> None:
+    """The next try of the same program gets the port: no device, lock or file is held."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    monkeypatch.setattr(Device, "opened", [])
+    monkeypatch.setattr("tiniscript.link.ports.opened", Device)
+    monkeypatch.setattr("tiniscript.link.port_connection.PortConnection", Line)
+    profile = robots.load("tinibot")
+
+    def tried() -> Client:
+        return Client(ADDRESS, "upload", profile, is_shared=True)
+
+    whys: list[BaseException | bool] = [PortError("missing", "gone"), KeyboardInterrupt()]
+    if step.endswith("is_of_another"):
+        whys.append(True)
+    if step.endswith("_shared"):
+        whys.append(RuntimeError("a bug"))
+    before = len(list(Path("/proc/self/fd").iterdir())) if sys.platform == "linux" else 0
+    for why in whys:
+        with monkeypatch.context() as patched:
+            patched.setattr(step, fails(why))
+            with pytest.raises(BaseException):  # noqa: B017 - whichever it is
+                tried()
+        assert not any(each.is_open for each in Device.opened), why
+        lock = registry.claimed(ADDRESS)
+        assert lock is not None, f"{why!r} leaves its lock"
+        lock.close()
+        if sys.platform == "linux":
+            assert len(list(Path("/proc/self/fd").iterdir())) == before, why
+    monkeypatch.setattr(Client, "_shared", lambda *_: None)
+    line = tried().line
+    assert Device.opened[-1].is_open
+    line.close()
+
+
+def greets(version: str, answer: str) -> bytes:
+    return (f'{{"tsc": "{version}", "answer": "{answer}"}}\n').encode()
+
+
+@pytest.mark.parametrize(
+    ("said", "reason"),
+    [
+        (greets("9.9", "right"), "holder_other"),
+        (greets(__version__, "wrong"), ""),
+        (b"HTTP/1.1 400\r\n\r\n", ""),
+        (b"", ""),
+        (greets(__version__, "right"), "holder_baud"),
+    ],
+)
+def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, said: bytes, reason: str
+) -> None:
+    """Who waits for a busy port asks twenty times a second."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        number = server.getsockname()[1]
+        registry.write(Registration(
+            ADDRESS, number, "0" * 32, "right", "live", 9600, os.getpid(),
+        ))  # fmt: skip
+
+        def serves() -> None:
+            peer = server.accept()[0]
+            with peer:
+                peer.recv(1000)
+                peer.sendall(said)
+                peer.shutdown(socket.SHUT_WR)
+                peer.settimeout(HANGS_S)
+                ended.append(peer.recv(1000))
+
+        ended: list[bytes] = []
+        thread = Thread(target=serves, daemon=True)
+        thread.start()
+        try:
+            found: object = opening._joined(ADDRESS, "upload", 115_200, "en")
+            assert found is None and not reason
+        except RobotError as failure:
+            assert failure.reason == reason
+        thread.join(HANGS_S)
+        assert ended == [b""], "it is connected still"

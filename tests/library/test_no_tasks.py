@@ -12,8 +12,7 @@ import pytest
 import tiniscript
 from tests.support.command import Done, inside
 from tiniscript import robots
-from tiniscript.studio import checking, page_lessons, recordings, robot_link
-from tiniscript.virtual import worlds
+from tiniscript.studio import checking, page_lessons, playing, recordings, robot_link
 
 ROBOT = "liner"  # on a Nano
 TEXT = "SHOW(1)\nWHEN(BUTTON)\n  S\nEND_WHEN\n"
@@ -119,10 +118,10 @@ def test_a_page_that_sends_an_image_all_the_same_is_refused(do: str) -> None:
     assert [each["failure"] for each in link.news()] == ["UNKNOWN_NEEDS"]
 
 
-def test_a_recording_is_of_another_program() -> None:
+def test_a_recording_of_it_is_not_played() -> None:
     """No robot has run it."""
     checksum = tiniscript.compile(TEXT, ROBOT).checksum
-    head = f'{{"tiniscript_recording": 1, "program": "{checksum:08x}"}}\n'
-    recording = recordings.read((head + '{"ms": 1, "event": "DONE"}\n').encode())
-    parting = recordings.replay(recording, TEXT.encode(), ROBOT, worlds.load("line"))
-    assert parting.what == "other_program"
+    head = recordings.head(recordings.REAL, TEXT, robots.load(ROBOT), checksum)
+    recording = recordings.read(recordings.written(head, (), 1).encode())
+    with pytest.raises(recordings.BadRecording, match="other_program"):
+        playing.ready(recording)

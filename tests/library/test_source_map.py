@@ -5,14 +5,18 @@ from __future__ import annotations
 import itertools
 import json
 import os
+import random
 
 import pytest
 
+from tests.oracle import programs
+from tests.support.kits import KITS
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum
 from tiniscript.library import source_map
 from tiniscript.library.source_map import Map, MapLocation
+from tiniscript.semantics.ir import Show
 
 KIT = robots.load("tinibot").kit
 
@@ -124,7 +128,7 @@ def test_a_map_is_written_as_json_writes_it() -> None:
     text = "".join(map(chr, range(0x180))) + "\u2028\ud800 🤖"
     places = (MapLocation(0, 1, 1, 1, 2), MapLocation(10, 2, 3, 40, 5))
     for found in (
-        source_map.Map(text, (text, "", "S"), places, (text, "N")),
+        source_map.Map(text, (text, "", "S"), places, (text, "N"), (True, False)),
         source_map.Map("", (), ()),
     ):
         fields = {"version": source_map.VERSION, **found._asdict()}
@@ -141,18 +145,42 @@ def test_a_map_is_written_as_json_writes_it() -> None:
         {"places": [[0, 1, 1, 1, "x"]]},
         {"lines": None},
         {"variables": 5},
+        {"yes_no": 5},
     ],
 )
 def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
     fields = json.loads(source_map.as_json(mapped(compiled("S"))))
     assert source_map.from_json(json.dumps(fields)).variables == ()
-    earlier = {name: value for name, value in fields.items() if name != "variables"}
+    earlier = {name: fields[name] for name in ("version", "name", "lines", "places")}
     assert source_map.from_json(json.dumps(earlier)) == source_map.from_json(json.dumps(fields))
     with pytest.raises(ValueError):
         source_map.from_json(json.dumps({**fields, **changed}))
     del fields["places"]
     with pytest.raises(ValueError, match="no map"):
         source_map.from_json(json.dumps(fields))
+
+
+def test_a_variable_is_a_yes_no_where_a_show_of_it_is_one() -> None:
+    """In random programs, and in the copies of a DEF's values that tasks have."""
+    kinds = set()
+    for seed in range(40):
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        text = programs.program(random.Random(seed), oracle_kit)
+        found = compile_text(text, kit)
+        for name, is_yes_no in zip(found.variables, found.yes_no, strict=True):
+            shown = compile_text(f"{text}\nSHOW({name})", kit)
+            if shown.is_right:  # else it is a value of a DEF
+                assert shown.program
+                last = shown.program.body[-1]
+                assert isinstance(last, Show) and last.is_yes_no == is_yes_no, (seed, name)
+                kinds.add(is_yes_no)
+    assert kinds == {True, False}
+    found = compiled(
+        "DEF GO(FAST, SPEED); IF(FAST); F(1, SPEED); ENDIF; END_DEF\n"
+        "TASK; GO(TRUE, 50); END_TASK; TASK; GO(DISTANCE < 9, 60); END_TASK; GO(FALSE, 70)"
+    )
+    assert found.variables == ("FAST", "SPEED") * 3
+    assert found.yes_no == (True, False) * 3
 
 
 def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -42,3 +42,23 @@ def work(text: str) -> int:
 def test_a_long_text_takes_no_more_than_in_proportion(begin: str, piece: str, end: str) -> None:
     short, long = (work(f"{begin}{piece * count}{end}") for count in (LEAST, 4 * LEAST))
     assert long < 4.8 * short
+
+
+MISTAKES = 100
+MOST_CALLS = 3_000  # for each character of a text with so many
+REPEATED = [
+    *("FOR I = 1 TO 5;F(1, 50);NEXT I", "X{k} = {k} m", "F(5, 60) HASTA(PARED < 10 seg)"),
+    *("SIDE = 30 CM;W(SIDE)", "{k}. F(1, 50)", "IF(KEY = UP);S;ENDIF", "F(1, 60, R)", "F(50; 2)"),
+    *("avanza {k} segundos", "F(1, 80) voy", "IF(DISTANCE < 10, B(1, 60), F(1, 60))", "F 2 80"),
+    *("foo{k}", "DEF P{k};S;ENDDEF P{k}", "\u201cF(2, 80)\u201d", "F(50%, 1000 ms)"),
+]
+
+
+@pytest.mark.sampled("mistake", keep=4)
+@pytest.mark.parametrize("between", ["\n", ";"], ids=["lines", "one-line"])
+@pytest.mark.parametrize("mistake", REPEATED)
+def test_many_mistakes_take_no_more_than_in_proportion(mistake: str, between: str) -> None:
+    one = mistake.replace("{k}", "1")
+    compile_source(one.encode(), ROBOT, "prog.ts", is_strict=False)  # the tables are read
+    text = "".join(mistake.replace("{k}", str(k)) + between for k in range(MISTAKES))
+    assert work(text) < MOST_CALLS * len(text)

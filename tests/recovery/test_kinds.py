@@ -63,8 +63,7 @@ def test_they_are_told_beside_another_mistake_and_in_words() -> None:
         ("TS102", "END_LOOP"), ("TS102", "END_WHILE"),
     ]  # fmt: skip
     assert (
-        codes_and_fixes(text)[2][1]
-        == "Write END_WHILE here, and END_LOOP where END_WHILE stands now"
+        codes_and_fixes(text)[2][1] == "Write END_WHILE here, and END_LOOP where END_WHILE is now"
     )
 
 
@@ -321,6 +320,48 @@ def test_an_example_takes_the_number_of_the_program(number: str, beside: str) ->
     assert codes_and_fixes("SI|F(FOREVER, 50)")[0][1].startswith(
         "F(FOREVER, 50) UNTIL(DISTANCE < 10)"
     )
+
+
+# -- questions --------------------------------------------------------------------------------
+
+ORDERS = ("F(5, 60)", "S", "BEEP(1, 440)", "SHOW(DISTANCE)", "P")
+COMPARED = "DISTANCE > 3"
+ASKED = [
+    *("F(5, 60) IF({})", "F(5, 60) IF {}", "S IF({});F(1, 50)", "S IF({})\nF(1, 50)"),
+    *("F(5, 60) WHEN {} BEEP(1, 440)", "IF {} S ENDIF", "IF({}) S ENDIF", "F(5, 60) UNTIL {}"),
+    *("WHILE {};F(1, 50);END_WHILE", "WHEN({}) BEEP(1, 440) END", "STOP({})"),
+    *("F(5, 60) UNTIL {} AND LIGHT_L > 5", "IF {} OR LIGHT_L > 5 S ENDIF"),
+]
+
+
+@pytest.mark.sampled("text", keep=4)
+@pytest.mark.parametrize("place", ["SI|{}", "SI|W(1);{}", "SI|W(1)\n{}"])
+@pytest.mark.parametrize("text", ASKED)
+def test_a_yes_or_no_is_a_question_wherever_a_comparison_is(text: str, place: str) -> None:
+    wrong = place.format(text)
+    compared = [fix for _, fix in codes_and_fixes(wrong.format(COMPARED))]
+    assert compared and COMPARED in compared[0]
+    for asked in ("KEY_A", "NOT KEY_LEFT", "KEY_UP AND KEY_B"):
+        as_compared = [fix.replace(COMPARED, asked) for fix in compared]
+        assert [fix for _, fix in codes_and_fixes(wrong.format(asked))] == as_compared
+
+
+@pytest.mark.sampled("order", keep=2)
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize(
+    ("word", "end"), [("IF", "ENDIF"), ("WHILE", "END_WHILE"), ("WHEN", "END_WHEN")]
+)
+@pytest.mark.parametrize("around", ["{}", "W(1);{}", "W(1)\n{}", "{};W(2)"])
+def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
+    order: str, word: str, end: str, around: str
+) -> None:
+    for question in ("KEY_A", COMPARED):
+        line = f"{order} {word}({question});B(1, 50)"
+        text = f"SI|DEF P;S;END_DEF\n{around.format(line)}"
+        assert any(each.is_mistake for each in check(text))
+        assert fixed(text, check).text == text
+        ended = f"SI|DEF P;S;END_DEF\n{around.format(f'{line};{end}')}"
+        assert f"{order};{word}({question});B(1, 50);{end}" in fixed(ended, check).text
 
 
 # -- what is named, and what is told once -----------------------------------------------------

@@ -64,3 +64,18 @@ def test_the_seconds_of_motors_are_those_of_a_wait(
     made = applied(wrong, edits_of(found) or [])
     assert made == wrong.replace(f"M({left}, {right}, {time})", shown)
     assert fixed(wrong, check).text == wrong  # it may run on, too
+
+
+@pytest.mark.parametrize(
+    ("text", "first", "other"),
+    [
+        ("BEEP(250, 440)", "BEEP(0.25, 440)", "BEEP(0.44, 250)"),
+        ("BEEP(440, 250)", "BEEP(0.25, 440)", "BEEP(0.44, 250)"),
+        ("BEEP(262, 500)", "BEEP(0.5, 262)", "BEEP(0.262, 500)"),
+    ],
+)
+def test_values_that_suit_two_places_or_another_unit_are_shown_as_both(
+    text: str, first: str, other: str
+) -> None:
+    (diagnostic,) = check(text)
+    assert (diagnostic.values["fix"], diagnostic.values["rival"]) == (first, other)

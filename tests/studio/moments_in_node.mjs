@@ -13,6 +13,8 @@ function chanceOf(seed) {
 
 const rounded = (value) => JSON.parse(JSON.stringify(value, (_, each) => (typeof each === 'number' ? Math.round(each * 1000) / 1000 : each)));
 
+const hasDone = ({ events }) => events.some(([, what]) => !what.startsWith('READ '));
+
 function played(moments, chance, most) {
   const count = Math.floor(chance() * 2000), quiet = chance();
   const below = (limit) => Math.floor(chance() * limit);
@@ -28,6 +30,7 @@ function played(moments, chance, most) {
     if (!isQuiet && chance() < 0.1) bumps += 1;
     if (chance() < 0.7) pose = [chance() * 100, chance() * 100, chance() * 360];
     const events = isQuiet || chance() < 0.5 ? [] : [[now_ms, chance() < 0.5 ? `SHOW ${below(9)}` : 'MOTORS 1 2', at]];
+    if (chance() < 0.5) events.unshift([now_ms, 'READ DISTANCE 5', at]);
     shows.push(...events.filter(([, what]) => what.startsWith('SHOW')));
     const state = { now_ms, pose, bumps, at, places: [at], is_running: true, variables: [below(3)], events, nothing: chance() < 0.5 ? null : 'é"' };
     told.set(now_ms, [rounded(state), shows.length]);
@@ -38,6 +41,8 @@ function played(moments, chance, most) {
   for (let k = 0; k < moments.length; k += 1) {
     const state = moments.at(k), [was, shown] = told.get(state.now_ms) ?? [];
     check(JSON.stringify(state, Object.keys(was ?? {}).sort()) === JSON.stringify(was, Object.keys(was ?? {}).sort()), `another state: ${JSON.stringify([state, was])}`);
+    const isEvent = hasDone(state) || (k > 0 && state.bumps !== moments.at(k - 1).bumps);
+    if (k) check(moments.events.includes(k) === isEvent, `not the events: ${k}`);
     const ends = moments.shows(k);
     check(JSON.stringify(ends) === JSON.stringify(shows.slice(shown - ends.length, shown)), `other shows at ${k}`);
     check(moments.until(state.now_ms) === k && moments.until(state.now_ms + 0.5) === k, `another moment than ${k}`);
@@ -49,7 +54,7 @@ function played(moments, chance, most) {
   check(!count || times.at(-1) > now_ms - 40 * 64, 'the newest is missing');
   const first = times[0] ?? 0;
   for (const [time, [was]] of told) {
-    if (was.events.length && time >= first) check(times.includes(time), `an event is missing: ${time}`);
+    if (hasDone(was) && time >= first) check(times.includes(time), `an event is missing: ${time}`);
   }
   for (const which of [moments.events, moments.parts]) {
     let k = moments.length - 1;

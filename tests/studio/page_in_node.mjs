@@ -94,7 +94,6 @@ class Part extends EventTarget {
   options = [];
   textContent = '';
   value = '';
-  src = '';
   open = false;
   hidden = false;
   disabled = false;
@@ -102,6 +101,8 @@ class Part extends EventTarget {
   classList = { toggle() {}, add() {}, remove() {} };
   style = { setProperty() {}, removeProperty() {} };
 
+  get src() { return this.attributes['src'] ?? ''; }
+  set src(address) { this.attributes['src'] = address; }
   get parentElement() { return this.parent; }
   get lastElementChild() { return this.children.at(-1); }
   append(...parts) {
@@ -123,9 +124,15 @@ class Part extends EventTarget {
   getAttribute(name) { return this.attributes[name] ?? null; }
   click() { this.dispatchEvent(new Event('click')); }
   focus() {}
+  select() {}
+  setPointerCapture() {}
   toggleAttribute() {}
   showModal() { this.open = true; }
-  close() { this.open = false; }
+  close() {
+    if (!this.open) return;
+    this.open = false;
+    this.dispatchEvent(new Event('close'));
+  }
   insertBefore(part, next) {
     this.children = this.children.filter((each) => each !== part);
     part.parent = this;
@@ -135,8 +142,14 @@ class Part extends EventTarget {
 
 class Store {
   #kept = new Map();
+  room = Infinity; // characters
   getItem(key) { return this.#kept.get(key) ?? null; }
-  setItem(key, value) { this.#kept.set(key, value); }
+  /** How many characters there is room for at a place. */
+  roomFor(key) { return this.room - [...this.#kept].reduce((sum, [each, whole]) => sum + (each === key ? 0 : whole.length), 0); }
+  setItem(key, value) {
+    if (value.length > this.roomFor(key)) throw new Error('QuotaExceededError');
+    this.#kept.set(key, value);
+  }
   removeItem(key) { this.#kept.delete(key); }
 }
 
@@ -152,6 +165,8 @@ stands('matchMedia', () => ({ matches: false }));
 stands('Option', Part);
 stands('self', globalThis);
 stands('location', { hash: '', pathname: '/', search: '', href: 'http://127.0.0.1/' });
+const goesTo = (_, __, address) => { location.hash = new URL(address, location.href).hash; };
+stands('history', { replaceState: goesTo, pushState: goesTo });
 AbortSignal.timeout = () => new AbortController().signal;
 
 let pages = 0;
@@ -165,11 +180,11 @@ export function freshPage(given = {}) {
   stands('window', Object.assign(new EventTarget(), { setTimeout: setLater, sessionStorage: new Store(), localStorage: new Store() }));
   const heard = new EventTarget();
   for (const name of ['addEventListener', 'dispatchEvent']) stands(name, heard[name].bind(heard));
-  stands('document', {
+  stands('document', Object.assign(new EventTarget(), {
     documentElement: new Part(), body: new Part(), getElementById: byId, querySelectorAll: () => [],
     createElement: () => new Part(), createElementNS: () => new Part(),
-    addEventListener() {}, visibilityState: 'visible', querySelector: byId,
-  });
+    visibilityState: 'visible', hidden: false, querySelector: byId,
+  }));
   const load = (name) => import(pathToFileURL(`${sources}/${name}`).href + query);
   return { load, byId };
 }

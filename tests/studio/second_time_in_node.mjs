@@ -115,7 +115,8 @@ const PARTS = {
     };
   },
 
-  // A pupil in a class, and in another one, or again after a teacher has taken them out.
+  // A pupil in a class, and in another one, or again after a teacher has taken them out, until it is over. The class has
+  // what was written and pressed last, the page goes to its robot once in a turn, and takes what it is given once.
   async pupil() {
     const page = freshPage();
     document.documentElement.dataset['class'] = '';
@@ -123,23 +124,34 @@ const PARTS = {
     playsNavigator({});
     await learns(page);
     const { Pupil } = await page.load('class/pupil.js');
+    const { kept } = await page.load('page/kept.js');
     let room = null;
     playsFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
     const notes = [];
     const panel = { isFree: true, byHost: () => notes.push('to the robot') };
     const work = { text: 'F(1)', robot: 'tinibot' };
-    new Pupil({ panel, work, put: (given) => notes.push(['given', given.text]), empty: () => notes.push('empty') });
+    const puts = (given) => {
+      notes.push(['given', given.text]);
+      work.text = given.text;
+    };
+    new Pupil({ panel, work, put: puts, empty: () => notes.push('empty') });
     const box = page.byId('class_pupil');
     const [join, , buttons] = box.children;
-    const [ask, quit] = buttons.children;
+    const [ask, quit, connect] = buttons.children;
     const hand = page.byId('stop').placedBefore;
     let entries = 0;
     return async (chance, isGood) => {
       notes.length = 0;
       const began_ms = now();
       const token = `token ${(entries += 1)}`;
-      let place = -1;
-      let isUp = false;
+      panel.isFree = true;
+      work.text = 'F(1)';
+      const has = { text: '', place: -1, isUp: false };
+      const wanted = { place: -1, isUp: false };
+      let turns = 0;
+      let over = '';
+      let late = 0; // asked after the class was over
+      let isCalm = false; // nothing is lost
       let ends = 'goes on';
       const end = isGood ? 'goes on' : 'removed';
       const told = isGood && { key: 'one', text: 'given', robot: 'tinibot', lessons: [] };
@@ -151,27 +163,58 @@ const PARTS = {
             return { ok: false, status: 403 };
           }
           notes.push([now() - began_ms, { ...request }]);
+          if (over) late += 1;
           const isOut = ends === 'removed';
           await later(isGood ? 5 : 5 + chance.below(900));
-          if (!isGood && chance() < 0.2) throw new Broken();
+          if (!isCalm && chance() < (isGood ? 0.4 : 0.2)) throw new Broken();
           if (isOut) return { ok: false, status: 403 };
-          isUp = request.hand ?? isUp;
-          if (request.wants !== undefined) place = request.wants ? 0 : -1;
-          return answers({ place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: isUp, ...(told && !request.took && { given: told }) });
+          if (request.text !== undefined) has.text = request.text;
+          has.isUp = request.hand ?? has.isUp;
+          const before = has.place;
+          if (request.wants !== undefined) has.place = request.wants ? 0 : -1;
+          if (has.place === 0 && before !== 0) turns += 1;
+          if (over) return answers({ over });
+          return answers({ place: has.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: has.isUp, ...(told && !request.took && { given: told }) });
         },
       };
+      const presses = {
+        ask: () => { wanted.place = 0; ask.click(); },
+        quit: () => { wanted.place = -1; quit.click(); },
+        hand: () => { wanted.isUp = hand.attributes['aria-pressed'] !== 'true'; hand.click(); },
+        writes: () => { work.text = `F(${chance.below(1000)})`; },
+        nothing: () => {},
+      };
       join.dispatchEvent(new Event('submit', { cancelable: true }));
-      if (isGood && chance() < 0.5) hand.click(); // before the class has said how it is
+      await settles();
+      if (isGood && chance() < 0.5) presses.hand(); // before the class has said how it is
       await passes(500);
       for (let k = 1 + chance.below(4); k > 0; k -= 1) {
-        chance.of([() => ask.click(), () => quit.click(), () => hand.click(), () => {}])();
-        await passes(chance.below(1500));
+        presses[chance.of(Object.keys(presses))]();
+        await passes(chance.of([2, chance.below(1500)]));
       }
       if (!isGood && chance() < 0.7) chance.of([ask, quit, hand]).click(); // whose answer may come after the end
       ends = end;
       for (let k = chance.below(isGood ? 1 : 4); k > 0; k -= 1) chance.of([ask, quit, hand]).click();
       while (!isGood && join.hidden) await passes(50 + chance.below(50));
-      return { ends: [ends], seen: [notes.map((each) => structuredClone(each)), document.documentElement.dataset['pupil'], join.hidden, hand.attributes] };
+      if (!isGood) return { ends: [ends], seen: [] };
+      presses.writes();
+      await passes(2);
+      presses.writes(); // while the one before is on its way
+      isCalm = true;
+      panel.isFree = chance() < 0.5;
+      await passes(3000);
+      const seen = notes.map((each) => structuredClone(each));
+      const does = (what) => notes.filter((each) => each === what || each[0] === what).length;
+      if (has.text !== work.text) throw new Error(`the class has ${has.text} in place of ${work.text}`);
+      if (has.place !== wanted.place || has.isUp !== wanted.isUp) throw new Error(`not what was pressed last: ${JSON.stringify([has, wanted])}`);
+      if (does('to the robot') > turns || does('given') > 1) throw new Error(`${does('to the robot')} times to the robot in ${turns} turns, given ${does('given')} times`);
+      if (connect.hidden !== (has.place !== 0 || !panel.isFree)) throw new Error('who cannot connect may, or who can may not');
+      seen.push([document.documentElement.dataset['pupil'], join.hidden, hand.attributes]);
+      over = chance.of(['', 'kept', 'erased']);
+      await passes(5000);
+      if (over && (!join.hidden || late > 1 || kept('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${late}`);
+      if (does('empty') !== Number(over === 'erased') || Boolean(kept('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${does('empty')} ${kept('tiniscript.pupil_before')}`);
+      return { ends: [ends], seen: [seen, document.documentElement.dataset['pupil']] };
     };
   },
 
@@ -259,15 +302,25 @@ const PARTS = {
     new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled: async () => PROGRAM, remember() {}, pad: { offer: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
     await settles();
     const line = page.byId('time_at');
+    const marked = [];
+    Object.assign(page.byId('time_marks'), { clientWidth: 200, clientHeight: 20, getContext: () => ({ fillRect: (x) => marked.push(x) }) });
     const seen = () => [line.disabled || [line.min, line.max, line.value], page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((each) => each.textContent)), structuredClone(pageState.fault.value)];
     return async (chance, isGood) => {
       notes.splice(0);
       robot = virtualRobot(chance, isGood);
+      pageState.programText.set('F(9)');
       page.byId('run').click();
       if (!isGood && robot.does === 'runs' && chance() < 0.2) page.byId('run').click(); // twice
       for (let k = chance.below(6); k > 0; k -= 1) {
         await passes(100 + chance.below(300));
+        marked.length = 0;
         notes.push(seen());
+        if (chance() < 0.1) {
+          pageState.programText.set(`F(${chance.below(9)})`);
+          await passes(200);
+          if (pageState.virtualRun.value.ranges.length) throw new Error('it runs in another text');
+        }
+        notes.push([...marked]);
         const pressed = page.byId(chance.of(['pause', 'step', 'push', 'time_at', 'nothing']));
         if (pressed === line && !line.disabled) {
           line.value = String(chance.below(3000));
@@ -523,7 +576,8 @@ const PARTS = {
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
-    const said = () => [page.byId('lesson_said').textContent, page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden];
+    const said = () => [page.byId('lesson_said').textContent, page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden,
+      page.byId('lesson_findings').children.length, page.byId('lesson_next').hidden, page.byId('lesson_end').textContent, page.byId('lesson_check').hidden];
     const acts = {
       check: () => page.byId('lesson_check').click(),
       end: () => page.byId('lesson_end').click(),
@@ -650,37 +704,101 @@ const PARTS = {
     };
   },
 
-  // The programs of pupils on the teacher's page, which come over a network that loses some.
+  // The wall of the teacher's page, over a network that loses some: the tiles are of who is in the class, with pictures of
+  // what they have now, and no other picture is kept; what is seen large is as it is now, or closed.
   async wall() {
-    const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
+    const page = freshPage({
+      generate: () => ({ toCanvas() {} }), correction: {},
+      Blocks: class {
+        words = 'words';
+        showWords() { this.words = `words ${languages}`; }
+        async pictureOf({ text }) { await later(20); return `${text} ${this.words}`; }
+      },
+    });
+    let languages = 0;
+    const open = new Map(); // what is in a picture, by its address
+    let addresses = 0;
+    URL.createObjectURL = (what) => {
+      open.set(`blob:${(addresses += 1)}`, what);
+      return `blob:${addresses}`;
+    };
+    URL.revokeObjectURL = (address) => open.delete(address);
     document.documentElement.dataset['class'] = '';
     playsNavigator({});
     playsFetch(async () => { throw new Broken(); });
     await learns(page);
     let room = async () => { throw new Broken(); };
     playsFetch((_, { body }) => room(JSON.parse(body)));
+    const { pageState } = await page.load('page/page_state.js');
     const { Teacher } = await page.load('class/teacher.js');
-    new Teacher({ get ready() { return Promise.reject(new Broken()); }, ask() {} });
+    new Teacher({ ready: Promise.resolve(), ask: async (_, data) => { await later(10); return { text: new TextDecoder().decode(data) }; } });
+    await passes(10);
     const wall = page.byId('class').children.at(-2);
     const large = document.body.children.find(({ id }) => id === 'big_pupil');
+    const giving = document.body.children.find(({ id }) => id === 'class_giving');
+    let versions = 0;
+    /** Who is in the class, by name. @type {Map<string, {number: number, text: string, version: number}>} */
+    const here = new Map();
+    const kept = new Map();
+    const seenLarge = () => large.open && [large.children[0].children[0].textContent, large.children[1].children[1].textContent, open.get(large.children[1].children[0].children[0].src)];
     return async (chance, isGood) => {
       let lost = false;
+      let isLate = () => !isGood;
       room = async (request) => {
-        await later(isGood ? 5 : chance.below(300));
-        if (!isGood && chance() < 0.5) {
+        const [pupils, works] = [[...here], [...kept]].map((all) => structuredClone(all));
+        await later(isLate() ? chance.below(300) : 5);
+        if (isLate() && chance() < 0.5) {
           lost ||= request.do === 'class_text';
           throw new Broken();
         }
-        if (request.do === 'class_text') return answers({ text: `of ${request.pupil}`, robot: 'tinibot', version: 1 });
-        const pupils = [1, 2].map((number) => ({ number, name: `P${number}`, silent_s: 0, place: 0, robot: '', left_s: 0, version: 1, is_right: true, hand: 0, lessons: [] }));
-        return answers({ code: '1', turn_s: 60, places: 2, over: '', goes_on: false, lessons: 1, kept: [], pupils, robots: [] });
+        if (request.do === 'class_text') {
+          const [, found] = [...pupils, ...works].find(([name, { number }]) => (request.pupil ? number === request.pupil : name === request.key)) ?? [];
+          return answers({ text: found?.text ?? '', robot: 'tinibot', version: found?.version ?? 0 });
+        }
+        const rows = pupils.map(([name, { number, version }]) => ({ number, name, silent_s: 0, place: 0, robot: '', left_s: 0, version, is_right: true, hand: 0, lessons: [] }));
+        const keptRows = works.map(([name]) => ({ key: name, name, lessons: [], given: 0, alike: [] }));
+        return answers({ code: '1', turn_s: 60, places: 2, over: '', goes_on: false, lessons: 1, kept: keptRows, pupils: rows, robots: [] });
       };
-      await passes(isGood ? 5000 : 300 + chance.below(3000));
-      const seen = isGood && wall.children.map(({ children }) => {
-        children.at(-3).click(); // then it is seen large
-        return large.children[1].children.map((each) => each.textContent);
-      });
-      return { ends: [lost ? 'lost' : 'came'], seen };
+      const name = () => chance.of(['Ana', 'Luz', 'Teo', 'Eva']);
+      const acts = {
+        comes: () => { const who = name(); if (!here.has(who)) here.set(who, { number: (versions += 1), text: '', version: 0 }); },
+        writes: () => { const found = here.get(name()); if (found) Object.assign(found, { text: chance() < 0.2 ? '' : `W(${versions})`, version: (versions += 1) }); },
+        goes: () => { here.delete(name()); },
+        kept: () => { const key = `old ${name()}`; if (!kept.delete(key)) kept.set(key, { text: `S(${versions})`, version: 0 }); },
+        speaks: () => { languages += 1; pageState.language.set('en'); },
+        looks: () => { const tile = chance.of([...wall.children, null]); tile?.children.at(-3).click(); },
+        closes: () => large.close(),
+        gives: () => giving.showModal(),
+        waits: () => {},
+      };
+      for (let k = 3 + chance.below(12); k > 0; k -= 1) {
+        acts[chance.of([...Object.keys(acts), 'comes', 'writes', 'writes'])]();
+        await passes(chance.of([20, 1050, chance.below(1500)]));
+      }
+      if (!isGood) return { ends: [lost ? 'lost' : 'came'], seen: false };
+      isLate = () => false;
+      const isLarge = large.open;
+      await passes(12_000);
+      const all = [...here, ...kept].sort(([one], [other]) => one.localeCompare(other));
+      const tiles = wall.children.map(({ children }) => [children[0].textContent, open.get(children[1].children[0].src), children[1].children[0].src]);
+      const wanted = all.map(([who, { text }]) => [who, text && (languages ? `${text} words ${languages}` : `${text} words`)]);
+      if (`${tiles.map(([who, picture = '']) => [who, picture])}` !== `${wanted}`) throw new Error(`${JSON.stringify(tiles)} in place of ${JSON.stringify(wanted)}`);
+      if (tiles.some(([, picture, address]) => address && !picture)) throw new Error('a picture that is kept no more is in a tile');
+      const shown = new Set(tiles.map(([, , address]) => address).filter(Boolean));
+      if (shown.size !== open.size) throw new Error(`${open.size} pictures are kept, and ${shown.size} are seen`);
+      if (large.open && !isLarge) throw new Error('what was closed is seen large again');
+      const big = seenLarge();
+      const own = big && all.find(([who]) => who === big[0]);
+      if (big && !own) throw new Error(`${big[0]} is seen large, and is not here`);
+      if (own && own[1].text && (big[1] !== own[1].text || big[2] !== wanted[all.indexOf(own)][1])) throw new Error(`${big} is seen large in place of ${own[1].text}`);
+      if (giving.open && !kept.size) throw new Error('there is nothing to give');
+      here.clear();
+      kept.clear();
+      large.close();
+      giving.close();
+      await passes(5000);
+      if (wall.children.length || open.size) throw new Error(`${wall.children.length} tiles and ${open.size} pictures of nobody`);
+      return { ends: ['good'], seen: [] };
     };
   },
 
@@ -704,10 +822,11 @@ const PARTS = {
             this.isOver = true;
             throw new Failed(failure || 'left');
           }
-          return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false };
+          return { name: `A${ways.length}`, id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false, has_remote: true };
         }
         async ask({ do: what }) {
           await later(late());
+          if (this.isOver) throw new Failed('left');
           return { ok: true, program: 'ff', trim: what === 'trim' ? null : undefined };
         }
         stop() { notes.push('stop'); }
@@ -728,10 +847,13 @@ const PARTS = {
     const { RobotPanel } = await page.load('robot/panel.js');
     pageState.robotName.set('tinibot');
     pageState.checked.set({ ...PROGRAM, program: 'ff', bytes: 9 });
-    const panel = new RobotPanel({ python: null, goTo() {}, recorder: noting(notes, 'recorder'), place: new RobotPlace(), pad: noting(notes, 'pad') });
+    const { text } = await page.load('page/texts.js');
+    const panel = new RobotPanel({ python: { again() {} }, goTo() {}, recorder: noting(notes, 'recorder'), place: new RobotPlace(), pad: noting(notes, 'pad') });
     await passes(10);
-    const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }];
-    const seen = () => [page.byId('link_said').textContent, page.byId('link_shown').textContent, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
+    const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }, { event: 'FAULT', fault: 'STUCK', program: 'ff', at: 0 }];
+    const said = () => page.byId('link_said').textContent;
+    const seen = () => [said(), page.byId('link_shown').textContent, page.byId('link_name').textContent, page.byId('link_rename_to').value, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
+    const noted = (...what) => notes.some((each) => `${each}` === `${what}`);
     return async (chance, isGood) => {
       const before = ways;
       ways = [];
@@ -741,16 +863,66 @@ const PARTS = {
       panel.byHost('p');
       const all = [structuredClone(pageState.robotRun.value), document.documentElement.dataset['robot']];
       await passes(isGood ? 50 : chance.below(600));
-      for (let k = 1 + chance.below(6); k > 0; k -= 1) {
+      const isMet = () => document.documentElement.dataset['robot'] === 'connected';
+      let stop = ''; // pressed, or done, since the newest start
+      const acts = {
+        tells() {
+          const event = chance.of(EVENTS);
+          notes.length = 0;
+          if (event.event === 'STOPPED' && stop === '') page.byId('link_said').textContent = '';
+          ways[0]?.tell(event);
+          if (!ways[0] || ways[0].isOver) return;
+          const isOpen = stop === 'pressed';
+          if (event.event === 'STARTED' && stop === 'done') stop = '';
+          if (event.event !== 'STOPPED') return;
+          if (!noted('pad', 'letGo')) throw new Error('what is held is held on after a stop');
+          if (!isOpen && stop === '' && said() !== text('stopped_MESSAGE')) throw new Error(`of a stop after a start it says ${said()}`);
+          stop = 'done';
+        },
+        stops() {
+          notes.length = 0;
+          panel.stop();
+          if (!ways[0] || ways[0].isOver) return;
+          if (!noted('stop')) throw new Error('nobody stops');
+          stop = 'pressed';
+        },
+        uploads() {
+          if (!isMet()) return;
+          page.byId('link_upload').click();
+          if (page.byId('link_shown').textContent) throw new Error('what the program before has shown is there still');
+        },
+        breaks() {
+          if (!isMet()) return;
+          pageState.checked.set({ ...PROGRAM, image: '', program: '' });
+          notes.length = 0;
+          page.byId('link_upload').click();
+          if (!noted('stop')) throw new Error('what runs is not what is seen');
+          stop = 'pressed';
+          pageState.checked.set({ ...PROGRAM, program: 'ff', bytes: 9 });
+        },
+        async renames() {
+          if (!isMet()) return;
+          page.byId('link_rename_to').value = 'Bo';
+          page.byId('link_rename').click();
+          await passes(400);
+          if (isMet() && page.byId('link_name').textContent !== 'Bo') throw new Error('it has its name of before');
+        },
+      };
+      for (let k = 1 + chance.below(8); k > 0; k -= 1) {
         if (isGood && before.length) before[0].end('unheard'); // once more, and late
-        ways[0]?.tell(chance.of(EVENTS));
+        await acts[chance.of(['tells', 'tells', 'tells', ...Object.keys(acts)])]();
         all.push(seen());
         await passes(chance.below(300));
       }
       const end = failure || (isGood ? 'stays' : chance.of(['left', 'unheard']));
+      const wasMet = isMet();
+      const isUnsaid = stop === 'pressed' && !failure;
+      notes.length = 0;
       if (end === 'left') ways[0].leave();
       if (end === 'unheard') ways[0].end('unheard');
       if (!isGood) await passes(1000);
+      if (!isGood && wasMet && !noted('recorder', 'end', 'LOST')) throw new Error('the recording of who is gone goes on');
+      if (!isGood && wasMet && isUnsaid && !said().includes(text('say_not_confirmed'))) throw new Error(`nobody says that the stop is not confirmed: ${said()}`);
       return { ends: [end], seen: [all, [...notes]] };
     };
   },
@@ -807,6 +979,119 @@ const PARTS = {
       own.keep('tinibot');
       await passes(2000);
       return { ends: ['good'], seen: keptWorlds().newest };
+    };
+  },
+
+  // The programs that were in the editor, as they are kept: none is lost while there is room, and the oldest go first.
+  async programs() {
+    const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });
+    playsNavigator({});
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { Programs } = await page.load('programs/programs.js');
+    const { keptWork } = await page.load('programs/work.js');
+    const { MOST_CHARACTERS, versions } = await page.load('programs/versions.js');
+    const { linkOf } = await page.load('programs/links.js');
+    const { FIRST_PROGRAM } = await page.load('start/beginnings.js');
+    const work = { text: FIRST_PROGRAM, robot: 'tinibot', world: 'obstacles', language: 'en', name: '', view: 'text', level: 'few', words: false, sound: true };
+    const programs = new Programs({ python: { ask: async () => ({ text: 'a line' }) }, work, put: (program) => Object.assign(work, program), picturing() {} });
+    let count = 0;
+    const inForm = ({ text, robot, name }) => JSON.stringify([text, robot, name]);
+    return async (chance, isGood) => {
+      const store = window.localStorage;
+      const ends = new Set();
+      const acts = {
+        writes: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(chance.of([1, 20, 30_000, 60_000, 90_000]))}`; },
+        again: () => { work.text = chance.of(versions())?.text ?? work.text; },
+        blank: () => { work.text = ' '; },
+        run: () => page.byId('run').click(),
+        opens: () => page.byId('my_programs').click(),
+        new: () => page.byId('new').click(),
+        lesson: () => programs.replace({ text: `S; // ${(count += 1)}`, robot: chance.of(['tinibot', 'liner']), name: '' }),
+        older: () => {
+          page.byId('my_programs').click();
+          chance.of([...page.byId('versions').children, null])?.children.at(-1).click();
+        },
+        names: () => {
+          page.byId('program_name').value = `name ${(count += 1)}`;
+          page.byId('program_name').dispatchEvent(new Event('input'));
+        },
+        hides: () => {
+          document.hidden = true;
+          document.dispatchEvent(new Event('visibilitychange'));
+          document.hidden = false;
+        },
+        leaves: () => dispatchEvent(new Event('pagehide')),
+        link: async () => {
+          const link = await linkOf({ text: `B(${(count += 1)});`, robot: 'tinibot' }, location.href);
+          location.hash = link.slice(link.indexOf('#'));
+          dispatchEvent(new Event('hashchange'));
+          for (let k = 0; work.text !== `B(${count});` && k < 2000; k += 1) await settles(); // it waits for the real clock
+          if (work.text !== `B(${count});`) throw new Error('the program of a link is not seen');
+        },
+      };
+      const keeping = ['run', 'opens', 'new', 'lesson', 'older', 'names', 'hides', 'leaves', 'link'];
+      for (let k = 4 + chance.below(16); k > 0; k -= 1) {
+        if (chance() < 0.1) store.room = chance.of([Infinity, Infinity, 400_000, 100_000, 0]);
+        const act = chance.of(Object.keys(acts));
+        const before = { ...work, ...(act === 'names' && { name: `name ${count + 1}.ts` }) };
+        const kept = versions();
+        pageState.note.set('');
+        let told = '';
+        pageState.note.subscribe((said) => { told ||= said; });
+        await acts[act]();
+        const now = versions();
+        if (!keeping.includes(act) || !before.text.trim() || before.text === FIRST_PROGRAM) continue;
+        if (act === 'names' && store.room === Infinity && keptWork()?.name !== before.name) throw new Error(`its name is ${keptWork()?.name}`);
+        const others = kept.filter(({ text, robot }) => text !== before.text || robot !== before.robot);
+        const wanted = [before, ...others].map(inForm);
+        if (before.text.length > MOST_CHARACTERS || !now.length || inForm(now[0]) !== wanted[0]) {
+          if (before.text.length <= MOST_CHARACTERS && store.roomFor('tiniscript.versions') >= before.text.length + 1000) throw new Error(`${act} loses ${before.text.slice(0, 20)}`);
+          if (!told) throw new Error(`${act}: nobody says that it is not kept`);
+          ends.add('full');
+          continue;
+        }
+        const fits = now.length === wanted.length || now.length === 40 || store.room < Infinity
+          || now.reduce((sum, { text }) => sum + text.length, 0) + others[now.length - 1].text.length > MOST_CHARACTERS;
+        if (`${now.map(inForm)}` !== `${wanted.slice(0, now.length)}` || !fits) throw new Error(`${act}: ${now.length} are kept of ${wanted.length}`);
+        if (now.length > 40 || (now.length > 1 && now.reduce((sum, { text }) => sum + text.length, 0) > MOST_CHARACTERS)) throw new Error('too many are kept');
+        ends.add('kept');
+      }
+      store.room = Infinity;
+      return { ends: [...ends], seen: [] };
+    };
+  },
+
+  // The floor, and the robot on it, as they are drawn.
+  async arena() {
+    const page = freshPage();
+    const drawn = [];
+    const pen = (name) => noting(drawn, name, { measureText: () => ({ width: 9 }), getTransform: () => ({ a: 1, e: 0, f: 0 }) });
+    document.createElement = () => Object.assign(page.byId('floor'), { getContext: () => floorPen });
+    const floorPen = pen('floor'), robotPen = pen('robot');
+    globalThis.Path2D = class {};
+    const { Arena } = await page.load('virtual/arena.js');
+    const { ROBOTS, WORLDS } = await page.load('page/words.js');
+    const canvas = Object.assign(page.byId('canvas'), { clientWidth: 400, clientHeight: 300, getContext: () => robotPen });
+    const arena = new Arena(canvas);
+    arena.resize();
+    return async (chance, isGood) => {
+      const world = isGood ? { ...chance.of(WORLDS) } : chance.of(WORLDS);
+      const robot = chance.of(ROBOTS).name;
+      const from = drawn.length;
+      arena.begin(world, robot, []);
+      arena.draw(null);
+      let now_ms = 0;
+      for (let k = isGood ? 5 : 2 + chance.below(20); k > 0; k -= 1) {
+        now_ms += chance.below(900);
+        const state = { now_ms, began_ms: 0, pose: [chance.below(100), chance.below(100), chance.below(360)], motors: [chance.below(100), 50], is_running: chance() < 0.8, touches: null,
+          score: { taken: isGood ? 0 : chance.below(3), of: 3, points: 0, stars: 0 }, actuators: [], readings: [], fault: '' };
+        arena.follow(state);
+        if (!isGood && chance() < 0.3) arena.say(`${chance.below(9)}`, now_ms);
+        if (!isGood && chance() < 0.3) arena.showBeep(now_ms, now_ms + 5000);
+        arena.draw(state);
+      }
+      return { ends: [now_ms > 3000 ? 'long' : 'short'], seen: isGood && drawn.slice(from) };
     };
   },
 
@@ -919,13 +1204,13 @@ const PARTS = {
 
   // The recording of a run, before and after runs of others.
   async recording() {
-    let saved = null;
     const page = freshPage();
     await learns(page);
-    URL.createObjectURL = (blob) => { saved = blob; };
-    URL.revokeObjectURL = () => {};
     const { Recorder } = await page.load('robot/recorder.js');
-    const recorder = new Recorder({ python: null, world: () => null });
+    const { Runs } = await page.load('virtual/runs.js');
+    const runs = new Runs();
+    const recorder = new Recorder({ runs, see() {} });
+    recorder.sends({ program: 'aa', places: [], shows: [], variables: [] });
     let own = []; // what the newest run of ours has told
     let isOpen = false;
     const ends = (event) => {
@@ -971,11 +1256,9 @@ const PARTS = {
         end = chance.of(['shows', 'shows', 'shows', ...Object.keys(acts)]);
         acts[end](chance);
         await passes(chance.below(300));
-        if (page.byId('record_save').disabled) continue;
-        page.byId('record_save').click();
-        const [, ...told] = (await saved.text()).trim().split('\n').map((row) => JSON.parse(row).event);
-        const wanted = isOpen ? [...own, 'STOPPED'] : own; // there is no other end yet
-        if (`${told}` !== `${wanted}`) throw new Error(`${told} in place of ${wanted}`);
+        if (page.byId('record_play').hidden) continue;
+        const told = runs.all[0].rows.map(([, event]) => event);
+        if (`${told}` !== `${own}`) throw new Error(`${told} in place of ${own}`);
       }
       return { ends: [end], seen: isGood && [...own] };
     };

@@ -156,7 +156,7 @@ def at_the_teachers(browser: Browser, folder: Path) -> Iterator[Page]:
 def test_a_page_without_firmware_never_offers_it(browser: Browser, tmp_path: Path) -> None:
     (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(b"nothing")
     with at_the_teachers(browser, tmp_path) as page:
-        page.locator("#record_open").wait_for()
+        page.locator("#keys_import").wait_for()
         page.wait_for_load_state("networkidle")
         assert not page.locator("#flash").is_visible()
         assert axe(page) == []

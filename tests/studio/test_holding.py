@@ -120,7 +120,7 @@ def test_nothing_passes_while_it_is_held() -> None:
     state = simulation.state()
     assert state["is_held"] and simulation.robot.now_ms - state["began_ms"] == 1000
     simulation.go(5000)
-    assert simulation.state() == {**state, "events": []}
+    assert simulation.state() == {**state, "events": [], "rows": []}
 
 
 def test_a_stop_ends_a_held_program() -> None:

@@ -640,7 +640,7 @@ def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
     assert page.locator(f"{PROGRAM} .wrong").count() == 1
 
 
-def test_what_stands_at_the_top_is_put_in_no_other_block(page: Page) -> None:
+def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
     page.select_option("#robot", "tinibot32")
     for group, words, own in (
         ("Events", "each time", "WHEN(DISTANCE < 20);\nEND_WHEN;\n"),
@@ -652,18 +652,86 @@ def test_what_stands_at_the_top_is_put_in_no_other_block(page: Page) -> None:
         inside = 20 - round(box_of(loop)["height"])
         drag(page, group, words, loop, off=(12, inside))
         becomes_other(page, "SI|LOOP(3);\nEND_LOOP;\n")
-        assert own in text_of(page) and "LOOP(3);\nEND_LOOP;\n" in text_of(page)
+        loops = "LOOP(3);\nEND_LOOP;\n"
+        becomes(page, f"SI|{own}{loops}" if own.startswith("DEF") else f"SI|{loops}{own}")
+        hat, program = box_of(block(page, words)), box_of(block(page, "repeat"))
+        assert hat["y"] > program["bottom"] or hat["x"] > program["right"], (words, hat, program)
+
+
+def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page) -> None:
+    first, then = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
+    text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first}{then}"
+    start(page, text, "usual")
+    assert text_of(page) == text
+    drag(page, "Move", "back", block(page, "stop"))
+    kept = text.replace("W(2);\n", "B(2, 80);\nW(2);\n")
+    becomes(page, kept)  # a hat that nobody moves stays after the block that it stood after
+    hats = page.locator(f"{PROGRAM} > .blocklyDraggable", has_text="each time")
+    box, above = box_of(hats.last), box_of(hats.first)
+    page.mouse.move(box["x"] + 12, box["y"] + 16)
+    page.mouse.down()
+    page.mouse.move(box["right"] + 24, above["y"] - 40, steps=8)
+    page.mouse.up()
+    moved = kept.replace(first + then, then + first)
+    becomes(page, moved)
+    last = page.locator(f"{PROGRAM} > .blocklyDraggable", has_text="20")
+    place = box_of(last)
+    assert place["x"] > above["right"] and place["y"] < above["y"]
+    page.click("#undo")
+    becomes(page, kept)
+    page.click("#redo")
+    becomes(page, moved)
+    assert box_of(last)["x"] == pytest.approx(place["x"], abs=1)
+
+
+def test_a_hat_that_comes_back_is_put_where_it_is_seen(page: Page) -> None:
+    """One that is there stays out of sight, where somebody put it."""
+    word = "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n"
+
+    def end() -> float:
+        pane: float = page.locator("#blocks").evaluate("e => e.getBoundingClientRect().bottom")
+        return pane
+
+    start(page, word, "usual")
+    hat = page.locator(f"{PROGRAM} > .blocklyDraggable", has_text="new word")
+    box = box_of(hat)
+    page.mouse.move(box["x"] + 8, box["y"] + 24)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 8, end() - 60, steps=8)
+    page.mouse.up()
+    assert text_of(page) == word
+    place = box_of(hat)["bottom"]
+    page.set_viewport_size({"width": 1366, "height": 600})
+    start(page, f"{word}S;\n", "usual")
+    assert box_of(hat)["bottom"] == pytest.approx(place, abs=1) and place > end()
+    start(page, "SI|S;\n", "usual")
+    start(page, word, "usual")
+    assert box_of(hat)["bottom"] < end()
+
+
+NUMBERS = """all => all.map((field, k) => ({field, k, box: field.getBoundingClientRect()}))
+  .map(({field, k, box}) => {
+    const top = field.closest('.blocklyBlockCanvas > *');
+    return [/when\\s+it\\s+starts/.test(top.textContent) ? 0 : 1, box.y, box.x, k];
+  })
+  .sort((a, b) => a[0] - b[0] || Math.round(a[1] - b[1]) || a[2] - b[2]).map((row) => row[3])"""
+
+
+def numbers_of(page: Page) -> list[int]:
+    """Return the fields of numbers as a person reads them: the program's, then those of hats."""
+    found: list[int] = page.locator(f"{PROGRAM} .blocklyNumberField").evaluate_all(NUMBERS)
+    return found
 
 
 # What is dragged where, and which numbers are typed then: the first one is number 0.
 IN_BLOCKS = {
     13: ([("Repeat", "forever", "when it starts", "below"), ("Move", "forward", "forever", "in"),
-          ("Events", "each time", "forever", "below"), ("Move", "turn right", "each time", "in"),
-          ("Move", "back", "each time", "in")],
+          ("Events", "each time", "forever", "below"), ("Move", "turn right", "each time", "below"),
+          ("Move", "back", "each time", "below")],
          {1: "60", 2: "30", 3: "0.4", 4: "60"}),
     14: ([("Move", "forward", "when it starts", "below"), ("Move", "turn left", "forward", "below"),
           ("Move", "forward", "turn left", "below"), ("Events", "same time", "forward", "below"),
-          ("Repeat", "times", "same time", "in"), ("Wait", "wait", "times", "in"),
+          ("Repeat", "times", "same time", "below"), ("Wait", "wait", "times", "in"),
           ("Robot", "lamp", "times", "in"), ("Wait", "wait", "times", "in"),
           ("Robot", "lamp", "times", "in")],
          {0: "5", 1: "60", 2: "0.51", 4: "3.33", 5: "60", 6: "15", 7: "0.3", 8: "0.3"}),
@@ -684,14 +752,14 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
     dragged, numbers = IN_BLOCKS[number]
     for group, words, target, place in dragged:
         before, to = text_of(page), block(page, target)
-        inside = (76 if target == "each time" else 40) - round(box_of(to)["height"])
+        inside = 40 - round(box_of(to)["height"])
         drag(page, group, words, to, off=(12, inside) if place == "in" else (0, 0))
         becomes_other(page, before)
     if number == 14:  # every other time the lamp goes out
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="yes").last.click()
         page.locator(".blocklyMenuItem", has_text="no").click()
     for k, typed in numbers.items():
-        page.locator(f"{PROGRAM} .blocklyNumberField").nth(k).click()
+        page.locator(f"{PROGRAM} .blocklyNumberField").nth(numbers_of(page)[k]).click()
         page.keyboard.press("Control+a")
         page.keyboard.type(typed)
         page.keyboard.press("Enter")

@@ -108,9 +108,9 @@ def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> N
     page.locator(START).wait_for(state="attached")
     assert locator.count() > 3
     page.click("[data-begin=dance]")
-    page.locator("#doing", has_text="The compiler did not come. Run tries it again").wait_for()
+    page.locator("#doing", has_text="The compiler did not arrive. Run tries it again").wait_for()
     page.click("#side_lessons")
-    page.locator("#lesson_said", has_text="The compiler did not come.").wait_for()
+    page.locator("#lesson_said", has_text="The compiler did not arrive.").wait_for()
     hears(page, lambda: pages.wrong, "what the compiler lacks")
     pages.wrong.clear()
 

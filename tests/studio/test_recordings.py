@@ -1,30 +1,45 @@
-"""Recordings of a run: files of anybody, and where a robot and the virtual one part."""
+"""Files of recorded runs: what anybody may send, and where a robot and the virtual one part."""
 
 from __future__ import annotations
 
 import json
+import random
+from typing import Any
 
 import pytest
 
-from tiniscript import compile
-from tiniscript.studio import recordings, worker
-from tiniscript.studio.recordings import BadRecording, Parting, Recorded, read, replay
-from tiniscript.studio.simulation import Simulation
-from tiniscript.virtual import worlds
+from tests.studio.runs_again import differs, recorded
+from tiniscript import compile, robots
+from tiniscript.studio import recordings
+from tiniscript.studio.playing import Parting, Played, play, ready
+from tiniscript.studio.recordings import BadRecording, Row, Rows, head, read, written
 
 LOOKS = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
 LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 8"), (2061, "DONE"))
+TINIBOT = robots.load("tinibot")
 
 
-def file(*events: tuple[int, str], text: str = LOOKS, version: int = 1) -> bytes:
-    head = {"tiniscript_recording": version, "program": f"{compile(text).checksum:08x}"}
-    rows = [head, *({"ms": ms, "event": event} for ms, event in events)]
-    return "".join(json.dumps(row) + "\n" for row in rows).encode()
+def first(text: str = LOOKS, of: str = recordings.REAL, **more: Any) -> str:
+    if of == recordings.VIRTUAL:
+        more = {"world": "obstacles", **more}
+    return head(of, text, TINIBOT, compile(text).checksum, **more)
+
+
+def file(*events: tuple[int, str], text: str = LOOKS, **more: Any) -> bytes:
+    rows = [Row(*event) for event in events]
+    end_ms = rows[-1].ms if rows else 0
+    return written(first(text, **more), rows, end_ms).encode()
 
 
 def parting(*events: tuple[int, str], text: str = LOOKS) -> Parting:
-    recording = read(file(*events, text=text))
-    return replay(recording, text.encode(), "tinibot", worlds.load("obstacles"))
+    is_by_button = text.startswith("SB|")
+    played = play(ready(read(file(*events, text=text, is_by_button=is_by_button))))
+    assert played.parting is not None
+    return played.parting
+
+
+def found(*events: tuple[int, str], text: str = LOOKS) -> tuple[str, int, int]:
+    return parting(*events, text=text)[:3]
 
 
 def test_readings_of_the_recording_are_those_of_the_virtual_sensors() -> None:
@@ -32,50 +47,67 @@ def test_readings_of_the_recording_are_those_of_the_virtual_sensors() -> None:
     assert parting(*LINES) == Parting("same", 5)
 
 
-@pytest.mark.parametrize(("text", "found"), [
-    (LOOKS.replace("DISTANCE", "PAD_Y"), Parting("same", 5)),
-    (LOOKS.replace("SHOW(DISTANCE)", "SHOW(PAD_Y + 0)").replace("DISTANCE", "PAD_Y"),
-     Parting("value", 0, 3, Recorded(1000, "SHOW 17.5"), Recorded(1000, "SHOW 0"))),
-])  # fmt: skip
-def test_of_what_was_pressed_the_virtual_robot_has_what_is_shown(text: str, found: Parting) -> None:
-    assert parting(*LINES, text=text) == found
+def test_what_is_pressed_is_known_where_the_program_shows_it() -> None:
+    assert parting(*LINES, text=LOOKS.replace("DISTANCE", "PAD_Y")) == Parting("same", 5)
+
+
+@pytest.mark.parametrize("value", ["17.5", "38.7"])
+def test_after_a_reading_that_is_not_recorded_no_parting_is_marked(value: str) -> None:
+    """Whether what follows is the same or not."""
+    text = "SHOW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
+    lines = [(20, "SHOW 1"), (40, f"SHOW {value}"), (60, "SHOW 2"), (61, "DONE")]
+    there = parting(*lines, text=text)
+    assert (there.what, there.agreed, there.line, there.sensor) == ("unread", 1, 2, "DISTANCE")
+    wrong = parting((20, "SHOW 7"), *lines[1:], text=text)
+    assert wrong.what == "value"  # before it
+
+
+@pytest.mark.parametrize("value", ["TRUE", "FALSE"])
+def test_a_reading_that_is_recorded_is_that_of_the_virtual_sensor_from_then_on(value: str) -> None:
+    text = "W(1);\nIF(KEY_A);SHOW(1);ENDIF;W(1);\nSHOW(DISTANCE * 2)"
+    shows = [(1017, "SHOW 1")] if value == "TRUE" else []
+    rows = [(0, f"READ KEY_A {value}"), (900, "READ DISTANCE 8"), *shows,
+            (1900, "READ DISTANCE 9"), (2030, "SHOW 18"), (2031, "DONE")]  # fmt: skip
+    assert parting(*rows, text=text) == Parting("same", len(shows) + 2)
+    rows[-2] = (2030, "SHOW 16")
+    assert found(*rows, text=text) == ("value", len(shows), 3)
 
 
 def test_the_first_value_or_time_that_differs_is_told_with_its_line() -> None:
-    found = parting(*LINES[:3], (2060, "SHOW 9"), LINES[4])
-    assert (found.what, found.agreed, found.line) == ("value", 3, 5)
-    assert found.robot == (2060, "SHOW 9")
-    assert found.virtual is not None and found.virtual.event == "SHOW 8"
+    there = parting(*LINES[:3], (2060, "SHOW 9"), LINES[4])
+    assert (there.what, there.agreed, there.line) == ("value", 3, 5)
+    assert there.robot == Row(2060, "SHOW 9")
+    assert there.virtual is not None and there.virtual.event == "SHOW 8"
     late = [(ms + 900 * (ms > 2000), event) for ms, event in LINES]
-    found = parting(*late)
-    assert (found.what, found.agreed, found.line) == ("time", 2, 3)
+    assert found(*late) == ("time", 2, 3)
 
 
 def test_a_quarter_of_a_second_and_a_twentieth_of_the_time_are_the_same_time() -> None:
-    assert parting((281, "SHOW 1"), text="SHOW(1)") == Parting("same", 1)  # the virtual one: 17
-    assert parting((282, "SHOW 1"), text="SHOW(1)").what == "time"
+    assert found((281, "SHOW 1"), text="SHOW(1)")[0] == "same"  # the virtual one: 17
+    assert found((282, "SHOW 1"), text="SHOW(1)")[0] == "time"
 
 
 def test_who_goes_on_alone_is_told() -> None:
-    found = parting(*LINES[:2], (9000, "STOPPED"))
-    assert (found.what, found.agreed, found.line) == ("virtual_more", 2, 3)
-    more = parting((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
-    assert (more.what, more.agreed) == ("value", 1)  # DONE in place of the second one
-    assert parting((100, "SHOW 1"), text="W(9);SHOW(1)").what == "robot_more"
+    assert found(*LINES[:2], (9000, "STOPPED")) == ("virtual_more", 2, 3)
+    more = found((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
+    assert more[:2] == ("value", 1)  # DONE in place of the second one
+    assert found((100, "SHOW 1"), text="W(9);SHOW(1)")[0] == "robot_more"
 
 
 @pytest.mark.parametrize("end", [[], [(1500, "STOPPED")], [(2200, "STOPPED")], [(9000, "LOST")]])
-def test_a_recording_that_is_cut_is_compared_as_far_as_it_goes(end: list[tuple[int, str]]) -> None:
+def test_a_recording_that_ends_early_is_compared_as_far_as_it_goes(
+    end: list[tuple[int, str]],
+) -> None:
     """By a person, by the link, or because the robot still runs: each of them is no difference."""
     assert parting(*LINES[:2], *end) == Parting("same", 2)
-    found = parting(LINES[0], (1020, "SHOW 36"), *end)
-    assert (found.what, found.agreed) == ("value", 1)
+    assert found(LINES[0], (1020, "SHOW 36"), *end)[:2] == ("value", 1)
 
 
 def test_what_did_not_arrive_ends_the_comparison() -> None:
     assert parting(*LINES[:2], (2060, "MISSED")) == Parting("missed", 2)
     assert parting((9, "MISSED")) == Parting("missed", 0)
-    assert parting(LINES[0], (1020, "SHOW 36"), (2060, "MISSED")).what == "value"
+    assert found(LINES[0], (1020, "SHOW 36"), (2060, "MISSED"))[0] == "value"
+    assert parting((9, "LOST")).what == parting().what == "empty"
 
 
 @pytest.mark.parametrize("waited_ms", [0, 100, 7000])
@@ -86,13 +118,12 @@ def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
     text = "SB|W(1);SHOW(5);W(2);SHOW(6)"
     lines = [(waited_ms, "SHOW 5"), (waited_ms + 2000, "SHOW 6"), (waited_ms + 2001, "DONE")]
     assert parting(*lines, text=text) == Parting("same", 3)
-    found = parting(lines[0], (waited_ms + 3000, "SHOW 6"), text=text)
-    assert (found.what, found.agreed) == ("time", 1)
-    assert found.virtual is not None and found.virtual.ms < 3100
-    assert found.robot is not None and found.robot.ms == found.virtual.ms + 1000
+    there = parting(lines[0], (waited_ms + 3000, "SHOW 6"), text=text)
+    assert (there.what, there.agreed) == ("time", 1)
+    assert there.virtual is not None and there.virtual.ms < 3100
+    assert there.robot is not None and there.robot.ms == there.virtual.ms + 1000
     assert parting(lines[0], (lines[0][0] + 900, "STOPPED"), text=text) == Parting("same", 1)
     assert parting((0, "STOPPED"), text=text) == Parting("same", 0)
-    assert parting(text=text) == Parting("empty")
     assert parting((0, "SHOW 5"), (1, "DONE"), text="SB|SHOW(5)") == Parting("same", 2)
     assert parting((0, "SHOW 5"), text="SB|W(1)").what == "value"
 
@@ -105,26 +136,28 @@ def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
     ],
 )
 def test_the_virtual_robot_runs_no_longer_than_what_is_compared(
-    text: str, events: tuple[tuple[int, str], ...], monkeypatch: pytest.MonkeyPatch
+    text: str, events: tuple[tuple[int, str], ...]
 ) -> None:
-    ran_ms = []
-
-    class Timed(Simulation):
-        def close(self) -> None:
-            ran_ms.append(self.robot.now_ms)
-            super().close()
-
-    monkeypatch.setattr(recordings, "Simulation", Timed)
-    assert parting(*events, text=text).what == "same"
-    assert ran_ms[0] < 8000
+    played = play(ready(read(file(*events, text=text, is_by_button=True))))
+    assert played.parting is not None and played.parting.what == "same"
+    assert played.robot.now_ms < 8700
 
 
-def test_a_recording_of_another_program_is_not_compared() -> None:
-    recording = read(file(*LINES))
-    assert (
-        replay(recording, b"SHOW(1)", "tinibot", worlds.load("obstacles")).what == "other_program"
-    )
-    assert replay(recording, b"SHOW(", "tinibot", worlds.load("obstacles")).what == "other_program"
+def test_a_number_that_no_sensor_reads_is_as_near_as_it_can() -> None:
+    there = parting((1000, "SHOW 9999999"), text="W(1);SHOW(DISTANCE)")
+    assert there.what == "value" and there.virtual is not None
+    assert there.virtual.event == "SHOW 400"
+
+
+def test_a_program_that_means_something_else_now_is_not_played() -> None:
+    for text in ("SHOW(1)", "SHOW("):
+        with pytest.raises(BadRecording, match="other_program"):
+            ready(read(file(*LINES).replace(json.dumps(LOOKS).encode(), json.dumps(text).encode())))
+
+
+# -- files of anybody -----------------------------------------------------------------------------
+
+VIRTUAL = {"of": recordings.VIRTUAL}
 
 
 @pytest.mark.parametrize(
@@ -134,30 +167,107 @@ def test_a_recording_of_another_program_is_not_compared() -> None:
         (b"\xff\xfe\x00", "unreadable", 1),
         (b"[" * 50_000, "unreadable", 1),
         (b"{}", "unreadable", 1),
-        (file(version=2), "other_version", 1),
-        (file(*LINES)[:-12], "unreadable", 6),  # cut
+        (b'{"tiniscript_recording": 1, "program": "89abcdef", "robot": "tinibot"}', "older", 1),
+        (file().replace(b'run":1', b'run":2'), "other_version", 1),
+        (file().replace(b'run":1', b'run":"1"'), "unreadable", 1),
+        (file().replace(b'"tinibot"', b'"../tinibot"'), "other_robot", 1),
+        (file().replace(b'"tinibot"', b'"liner"'), "other_robot", 1),
+        (file().replace(b'"text"', b'"Text"'), "unreadable", 1),
+        (file().replace(b'"real"', b'"unreal"'), "unreadable", 1),
+        (file(*LINES)[:-3], "unreadable", 7),  # within its last row
+        (file(*LINES)[:-14], "cut", 6),
+        (first().encode(), "cut", 1),
         (file((5, "SHOW 1"), (4, "SHOW 2")), "unreadable", 3),
-        (file((5, "DONE"), (6, "SHOW 2")), "unreadable", 3),
+        (file((5, "MISSED"), (6, "SHOW 2")), "unreadable", 3),
+        (file((5, "END"), (6, "SHOW 2")), "unreadable", 3),
         (file((5, "SHOW 99999999999")), "unreadable", 2),
         (file((5, "SHOW NaN")), "unreadable", 2),
         (file((5, "FAULT <b>")), "unreadable", 2),
-        (file((5, "MISSED"), (6, "SHOW 2")), "unreadable", 3),
+        (file((5, "BUTTON DOWN")), "unreadable", 2),
         (file((-1, "SHOW 1")), "unreadable", 2),
         (file((10**9, "SHOW 1")), "too_long", 2),
+        (file((5, "KEYS 64 0 0"), **VIRTUAL), "unreadable", 2),
+        (file((5, "KEYS 1 0 101"), **VIRTUAL), "unreadable", 2),
+        (file((5, "KEYS 1"), **VIRTUAL), "unreadable", 2),
+        (file(**VIRTUAL).replace(b'"obstacles"', b'"nowhere"'), "unreadable", 1),
+        (file(**VIRTUAL, seed=0), "unreadable", 1),
+        (file(**VIRTUAL, told={0: []}), "unreadable", 1),
+        (file(**VIRTUAL, told={0: [10**9]}), "unreadable", 1),
         (b"{" + b" " * 1_000_000, "too_long", 1),
-        (file().replace(b'"program"', b'"Program"'), "unreadable", 1),
     ],
-)
+)  # fmt: skip
 def test_files_of_anybody_are_refused_with_a_reason(data: bytes, reason: str, line: int) -> None:
     with pytest.raises(BadRecording) as refused:
         read(data)
     assert (refused.value.reason, refused.value.line) == (reason, line)
-    asked = {"do": "replay", "robot": "tinibot", "world": "obstacles", "text": LOOKS}
-    answer = json.loads(worker.answer(json.dumps({**asked, "language": "en"}), data))
-    assert answer == {"what": reason, "line": line}
 
 
-def test_a_number_that_no_sensor_reads_is_as_near_as_it_can() -> None:
-    found = parting((1000, "SHOW 9999999"), text="W(1);SHOW(DISTANCE)")
-    assert found.what == "value" and found.virtual is not None
-    assert found.virtual.event == "SHOW 400"
+def test_a_file_with_any_change_is_refused_or_can_be_played() -> None:
+    """No file of anybody ends in another error."""
+    rng = random.Random(1)
+    world = {"form": 1}
+    whole = [file(*LINES), file((289, "START"), (300, "KEYS 5 -100 0"), (400, "SHOW 1"), **VIRTUAL),
+             file(**VIRTUAL, world=world), file(**VIRTUAL, told={0: [5000, 6000]})]  # fmt: skip
+    outcomes = set()
+    for _ in range(3000):
+        data = bytearray(rng.choice(whole))
+        for _ in range(rng.randint(1, 3)):
+            at = rng.randrange(len(data))
+            piece = bytes(
+                rng.choice(b'09-,"[]{}:e.\\nulltruE\xff ') for _ in range(rng.randint(0, 3))
+            )
+            data[at : at + rng.randint(0, 4)] = piece
+        try:
+            recording = read(bytes(data))
+        except BadRecording as bad:
+            outcomes.add(bad.reason)
+            continue
+        outcomes.add("read")
+        assert recording.rows == tuple(sorted(recording.rows, key=lambda row: row.ms))
+        assert recording.end_ms >= max((row.ms for row in recording.rows), default=0)
+    assert {"read", "unreadable", "cut", "other_robot"} <= outcomes
+
+
+def test_a_long_recording_ends_before_its_file_is_too_large() -> None:
+    rows = Rows()
+    added = [rows.add(Row(ms, f"READ DISTANCE {ms % 400}.5")) for ms in range(100_000)]
+    assert rows.is_full and added == sorted(added, reverse=True)
+    data = written(first(), rows.rows, rows.rows[-1].ms).encode()
+    assert len(data) < recordings.MOST_BYTES
+    assert read(data).rows == tuple(rows.rows)
+    short = Rows()
+    assert short.add(Row(recordings.MOST_MS, "SHOW 1"))
+    assert not short.add(Row(recordings.MOST_MS + 1, "SHOW 1"))
+
+
+# -- a virtual robot's run is the same again ------------------------------------------------------
+
+
+def test_each_row_that_is_another_one_is_told() -> None:
+    data, rows = recorded(3)
+    assert play(ready(read(data))).parting == Parting("again", len(rows))
+    lines = data.decode().splitlines()
+    for k, row in enumerate(rows):
+        if k % max(1, len(rows) // 10):
+            continue
+        at = next(n for n, line in enumerate(lines) if line == recordings.line(row))
+        for changed in ([recordings.line(Row(row.ms, "BEEP 1 1"))], []):
+            other = "\n".join((*lines[:at], *changed, *lines[at + 1 :]))
+            there = play(ready(read(other.encode()))).parting
+            assert there is not None and there.what == "otherwise" and there.agreed <= k
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_a_run_is_the_same_again(number: int) -> None:
+    assert differs(number) is None
+
+
+def test_a_played_run_takes_nothing_of_who_looks_on() -> None:
+    data, rows = recorded(5)
+    played = Played(ready(read(data)))
+    while not played.is_over:
+        played.press(63, 100, 100)
+        played.push()
+        played.set_breakpoints((0, 3))
+        played.go(37)
+    assert played.parting == Parting("again", len(rows))

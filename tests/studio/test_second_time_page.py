@@ -44,6 +44,8 @@ ENDS = {
     "link": {"left", "unheard", "link_silent"},
     "stops": {"silent", "confirmed"},
     "worlds": {"one", "several"},
+    "programs": {"kept", "full"},
+    "arena": {"long", "short"},
     "curves": {"long", "short"},
     "steps": {"came", "failed"},
     "recording": {"theirs", "shows", "ends", "waits", "gone"},

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from tiniscript.link.outcomes import Event, LostEvent, ShownEvent, StartedEvent
-from tiniscript.link.payloads import DoneEvent, FaultEvent, StoppedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, HaltedEvent, StoppedEvent
 
 EVENTS: tuple[Event, ...] = (
     ShownEvent(7, 0),
     FaultEvent(1, 2, 0, 0),
     StoppedEvent(1),
     DoneEvent(1),
+    HaltedEvent(1, 2, 0),
     LostEvent(),
     StartedEvent(1, 1),
 )

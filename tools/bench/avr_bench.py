@@ -43,7 +43,7 @@ MORE = {
 
 
 @lru_cache(maxsize=8)
-def built(name: str, sources: Path = SOURCES, *more: str) -> bytes:
+def built(name: str, sources: Path = SOURCES, *more: str, chip: str = CHIP) -> bytes:
     """Return `bench/NAME.cpp` with the machine of `sources`, an ELF file; `more` are flags."""
     code = [
         sources / "extras" / "bench" / f"{name}.cpp",
@@ -53,8 +53,9 @@ def built(name: str, sources: Path = SOURCES, *more: str) -> bytes:
     code += [sources / "src" / each for each in MORE.get(name, ())]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"
+        flags = f"-mmcu={chip}", *FLAGS[1:], *more, *WARNINGS
         completed = subprocess.run(
-            ["avr-g++", *FLAGS, *more, *WARNINGS, *map(str, code), "-o", str(program)],
+            ["avr-g++", *flags, *map(str, code), "-o", str(program)],
             capture_output=True,
             text=True,
         )

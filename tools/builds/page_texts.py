@@ -9,7 +9,8 @@ MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names")
 # What the page says as the command does: how a recording compares, and why a run has ended.
 OF_COMMAND = {
     **{f"record_{what}": f"replay_{what}" for what in (
-        "same", "missed", "empty", "value", "time", "robot_more", "virtual_more", "end", "at",
+        "again", "otherwise", "same", "missed", "unread", "empty", "value", "time", "robot_more",
+        "virtual_more", "end", "at", "nothing",
     )},
     **{key: key for key in (
         "fault_DIVIDE_BY_ZERO", "fault_NO_POWER", "fault_STUCK", "fault_STUCK_LEFT",

@@ -20,6 +20,7 @@ from tools.generate.cpp_header import (
 )
 
 UNKNOWN_REQUEST = 255  # no payload is so long
+BREAKPOINTS = "tiniscript_has_breakpoints"
 
 
 def header(command: str) -> str:
@@ -42,6 +43,7 @@ def header(command: str) -> str:
             "LONG_MS", "CLAIM_MS", "FORGET_MS", "NETWORK_BYTES",
             "WIFI_TEXT_BYTES", "PASSWORD_BYTES", "LEAST_PASSWORD", "CLASS_BYTES",
             "BROKER_PLACE_BYTES", "BROKER_NAME_BYTES", "TRUST_BYTES", "MOST_PAD", "HOLD_MS",
+            "MOST_BREAKPOINTS",
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),
@@ -52,7 +54,7 @@ def header(command: str) -> str:
         enumeration("Message", named),
         "// Requests are the numbers from 1 up to this one; from kFirstActing on they act.\n"
         + constants_of(messages, "FIRST_ACTING")
-        + constants(("kLastRequest", _requests()[-1].number)),
+        + _last_request(),
         "// How long the payload of each request may be, from the first one on: least and most.\n"
         "// What this robot does not know has kUnknownRequest as its least.\n"
         + constants(("kUnknownRequest", UNKNOWN_REQUEST))
@@ -67,6 +69,7 @@ def header(command: str) -> str:
                 ("Reset", messages.RESETS), ("TextLevel", messages.TEXT_LEVELS),
                 ("Key", messages.KEYS), ("WifiStep", messages.WIFI_STEPS),
                 ("WifiMode", messages.WIFI_MODES), ("WifiState", messages.WIFI_STATES),
+                ("ResumeHow", messages.RESUMES), ("TaskState", messages.TASK_STATES),
             )
         ),
         "// Faults that no instruction makes. The others are `Fault`.\n"
@@ -76,15 +79,27 @@ def header(command: str) -> str:
         "The numbers of the link: messages, where the fields of their requests begin,",
         "statuses, states, times. Knows no behaviour. `docs/develop/link.md` says what they mean.",
     )
-    return cpp_file(command, "link/messages.h", about, "\n".join(parts), "../vm/cpu.h")
+    body = "\n".join(parts)
+    return cpp_file(command, "link/messages.h", about, body, "../vm/build.h", "../vm/cpu.h")
 
 
 def tables(command: str) -> str:
     """Return `messages.cpp`: the table that the header declares."""
     requests = {request.number: request for request in _requests()}
     rows = [_length_row(requests.get(number)) for number in range(1, max(requests) + 1)]
+    first = len(rows) - len(messages.OF_BREAKPOINTS)
+    rows = [*rows[:first], f"#ifdef {BREAKPOINTS}\n", *rows[first:], "#endif\n"]
     table = f"const uint8_t kRequestBytes[][2] tini_progmem = {{\n{''.join(rows)}}};\n"
     return cpp_file(command, "link/messages.cpp", (), table, "sizes.h")
+
+
+def _last_request() -> str:
+    """Return kLastRequest: the requests for breakpoints come last, and not every robot has them."""
+    last = _requests()[-len(messages.OF_BREAKPOINTS) :]
+    assert tuple(message.name for message in last) == messages.OF_BREAKPOINTS
+    whole = constants(("kLastRequest", last[-1].number))
+    less = constants(("kLastRequest", last[0].number - 1))
+    return f"#ifdef {BREAKPOINTS}\n{whole}#else\n{less}#endif\n"
 
 
 def _length_row(request: Message | None) -> str:
@@ -185,6 +200,8 @@ DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
         "saved": lambda: number_rows(messages.SAVED),
         "causes": lambda: number_rows(messages.CAUSES),
         "resets": lambda: number_rows(messages.RESETS),
+        "resumes": lambda: number_rows(messages.RESUMES),
+        "task states": lambda: number_rows(messages.TASK_STATES),
         "faults": lambda: (
             ("number", "fault", "when"),
             [(number, f"`{name}`", what) for number, name, what in messages.LINK_FAULTS],

@@ -117,7 +117,7 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
         *_rows(root, "build", "CONTRIBUTING.md"),
         *_pages(root, "first-change", "translating", "architecture", "decisions"),
         *_rows(root, "build", "bytecode_spec.md"),
-        *_pages(root, "conformance", "link", "owners", "network", "text", "store", "esp32"),
+        *_pages(root, "conformance", "link", "owners", "network", "text", "store", "runs", "esp32"),
         *_guides(root, "build", "versions"),
         *_rows(root, "build", "CHANGELOG.md"),
         Document("documents", "build", {SOURCE: LIST}),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.bytecode.image import Image, ImageRefused, unpack
+from tiniscript.bytecode.image import Image, ImageRefused, pack, unpack
 from tiniscript.bytecode.verify import Refused, check
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
@@ -58,7 +58,7 @@ def ready(
     if not compiled.is_right:
         return None
     image = image_of(compiled, robot)
-    places = source_map.made(compiled.source, compiled.places, compiled.variables)
+    places = source_map.made(compiled.source, compiled.places, compiled.variables, compiled.yes_no)
     return Ready(image, len(compiled.image), places)
 
 
@@ -92,3 +92,11 @@ def _check(given: inputs.Input, image: Image, robot: Robot) -> None:
 def robot_for(given: inputs.Input, robot: Robot) -> Robot:
     """Return `robot`, or a known robot that has the devices of an image if `robot` lacks them."""
     return fitting(_read(given), robot) or robot
+
+
+def keep_map(ready: Ready) -> None:
+    """Keep a program's source map for other commands, if it has one."""
+    if ready.places is not None:
+        image = ready.image
+        packed = pack(image.start, image.devices, image.code, needs=image.needs)
+        source_map.remember(packed, ready.places)

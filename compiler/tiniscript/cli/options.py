@@ -29,6 +29,8 @@ _MESSAGES = {
 }
 
 
+# What an option was that is none any more: the command that does it.
+WAS_OPTION = {("run", "--replay"): "run run.tsr"}
 OTHER_RUN = {"run": "upload", "upload": "run"}  # a program without a robot, and with one
 
 
@@ -107,6 +109,9 @@ class Options(ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         unknown = message.partition("unrecognized arguments: ")[2].partition(" ")[0]
+        was = WAS_OPTION.get((self.verb, unknown.partition("=")[0]))
+        if was:
+            raise CommandError(2, "was_option", was=unknown.partition("=")[0], now=was)
         other = OTHER_RUN.get(self.verb)
         if other and _has(other, unknown):
             raise CommandError(2, "option_of_other", option=unknown, verb=self.verb, other=other)

@@ -1,7 +1,9 @@
-"""Makes the sure repairs of a program.
+"""Makes the sure repairs of a program, and holds what is offered to its law: it is right.
 
-A repair is sure where the message leaves no choice: it drops or invents no number, it does not
-guess a name, and with it the program has fewer mistakes. All others are left to the reader.
+What is offered is right: the text with it has no mistake that begins in what it writes, else the
+mistake is told without it (`without_wrong`). A repair is sure where the message leaves no choice:
+it drops or invents no number, it does not guess a name, and with it the program has fewer mistakes.
+All others are left to the reader.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ class Compiled(NamedTuple):
 
     `program` is the checked program, as written, and `lowered` what the code was made of; `places`
     says where in the text each
-    instruction comes from.
+    instruction comes from, `yes_no` which of its variables are a yes/no.
     """
 
     source: Source
@@ -44,6 +44,7 @@ class Compiled(NamedTuple):
     verdict: Verdict | None = None
     image: bytes = b""
     lowered: ir.Program | None = None
+    yes_no: tuple[bool, ...] = ()
 
     @property
     def variables(self) -> tuple[str, ...]:
@@ -169,6 +170,7 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
         from tiniscript.semantics.task_copies import separated
 
         program = separated(program)
+    yes_no = tuple(ir.are_yes_no(program, kit))
     program = optimized(program) if optimize else program
     lowered = lower(program)
     if len(lowered.code) > CODE_BYTES:
@@ -180,7 +182,7 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     devices = kit.hash_of_used(verdict.uses)
     image = pack(program.start, devices, lowered.code, needs=verdict.needs)
     return compiled._replace(lowered=program, code=lowered.code, places=lowered.places,
-                             verdict=verdict, image=image)  # fmt: skip
+                             verdict=verdict, image=image, yes_no=yes_no)  # fmt: skip
 
 
 def compile_source(

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 import sys
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from time import monotonic, sleep
 from typing import IO, TYPE_CHECKING
 
@@ -130,24 +130,25 @@ def _opened_line(
     from tiniscript.link.ports import opened, opened_past_lock
     from tiniscript.link.session import Session
 
-    try:
-        open_it = opened_past_lock if is_past else opened
-        device = open_it(address, baud, limit_s)
-    except BaseException as failure:
+    with ExitStack() as unless_it_fails:
         if lock is not None:
-            lock.close()
-        if isinstance(failure, PortError):
+            unless_it_fails.callback(lock.close)
+        open_it = opened_past_lock if is_past else opened
+        try:
+            device = open_it(address, baud, limit_s)
+        except PortError as failure:
             raise port_error(port, failure, language) from None
-        raise
-    if directory.is_of_another(address):  # asked of who has let us in, before anything is sent
-        device.close()
-        raise RobotError("port_of_another", language, {"port": shown(port)})
-    # who claims a robot has it before them: one of many, perhaps, at the same cable
-    keys = KeyFile(is_for_virtual=is_virtual(address), accepts_all=verb == "set owner")
-    place = port_names.same_for_all(port)  # an address may be another robot's tomorrow
-    nonce = int.from_bytes(os.urandom(4), "little")
-    session = Session(nonce, baud, kit, keys=keys, place=place)
-    return PortConnection(device, session, lock, address)
+        unless_it_fails.callback(device.close)
+        if directory.is_of_another(address):  # asked of who has let us in, before anything is sent
+            raise RobotError("port_of_another", language, {"port": shown(port)})
+        # who claims a robot has it before them: one of many, perhaps, at the same cable
+        keys = KeyFile(is_for_virtual=is_virtual(address), accepts_all=verb == "set owner")
+        place = port_names.same_for_all(port)  # an address may be another robot's tomorrow
+        nonce = int.from_bytes(os.urandom(4), "little")
+        session = Session(nonce, baud, kit, keys=keys, place=place)
+        line = PortConnection(device, session, lock, address)
+        unless_it_fails.pop_all()
+        return line
 
 
 def port_error(port: str, failure: PortError, language: str = "en") -> RobotError:

@@ -37,12 +37,14 @@ class MapLocation(NamedTuple):
 
 class Map(NamedTuple):
     """`lines` are those of the program's text, without their ends; `variables` are names in the
-    order of their numbers, none where a map of an earlier version was kept."""
+    order of their numbers, and `yes_no` says which of them are a yes/no: none where a map of an
+    earlier version was kept."""
 
     name: str
     lines: tuple[str, ...]
     places: tuple[MapLocation, ...]
     variables: tuple[str, ...] = ()
+    yes_no: tuple[bool, ...] = ()
 
     def at(self, offset: int) -> MapLocation | None:
         """Return where the instruction at `offset` comes from."""
@@ -75,7 +77,10 @@ class Map(NamedTuple):
         return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""
 
 
-def made(source: Source, places: Iterable[SourceLocation], variables: tuple[str, ...] = ()) -> Map:
+def made(
+    source: Source, places: Iterable[SourceLocation], variables: tuple[str, ...] = (),
+    yes_no: tuple[bool, ...] = (),
+) -> Map:  # fmt: skip
     """Return the map of a program that has just been compiled."""
     map_locations = tuple(
         MapLocation(
@@ -85,19 +90,22 @@ def made(source: Source, places: Iterable[SourceLocation], variables: tuple[str,
     )
     last = source.position(len(source.text))[0]
     lines = tuple(source.line_text(number) for number in range(1, last + 1))
-    return Map(source.name, lines, map_locations, variables)
+    return Map(source.name, lines, map_locations, variables, yes_no)
 
 
 def as_json(places: Map) -> str:
-    """Return a map as JSON: version, name, lines, places as lists of numbers, and variables.
+    """Return a map as JSON: version, name, lines, places as lists of numbers, variables, and which
+    of them are a yes/no.
 
     Importing json takes longer than writing this.
     """
     lines = ", ".join(map(_quoted, places.lines))
     numbers = ", ".join(f"[{', '.join(map(str, place))}]" for place in places.places)
+    yes_no = ", ".join("true" if each else "false" for each in places.yes_no)
     return (
         f'{{"version": {VERSION}, "name": {_quoted(places.name)}, "lines": [{lines}],'
-        f' "places": [{numbers}], "variables": [{", ".join(map(_quoted, places.variables))}]}}'
+        f' "places": [{numbers}], "variables": [{", ".join(map(_quoted, places.variables))}],'
+        f' "yes_no": [{yes_no}]}}'
     )
 
 
@@ -120,8 +128,9 @@ def from_json(text: str) -> Map:
         if fields["version"] != VERSION:
             raise ValueError("another version")
         places = tuple(MapLocation(*map(int, place)) for place in fields["places"])
-        lines, variables = fields["lines"], fields.get("variables", [])
-        return Map(str(fields["name"]), tuple(map(str, lines)), places, tuple(map(str, variables)))
+        lines, variables = tuple(map(str, fields["lines"])), fields.get("variables", [])
+        yes_no = tuple(map(bool, fields.get("yes_no", [])))
+        return Map(str(fields["name"]), lines, places, tuple(map(str, variables)), yes_no)
     except (KeyError, TypeError, AttributeError) as wrong:
         raise ValueError("no map") from wrong
 

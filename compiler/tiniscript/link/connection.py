@@ -6,7 +6,7 @@ works with either.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Generic, TypeVar
 
 from tiniscript.bytecode.image import Image
@@ -15,7 +15,10 @@ from tiniscript.link.payloads import (
     EmptyReply,
     HelloReply,
     PingReply,
+    ReadTasksReply,
+    ReadVariablesReply,
     ReceiptReply,
+    ResumeReply,
     StatusReply,
     TextReply,
     TrimReply,
@@ -106,6 +109,24 @@ class Requester:
         nothing else. Who has said nothing for half a second holds nothing: say it anew before.
         """
         return self._ask("press", EmptyReply, keys=keys, x=x, y=y, speaker=speaker)
+
+    def break_at(self, places: Sequence[int]) -> PendingRequest[EmptyReply]:
+        """Have what runs halt at these offsets of its code, MOST_BREAKPOINTS at most, or else the
+        program that the robot holds; none takes them away."""
+        packed = b"".join(place.to_bytes(2, "little") for place in places)
+        return self._ask("break_at", EmptyReply, places=packed)
+
+    def resume(self, how: int) -> PendingRequest[ResumeReply]:
+        """Let a program that is halted go on: `how` is one of RESUMES."""
+        return self._ask("resume", ResumeReply, how=how)
+
+    def read_variables(self, first: int = 0) -> PendingRequest[ReadVariablesReply]:
+        """Ask for the variables of what runs, from a number on: as many as a frame takes."""
+        return self._ask("read_variables", ReadVariablesReply, first=first)
+
+    def read_tasks(self) -> PendingRequest[ReadTasksReply]:
+        """Ask where the tasks of what runs are."""
+        return self._ask("read_tasks", ReadTasksReply)
 
     def identify(self) -> PendingRequest[EmptyReply]:
         return self._ask("identify", EmptyReply)

@@ -12,6 +12,7 @@ from tiniscript.bytecode.image import Image
 from tiniscript.link import authority, requests, wifi
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.messages import (
+    BREAKPOINTS,
     KEY_TEACHER,
     MAJOR,
     MINOR,
@@ -234,6 +235,12 @@ class Handshake:
         is_latched = self._state.is_latched
         return (yield from requests.upload(image, mode, robot, self._isa, is_latched, kit))
 
+    def break_at(self, places: bytes) -> Exchange[EmptyReply]:
+        assert self.robot
+        if places and not self.robot.values.features & BREAKPOINTS:
+            return Reply(STATUSES["NO_BREAKPOINTS"])
+        return (yield from requests.patient(Request("BREAK", {"places": places}), EmptyReply))
+
     def name(self, name: bytes) -> Exchange[EmptyReply]:
         reply = yield from requests.kept(Request("NAME", {"name": name}), EmptyReply)
         if reply.status in (OK, *requests.TAKEN) and self.robot:
@@ -270,6 +277,7 @@ _EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
     "live": Handshake.live,
     "upload": Handshake.upload,
     "undo": lambda its: requests.patient(Request("UNDO"), ReceiptReply),
+    "break_at": Handshake.break_at,
     "name": Handshake.name,
     "trim": lambda its, trim: requests.kept(Request("TRIM", {"trim": trim}), TrimReply),
     "fetch": lambda its: requests.fetch(),

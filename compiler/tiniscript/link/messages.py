@@ -68,7 +68,7 @@ WIFI_STATES = (
 
 
 MAJOR = 2  # if it differs, robot and computer understand only each other's HELLO
-MINOR = 1  # grows when messages, statuses or features are added
+MINOR = 2  # grows when messages, statuses or features are added
 
 # Bytes of a frame before COBS. A large one has a 0 after its head, so that its first byte on the
 # wire is 4 at most. Any robot takes small ones; HELLO says whether it takes large ones, and how many
@@ -87,6 +87,10 @@ CHALLENGE_BYTES = 8
 TAG_BYTES = 8
 PLACE_BYTES = 6  # of a reply to PING: where a program is (16 bits), and which (its checksum)
 NOISE_BYTES = 2  # of both discs
+MOST_BREAKPOINTS = 4
+VARIABLE_BYTES, TASK_BYTES = 4, 7  # of one
+VARIABLES_BYTES = 13 * VARIABLE_BYTES  # in one frame
+TASKS_BYTES = 5 * TASK_BYTES  # of all, the main one is the last
 SHOW_PLACE_BYTES = 3  # of a SHOW: its run, and where its instruction is (16 bits)
 COUNTER_BYTES = 4
 
@@ -128,6 +132,7 @@ MODES = (
 TEXT_LEVEL, REMOTE, PLACES, OWNERS, OWNED = 0x0003, 0x0004, 0x0008, 0x0010, 0x0020
 TEXT_ALLOWED = 0x0040
 YOURS, BY_TEACHER, SEALS, WIFI_RESTS = 0x0080, 0x0100, 0x0200, 0x0400
+BREAKPOINTS = 0x0800
 FEATURES = (
     (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
     (REMOTE, "REMOTE", "Its programs read KEY_UP and what else a remote control says: KEYS."),
@@ -146,6 +151,11 @@ FEATURES = (
         WIFI_RESTS,
         "WIFI_RESTS",
         "Its WiFi is off, after three restarts in a row soon after WiFi began.",
+    ),
+    (
+        BREAKPOINTS,
+        "BREAKPOINTS",
+        "Its programs halt at places: BREAK, RESUME, READ_VARIABLES, READ_TASKS.",
     ),
 )
 # What a remote control says: the keys that are held, a bit for each, and where its pad is, in percent
@@ -271,6 +281,14 @@ MESSAGES = (
     _message(23, "ABORT", True, "", "", "Drops the program that was begun."),
     _message(24, "KEYS", True, "keys:u8 x:i8 y:i8", _PULSE,
              "What a remote control says now: a bit for each key that is held, and its pad. Also a heartbeat."),
+    _message(25, "BREAK", True, f"places:rest=0..{2 * MOST_BREAKPOINTS}", "",
+             "All places where what runs halts, or else the program that the robot holds: offsets of 16 bits."),
+    _message(26, "RESUME", True, "how:u8", "run:u8 was_halted:u8",
+             "Lets a program that is halted go on: `how` of RESUMES."),
+    _message(27, "READ_VARIABLES", True, "first:u8", f"run:u8 is_halted:u8 values:rest=0..{VARIABLES_BYTES}",
+             "What runs has these values, from the variable `first` on: 32 bits each."),
+    _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 at:u16 tasks:rest=0..{TASKS_BYTES}",
+             "The tasks of what runs, and which of them is where."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", f"value:i32 is_yes_no:u8 place:rest=0..{SHOW_PLACE_BYTES}",
              "A value that a program shows. `place`: its run, and where its SHOW is."),
@@ -278,11 +296,15 @@ MESSAGES = (
              "The program has ended with a fault."),
     _message(34, "STOPPED", False, "", "cause:u8", "The robot was stopped: it has a new epoch. Repeated: it is still stopped."),
     _message(35, "DONE", False, "", "run:u8", "The program has ended."),
+    _message(37, "HALTED", False, "", "run:u8 at:u16 task:u8",
+             "The program is halted before a statement. Repeated: it still is."),
 )
 FIRST_ACTING = 6
 RETIRED = (10, 13)  # a request that is LF or CR on the wire could be the end of a line
 OF_RADIO = ("WIFI",)  # requests that only robots with WiFi know,
 OF_REMOTE = ("KEYS",)  # and only those with a remote control
+# These are the last ones, so that the table of a robot without breakpoints ends before them.
+OF_BREAKPOINTS = ("BREAK", "RESUME", "READ_VARIABLES", "READ_TASKS")
 FIRST_EVENT = 32
 # Replies with the same fields share a type: its name, and its fields.
 SHARED_REPLIES = {
@@ -323,6 +345,7 @@ STATUSES = {
     "UNOWNED": 92,
     "UNREADABLE": 93,
     "NO_REMOTE": 94,
+    "NO_BREAKPOINTS": 95,
 }
 # The meaning of the number after a status other than OK. Statuses not listed here have 0.
 DETAILS = {
@@ -355,6 +378,17 @@ CAUSES = (
     ("BUTTON",   "By the button."),
     ("CABLE",    "The radio module says that nobody is connected."),
     ("TEXT",     "By a line of text."),
+)
+RESUMES = (
+    ("GO",   "To the next place."),
+    ("STEP", "To the next statement of the same task, or to a place of another one if that comes first."),
+)
+TASK_STATES = (
+    ("ENDED",   "It has ended, or there is none."),
+    ("READY",   "It is its turn, or it waits for a reading, or to send a value."),
+    ("WAITING", "It waits for its clock, and for the check of an UNTIL or a WHEN."),
+    ("DRIVING", "Its move has the motors."),
+    ("BLOCKED", "Its move waits for the motors."),
 )
 RESETS = (
     ("UNKNOWN",   "The chip does not say."),
@@ -389,6 +423,7 @@ STATE_IDLE, STATE_RUNNING, STATE_STOPPED, STATE_FAULTED = _rows(
     STATES, "IDLE RUNNING STOPPED FAULTED"
 )
 KEY_OWNER, KEY_TEACHER = _rows(KEYS, "OWNER TEACHER")
+RESUME_GO, RESUME_STEP = _rows(RESUMES, "GO STEP")
 (
     SAVED_NOTHING,
     SAVED_SAVING,

@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Iterable
 from typing import Literal, NamedTuple, get_args
 
-from tiniscript.link.payloads import DoneEvent, FaultEvent, StoppedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, HaltedEvent, StoppedEvent
 
 # Outcomes that the session produces. UNKEPT: of a key; UNPROVEN: whoever answers does not seal, and
 # our key says that the robot does; OTHER_ROBOT: another one answers than the one of our key, whose
@@ -105,6 +105,7 @@ Event = (
     | FaultEvent
     | StoppedEvent
     | DoneEvent
+    | HaltedEvent
     | TextEvent
     | MissedEvent
     | LostEvent

@@ -66,7 +66,7 @@ class FetchReply(NamedTuple):
 
 
 class EmptyReply(NamedTuple):
-    """What is in the reply to STOP, CLEAR, NAME, CLAIM, IDENTIFY, ABORT."""
+    """What is in the reply to STOP, CLEAR, NAME, CLAIM, IDENTIFY, ABORT, BREAK."""
 
 
 class ReceiptReply(NamedTuple):
@@ -115,6 +115,31 @@ class WifiReply(NamedTuple):
     network: bytes
 
 
+class ResumeReply(NamedTuple):
+    """What is in the reply to RESUME."""
+
+    run: int
+    was_halted: int
+
+
+class ReadVariablesReply(NamedTuple):
+    """What is in the reply to READ_VARIABLES."""
+
+    run: int
+    is_halted: int
+    values: bytes
+
+
+class ReadTasksReply(NamedTuple):
+    """What is in the reply to READ_TASKS."""
+
+    run: int
+    is_halted: int
+    task: int
+    at: int
+    tasks: bytes
+
+
 class ShowEvent(NamedTuple):
     """A value that a program shows. `place`: its run, and where its SHOW is."""
 
@@ -148,6 +173,15 @@ class DoneEvent(NamedTuple):
     name: Literal["DONE"] = "DONE"
 
 
+class HaltedEvent(NamedTuple):
+    """The program is halted before a statement. Repeated: it still is."""
+
+    run: int
+    at: int
+    task: int
+    name: Literal["HALTED"] = "HALTED"
+
+
 SentReply = (
     HelloReply
     | PingReply
@@ -160,6 +194,9 @@ SentReply = (
     | AuthenticateReply
     | TextReply
     | WifiReply
+    | ResumeReply
+    | ReadVariablesReply
+    | ReadTasksReply
 )
 REPLIES: dict[str, type[SentReply]] = {
     "HELLO": HelloReply,
@@ -184,4 +221,8 @@ REPLIES: dict[str, type[SentReply]] = {
     "BEGIN": NextReply,
     "ABORT": EmptyReply,
     "KEYS": PingReply,
+    "BREAK": EmptyReply,
+    "RESUME": ResumeReply,
+    "READ_VARIABLES": ReadVariablesReply,
+    "READ_TASKS": ReadTasksReply,
 }

@@ -20,9 +20,11 @@ from tiniscript.link.outcomes import Event, PlaceEvent, ShownEvent
 from tiniscript.link.payloads import (
     DoneEvent,
     FaultEvent,
+    HaltedEvent,
     HelloReply,
     PingReply,
     ReceiptReply,
+    ResumeReply,
     SentReply,
     ShowEvent,
     StatusReply,
@@ -70,6 +72,7 @@ class RobotState:
         self.is_cut = False  # a reset has ended it
         self._event_seq: int | None = None
         self._place: PlaceEvent | None = None  # the last one that was told
+        self.halted: HaltedEvent | None = None  # where a program is halted
         self._known: tuple[_Run, int] | None = None  # the newest run whose program is known
         self._asked: _Run | None = None  # the newest one that was asked about
 
@@ -86,7 +89,7 @@ class RobotState:
         self.is_cut = self._is_going or self._is_asked
         self._is_going = self._is_asked = False
         self._event_seq = self.run = self._ended = self._place = None
-        self._known = self._asked = None
+        self._known = self._asked = self.halted = None
 
     def missed(self, seq: int) -> int:
         """Take the number of an event; return how many events before it are missing."""
@@ -103,6 +106,8 @@ class RobotState:
         """Take a reply of an epoch; return whether it tells of the end of our run, of which no
         event has."""
         self._learn_program(values, epoch)
+        if isinstance(values, (ReceiptReply, ResumeReply)):
+            self.halted = None
         if isinstance(values, ReceiptReply):
             self.run = values.run
         if not isinstance(values, (HelloReply, PingReply, StatusReply)):
@@ -176,7 +181,9 @@ class RobotState:
 
     def take(self, event: Event) -> None:
         if isinstance(event, (StoppedEvent, FaultEvent, DoneEvent)):
-            self._place = None  # who is told of the end needs no more
+            self._place = self.halted = None  # who is told of the end needs no more
+        if isinstance(event, HaltedEvent):
+            self.halted = event
         if isinstance(event, (StoppedEvent, FaultEvent)):
             self.state = STATE_STOPPED
             self._is_going = self._is_asked = False
@@ -195,5 +202,5 @@ class RobotState:
     def clear(self) -> None:
         """Note that the latch is released or the robot is lost."""
         self.state = STATE_IDLE
-        self._place = None
+        self._place = self.halted = None
         self._is_going = self._is_asked = False

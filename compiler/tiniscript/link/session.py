@@ -56,6 +56,7 @@ from tiniscript.link.payloads import (
     DoneEvent,
     EmptyReply,
     FaultEvent,
+    HaltedEvent,
     HelloReply,
     NextReply,
     PingReply,
@@ -93,7 +94,8 @@ MOST_SHOWN = 5  # times that a key is shown again for one request
 _STALE = STATUSES["STALE"]
 _WAITING = (STATUSES["BUSY"], STATUSES["HOLD_BUTTON"])  # asked again: the robot is not ready
 _BY_SEQUENCE, _BY_MESSAGE = 1, 2  # causes of a stopped robot: the stop sequence, STOP
-_PREPARING = ("STOP", "CLEAR", "AUTHENTICATE", "BEGIN", "DATA", "ABORT", "KEYS")
+_PREPARING = ("STOP", "CLEAR", "AUTHENTICATE", "BEGIN", "DATA", "ABORT", "KEYS",
+              "READ_VARIABLES", "READ_TASKS")  # fmt: skip
 _DOING = [message.name for message in MESSAGES
           if FIRST_ACTING <= message.number < FIRST_EVENT
           and message.name not in _PREPARING]  # fmt: skip
@@ -786,6 +788,8 @@ class Session(Requester):
             ):
                 return  # a repeated answer to the same stop
             self._told_epoch = frame.epoch
+        if isinstance(event, HaltedEvent) and event == self._state.halted:
+            return  # it still is
         if isinstance(event, (StoppedEvent, FaultEvent)):
             self._take_end(event, frame)
         # by a reply to STATUS

@@ -16,6 +16,7 @@ from tiniscript.recovery.meanings import ENDED, Lexeme, made
 from tiniscript.recovery.rewrites import negated
 from tiniscript.syntax.outline import Item
 
+_ASKING = ("IF", "WHILE", "WHEN")
 LONGEST = 200  # items behind an ELSE whose ends are counted
 
 
@@ -55,11 +56,25 @@ class _Block:
         self.has_brace = not self.word
         self.is_begun = is_header and line.reading.is_new_line  # a row says that its body begins
         self.is_do = is_header and line.is_do
+        self.is_behind = is_header and _is_behind(item, line.reading)
         self.is_translated = line.reading.tokens[item.start].source is None
         self.name = line.reading.tokens[item.start + 1].text if self.word == "DEF" else ""
         head = [token.text for token in line.reading.tokens[item.start + 1 : item.end]]
         self.is_endless = head in (["(", "FOREVER", ")"], ["(", "TRUE", ")"])
         self.last: int | None = None  # its last line that is ever done
+
+
+def _is_behind(item: Item, reading: Reading) -> bool:
+    """Whether a question stands behind an instruction that it may be of: `F(2, 80) IF(KEY_A);S`.
+
+    No separator is before it, and one is after it.
+    """
+    tokens, items = reading.tokens, reading.items or ()
+    before = [each.kind for each in items if each.start < item.start][-1:]
+    if item.word not in _ASKING or before != ["do"] or item.end >= len(tokens):
+        return False
+    apart, after = tokens[item.start - 1], tokens[item.end]
+    return apart.source is None and after.text == ";" and after.source is not None
 
 
 class Matching:
@@ -104,6 +119,7 @@ class Matching:
                 self.tails.setdefault(last, []).append(block.end)
                 continue
             self.is_sure = self.is_sure and bool(block.body) and block.is_begun
+            self.is_sure = self.is_sure and not block.is_behind
             self.close_behind(last if block.last is None else block.last, block)
         return True
 
@@ -261,7 +277,8 @@ class Matching:
             if is_inside:
                 self.open.pop()
                 is_here = block.line == k and (block.is_endless or not self.is_parted(block))
-                self.is_sure = self.is_sure and (block.is_begun or is_here)
+                is_told = (block.is_begun or is_here) and not block.is_behind
+                self.is_sure = self.is_sure and is_told
                 self.edit(0, block.end, ";")
         if self.open and self.open[-1].word == want:
             block = self.open.pop()
@@ -286,7 +303,7 @@ class Matching:
             if is_closed and (len(self.open) == 1 or is_arm):
                 break
             self.open.pop()
-            self.is_sure = self.is_sure and block.is_begun
+            self.is_sure = self.is_sure and block.is_begun and not block.is_behind
             if block.word in ("IF", "WHILE", "LOOP"):
                 self.is_sure = self.is_sure and not self.is_parted(block)
             elif block.word == "DEF" and after.kind == "do":

@@ -47,8 +47,8 @@ def misplaced_values(source: Source) -> list[Diagnostic]:
     start = 0
     for line in source.text.split("\n"):
         for call in _calls(without_note(line)[0], start):
-            laws = (_unit_apart(call), _thousands(call), _seconds_of_motors(call, source.text))
-            told += [found for found in laws if found][:1]
+            readings = _unit_apart(call), _thousands(call), _seconds_of_motors(call, source.text)
+            told += [found for found in readings if found][:1]
         start += len(line) + 1
     return told
 

@@ -7,13 +7,15 @@ words and signs say them. Knows no row: what was written is compared with what i
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from bisect import bisect_right, insort
+from collections import Counter, deque
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property, lru_cache
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, applied, overlap
+from tiniscript.base.source import Edit, Span, applied
 from tiniscript.base.words import (
     ALIASES,
     BLOCK_ENDS,
@@ -24,7 +26,9 @@ from tiniscript.base.words import (
     WORDS,
     lexicon,
 )
-from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.fixing import edits_of
 from tiniscript.recovery.keys import key_edits
 from tiniscript.recovery.labels import labels
 from tiniscript.recovery.meanings import (
@@ -76,7 +80,18 @@ _DIGITS = re.compile(r"[0-9oOlI]*[0-9][0-9oOlI]*|\b[oO](?=\.)")
 _BETWEEN = re.compile(r"[.,:;'´`·_ ]*")
 _LETTERS = str.maketrans("oOlI", "0011")
 _WITH_UNIT = re.compile(r"[\d.]+\s*([^\W\d]+|[%°])")
+_SEPARATORS = ";\n"
 _LONGEST = 3  # parts of a number
+# What is written, as far as a change may cut it out; and which messages name what they do.
+_WRITTEN = re.compile(r"\d[\d.]*|[^\W\d]\w*|[<>≤≥≠]=?|[=!]=")
+_NAMING = (
+    codes.EXTRA_WORD,
+    codes.WORDS_AFTER,
+    codes.NAMED_ARGUMENT,
+    codes.LOOP_COUNTS,
+    codes.MIXED_COMPARE,
+)
+_NAME = re.compile(r"[A-Za-z_]\w*")
 _END = lexemes(";")[0]
 _ASKS_NEAR = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
 
@@ -90,6 +105,11 @@ class Amount(NamedTuple):
     line: int
 
 
+LOOKS = 40  # at what is lost, of one text; and how many characters are looked at in them
+LOOKED_AT = 100_000
+LAYERS = 8
+
+
 class Difference(NamedTuple):
     """What is `lost`, as it is written, and which commands there are `more` of."""
 
@@ -97,10 +117,13 @@ class Difference(NamedTuple):
     more: list[str]
 
 
+NOTHING = Difference([], [])
+UNKNOWN = Difference([""], [])  # nobody has looked, or not at this alone
+
+
 def difference(text: str, repaired: str, kit: Kit) -> Difference:
     """Return what a text says that a repaired one doesn't, and what only that does."""
-    said = applied(text, key_edits(text, kit))
-    before, after = _Said(said, repaired, kit), _Said(repaired, repaired, kit)
+    before, after = _of_wrong(text, _words_of(repaired), kit), _of_right(repaired, kit)
     lost = [*_amounts(before, after), *_words(before, after), *_questions(before, after)]
     lost += before.sums() - after.sums()
     more = [word for word in _DRIVES if after.words[word] > before.meant[word]]
@@ -112,58 +135,134 @@ def difference(text: str, repaired: str, kit: Kit) -> Difference:
 def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
     """Return diagnostics of which no repair is sure that loses something, or does more.
 
-    It is shown together with what is `lost`, and so is what was not sure before and loses a unit.
+    It is shown together with what is `lost`, and so is what was not sure before.
     """
-    return [_with_units(loss, text, kit) for loss in _without_losses(diagnostics, text, kit)]
-
-
-def _without_losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> Sequence[Diagnostic]:
-    """Return diagnostics of which sure repairs lose nothing: one alone, or all of them together."""
-    sure = [
-        diagnostic for diagnostic in diagnostics if diagnostic.repair and diagnostic.repair.is_sure
-    ]
-    joint: list[Edit] = []
-    for diagnostic in sure:
-        if diagnostic.repair and not overlap(diagnostic.repair.edits, joint):
-            joint += diagnostic.repair.edits
-    if not joint or not any(difference(text, applied(text, joint), kit)):
-        return diagnostics
-    lost = {id(diagnostic): difference(text, applied(text, diagnostic.repair.edits), kit)
-            for diagnostic in sure if diagnostic.repair}  # fmt: skip
-    is_joint = not any(any(each) for each in lost.values())  # none alone: then all together do it
+    sure = [it for it in diagnostics if it.repair and it.repair.is_sure and it.repair.edits]
+    lost = _lost_by_sure(sure, text, kit)
+    shown = [it for it in diagnostics if id(it) not in lost and not it.values.get("lost")
+             and not (it.repair and it.repair.is_sure) and edits_of(it)]  # fmt: skip
+    gone = zip(shown, _lost_by(shown, text, kit), strict=True)
+    left_out = {id(it): found for it, its in gone if (found := _unsaid(it, its.lost, text))}
     return [
-        _shown(diagnostic, lost[id(diagnostic)].lost)
-        if id(diagnostic) in lost and (is_joint or any(lost[id(diagnostic)]))
-        else diagnostic
-        for diagnostic in diagnostics
-    ]
+        _shown(it, lost[id(it)].lost) if id(it) in lost
+        else _shown(it, left_out[id(it)]) if id(it) in left_out else it
+        for it in diagnostics
+    ]  # fmt: skip
 
 
-def _with_units(diagnostic: Diagnostic, text: str, kit: Kit) -> Diagnostic:
-    """Return a diagnostic whose shown repair says which units of numbers are in it no more.
+def _lost_by_sure(sure: Sequence[Diagnostic], text: str, kit: Kit) -> dict[int, Difference]:
+    """Return what is lost by which sure repairs: by one alone, or by all of them together."""
+    edits = [it.repair.edits for it in sure if it.repair]
+    joint = [it for k in _layers(dict(enumerate(edits)))[0] for it in edits[k]]
+    if not joint or not any(difference(text, applied(text, joint), kit)):
+        return {}
+    lost = {id(it): its for it, its in zip(sure, _lost_by(sure, text, kit), strict=True)}
+    is_joint = not any(any(each) for each in lost.values())  # none alone: then all together do it
+    return {key: its for key, its in lost.items() if is_joint or any(its)}
+
+
+def keeps_all(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
+    """Return for each diagnostic whether its changes alone lose nothing that was written."""
+    return [not its.lost for its in _lost_by(diagnostics, text, kit)]
+
+
+def _lost_by(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Difference]:
+    """Return what the changes of each of these lose alone.
+
+    Where they are many, they are looked at together: halves of them while there are looks left. Of
+    what many lose together each loses what stands in its own instructions.
+    """
+    edits = [edits_of(it) or () for it in diagnostics]
+    changing = [k for k, its in enumerate(edits) if its]
+    left = min(LOOKS, LOOKED_AT // (len(text) + 1))
+    found = [NOTHING] * len(edits)
+    groups = deque([k] for k in changing)
+    if len(groups) > left:
+        *layers, rest = _layers({k: edits[k] for k in changing})
+        groups = deque(layers)
+        for k in rest:
+            found[k] = UNKNOWN
+    while groups:
+        group, left = groups.popleft(), left - 1
+        joint = difference(text, applied(text, [it for k in group for it in edits[k]]), kit)
+        half = len(group) // 2
+        if half and any(joint) and left > len(groups) + 1:
+            groups += [group[:half], group[half:]]
+        elif any(joint):
+            shares = _shares(joint, [_around(edits[k], text) for k in group])
+            for k, share in zip(group, shares, strict=True):
+                found[k] = share
+    return found
+
+
+def _layers(edits: Mapping[int, Sequence[Edit]]) -> list[list[int]]:
+    """Return groups of changes that do not touch, by their keys, and at last those in no group."""
+    layers: list[list[int]] = [[] for _ in range(LAYERS + 1)]
+    taken: list[list[Span]] = [[] for _ in range(LAYERS)]
+    for k, its in edits.items():
+        free = (at for at, spans in enumerate(taken) if not any(_touches(it, spans) for it in its))
+        at = next(free, LAYERS)
+        layers[at].append(k)
+        for edit in its if at < LAYERS else ():
+            insort(taken[at], edit.span)
+    return [layer for layer in layers[:-1] if layer] + layers[-1:]
+
+
+def _touches(edit: Edit, spans: Sequence[Span]) -> bool:
+    """Whether a change is at a place that others have; these are in order, and do not touch."""
+    at = bisect_right(spans, edit.span.end, key=lambda span: span.start)
+    return at > 0 and spans[at - 1].end >= edit.span.start
+
+
+def _shares(joint: Difference, parts: Sequence[str]) -> list[Difference]:
+    """Return what each of several changes loses, which are in these parts: what stands there."""
+    if len(parts) == 1:
+        return [joint]
+    own = [[it for it in joint.lost if it in part] for part in parts]
+    is_told = not joint.more and {*joint.lost} == {it for its in own for it in its}
+    return [Difference(its, []) if its or is_told else UNKNOWN for its in own]
+
+
+def _around(edits: Sequence[Edit], text: str) -> str:
+    """Return the instructions that changes are in."""
+    start, end = min(edits).span.start, max(edit.span.end for edit in edits)
+    begin = max(text.rfind(sign, 0, start) for sign in _SEPARATORS) + 1
+    behind = [text.find(sign, end) for sign in _SEPARATORS]
+    return text[begin : min((it for it in behind if it >= 0), default=len(text))]
+
+
+def _unsaid(diagnostic: Diagnostic, lost: Sequence[str], text: str) -> list[str]:
+    """Return what a shown change leaves out and does not say: a unit, or what it only cuts out.
 
     A minus is none of these: a move goes the other way then.
     """
-    repair = diagnostic.repair
-    if repair is None or repair.is_sure or not repair.edits or diagnostic.values.get("lost"):
-        return diagnostic
-    made = "".join(edit.text for edit in repair.edits)
-    units = [
-        lost
-        for lost in difference(text, applied(text, repair.edits), kit).lost
-        if (unit := _WITH_UNIT.fullmatch(lost)) and unit[1].upper() not in made.upper()
-    ]
-    return _shown(diagnostic, units) if units else diagnostic
+    edits = edits_of(diagnostic) or []
+    made = " ".join(edit.text for edit in edits).upper()
+    gone = {*_WRITTEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())}
+    kept = {*_WRITTEN.findall(made)}
+    is_cut = kept <= gone and diagnostic.code not in _NAMING
+    found = []
+    for each in lost:
+        unit = _WITH_UNIT.fullmatch(each) if diagnostic.repair else None
+        is_unit = unit is not None and unit[1].upper() not in made
+        if is_unit or (is_cut and each.upper() in gone - kept):
+            found.append(each)
+    return found
 
 
 def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
-    """Return diagnostics that say so where they ask for what is near, which has no number."""
+    """Return diagnostics that have a `sample` where they compare a distance that nobody wrote.
+
+    That is only what a pupil called near: `DISTANCE < 15` for "near a wall". Where the text has
+    that number, or where the message shows an example anyway, nothing changes; and of no other
+    value does this say anything.
+    """
     guesses = [
         diagnostic
         for diagnostic in diagnostics
         if _ASKS_NEAR.search(diagnostic.values.get("fix", ""))
     ]
-    if not guesses or any(it.value == float(NEAR_CM) for it in _Said(text, text, kit).amounts):
+    if not guesses or any(it.value == float(NEAR_CM) for it in _of_right(text, kit).amounts):
         return [*diagnostics]
     sample = {"sample": f"{NEAR_CM} cm"}
     return [
@@ -175,23 +274,26 @@ def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[
 
 
 def _shown(diagnostic: Diagnostic, lost: Sequence[str]) -> Diagnostic:
-    edits = diagnostic.repair.edits if diagnostic.repair else ()
     values = {**diagnostic.values, "lost": ", ".join(lost)} if lost else diagnostic.values
-    return diagnostic._replace(values=values, repair=Repair(edits, False))
+    repair = diagnostic.repair and diagnostic.repair._replace(is_sure=False)
+    return diagnostic._replace(values=values, repair=repair)
 
 
 class _Said:
-    """What a text says, in words of any language; `repaired` has the names that there are then."""
+    """What a text says, in words of any language; `others` are all words of the repaired one."""
 
-    def __init__(self, text: str, repaired: str, kit: Kit) -> None:
-        self.is_right = text == repaired  # as far as it is repaired
-        self.others = {each.upper() for each in re.findall(r"[A-Za-z_]\w*", repaired)}
+    def __init__(self, text: str, others: frozenset[str], kit: Kit, is_right: bool) -> None:
+        self.is_right = is_right  # as far as it is repaired
+        self.others = others
         parts = [without_note(line.translate(PLAIN_SIGNS)) for line in text.split("\n")]
         self.notes = Counter(self._all_of([note for _, note in parts]))
         self.body = self._without_frame("\n".join(body for body, _ in parts))
         lines = [lexemes(self._apart(line)) for line in self.body.split("\n")]
         self.names = Names(lines, kit)
         self.tokens = [lexeme for line in lines for lexeme in (*self._joined(line), _END)]
+        self.lines = [0, *accumulate(lexeme is _END for lexeme in self.tokens)]
+        self._meanings: dict[str, set[str]] = {}
+        self._parts = {row[-1] for row in self.names.rows}  # of `mi velocidad`
         # what has no unit counts something of its own: 50 % of light is no 50
         self.units = {reading.name: reading.unit or reading.name for reading in kit.readings} | {
             "TIME": "s"
@@ -258,6 +360,11 @@ class _Said:
 
     def _may_be(self, token: Lexeme) -> set[str]:
         """Return the words of the language that a word may say."""
+        if token.text not in self._meanings:
+            self._meanings[token.text] = self._found_in(token)
+        return self._meanings[token.text]
+
+    def _found_in(self, token: Lexeme) -> set[str]:
         found = {self._word(token), concept_of(token.text) or ""}
         found |= {
             meaning.concept for meaning in self.names.meanings(token.text) if meaning.cost <= NEAR
@@ -297,7 +404,7 @@ class _Said:
             return
         word = self._word(token)
         around = {before.text, after.text}
-        is_part = any(token.text == row[-1] for row in self.names.rows)  # of `mi velocidad`
+        is_part = token.text in self._parts
         is_sign = token.text == "X" and before.kind is NUMBER and after.kind in (NUMBER, WORD)
         is_joint = (
             word in ("AND", "OR") and not is_in_brackets and bool(self._may_be(after) & _DRIVES)
@@ -356,8 +463,8 @@ class _Said:
             unit, scale = said
             value, k = value * scale / 1000, k + 1
             written += f"{after.space or ''}{after.source or after.text}"
-        line = sum(lexeme is _END for lexeme in self.tokens[:k])
-        self.amounts.append(Amount(-value if is_minus else value, unit, written, line))
+        signed = -value if is_minus else value
+        self.amounts.append(Amount(signed, unit, written, self.lines[k]))
         return k + 1
 
     def _is_minus(self, k: int) -> bool:
@@ -455,16 +562,16 @@ class _Said:
             )
         return found
 
+    @cached_property
     def negations(self) -> list[str]:
         """Return the words that turn a question round, as they are written."""
         negations = []
         for k, token in enumerate(self.tokens):
-            is_asked = any(
-                self._may_be(lexeme) & ASKING for lexeme in self.tokens[max(0, k - 4) : k]
-            )
             is_no = token.text in ("NOT", "!") or bool(said_of(token.text, *_NEGATES))
-            is_asked |= bool(said_of(token.text, "unless"))
-            if is_no and is_asked and not self.names.is_name(token.text):
+            if not is_no or self.names.is_name(token.text):
+                continue
+            around = self.tokens[max(0, k - 4) : k]
+            if said_of(token.text, "unless") or any(self._may_be(it) & ASKING for it in around):
                 negations.append(token.source or token.text)
         return negations
 
@@ -514,51 +621,100 @@ class _Said:
         return found
 
 
+@lru_cache(2)
+def _of_wrong(text: str, others: frozenset[str], kit: Kit) -> _Said:
+    return _Said(applied(text, key_edits(text, kit)), others, kit, is_right=False)
+
+
+@lru_cache(2)
+def _of_right(text: str, kit: Kit) -> _Said:
+    return _Said(text, _words_of(text), kit, is_right=True)
+
+
+def _words_of(text: str) -> frozenset[str]:
+    return frozenset(each.upper() for each in _NAME.findall(text))
+
+
 def _amounts(before: _Said, after: _Said) -> Iterator[str]:
     """Give the numbers that are gone, or have another sign or unit."""
-    left, lost = list(after.amounts), list(before.amounts)
+    left, lost = _Stock(after.amounts), _Stock(before.amounts)
     read: list[float] = []  # the parts of the run that was read last, which is one number
     for value, parts in _runs(before.body):
-        written = next((it for it in left if abs(it.value) == value), None)
-        gone = _all_in(parts, lost) if parts is not read else []
-        if written and gone and not _all_in(parts, left):
+        is_one = parts is not read and left.has([value]) and lost.has(parts)
+        if is_one and not left.has(parts):
             read = parts
-            left.remove(written)
-            for amount in gone:
-                lost.remove(amount)
+            left.take([value])
+            lost.take(parts)
+    gone, kept = lost.all(), left.all()
     for is_near in (True, False):  # first what stays in its line: another line's 50 is no 50 %
-        for amount in [*lost]:
-            fitting = [it for it in left if _is_same(amount, it)]
-            if fitting := [it for it in fitting if it.line == amount.line or not is_near]:
-                left.remove(max(fitting, key=lambda it: it.unit == amount.unit))
-                lost.remove(amount)
-    yield from (amount.written for amount in lost)
+        gone, kept = _apart(gone, kept, is_near)
+    yield from (amount.written for amount in gone)
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
     units |= {after.units.get(token.text, "") for token in after.tokens}
-    kept = Counter(after.loose)
-    yield from (each[1] for each in before.loose if each[0] not in units and not kept[each])
+    loose = Counter(after.loose)
+    yield from (each[1] for each in before.loose if each[0] not in units and not loose[each])
 
 
-def _all_in(parts: Sequence[float], amounts: Sequence[Amount]) -> list[Amount]:
-    """Return an amount for each of these numbers, nothing where there is none for one of them."""
-    left = list(amounts)
-    found = []
-    for part in parts:
-        own = next((amount for amount in left if abs(amount.value) == part), None)
-        if own is None:
-            return []
-        left.remove(own)
-        found.append(own)
-    return found
+class _Stock:
+    """Amounts of a text, by how much they are without a sign; the first of each goes first."""
+
+    def __init__(self, amounts: Sequence[Amount]) -> None:
+        self.amounts = amounts
+        self.places: dict[float, deque[int]] = {}
+        for k, amount in enumerate(amounts):
+            self.places.setdefault(abs(amount.value), deque()).append(k)
+
+    def has(self, values: Sequence[float]) -> bool:
+        """Whether there is one for each of these, of which there is one at least."""
+        found = (len(self.places.get(value, ())) >= n for value, n in Counter(values).items())
+        return bool(values) and all(found)
+
+    def take(self, values: Sequence[float]) -> None:
+        for value in values:
+            self.places[value].popleft()
+
+    def all(self) -> list[Amount]:
+        return [self.amounts[k] for k in sorted(k for its in self.places.values() for k in its)]
+
+
+def _apart(
+    before: Sequence[Amount], after: Sequence[Amount], is_near: bool
+) -> tuple[list[Amount], list[Amount]]:
+    """Return the amounts of two texts without those that both have; `is_near`: in one line."""
+    places: dict[tuple[int, int], dict[str, deque[int]]] = {}
+    for k, amount in enumerate(after):
+        key = _thousandths(amount.value), amount.line * is_near
+        places.setdefault(key, {}).setdefault(amount.unit, deque()).append(k)
+    lost: list[Amount] = []
+    taken: set[int] = set()
+    for amount in before:
+        scale = LAP if amount.unit == "turns" else 1
+        keys = {(_thousandths(amount.value * by), amount.line * is_near) for by in (1, scale)}
+        fitting = [
+            its
+            for key in keys
+            for its in places.get(key, {}).values()
+            if its and _is_same(amount, after[its[0]])
+        ]
+        if fitting:
+            own = min(fitting, key=lambda its: (after[its[0]].unit != amount.unit, its[0]))
+            taken.add(own.popleft())
+        else:
+            lost.append(amount)
+    return lost, [amount for k, amount in enumerate(after) if k not in taken]
+
+
+def _thousandths(value: float) -> int:
+    return round(value * 1000)
 
 
 def _is_same(before: Amount, after: Amount) -> bool:
     if (before.unit, after.unit) == ("turns", "°"):
-        return abs(before.value * LAP - after.value) < 0.001
+        return _thousandths(before.value * LAP) == _thousandths(after.value)
     units = {*after.unit.split("/")} - {""}
     is_unit = not before.unit or units <= {*before.unit.split("/")}
     is_unit |= units == {_STORED} and before.unit not in _OF_WAYS
-    return is_unit and abs(before.value - after.value) < 0.001
+    return is_unit and _thousandths(before.value) == _thousandths(after.value)
 
 
 def _runs(text: str) -> Iterator[tuple[float, list[float]]]:
@@ -601,7 +757,7 @@ def _questions(before: _Said, after: _Said) -> Iterator[str]:
     asked = _senses(before) - (after.notes - before.notes)
     left = _senses(after)
     turners = ({word: said.words[word] for word in _TURNERS} for said in (before, after))
-    negated = (before.negations(), after.negations())
+    negated = (before.negations, after.negations)
     may_turn = bool(negated[0] or negated[1]) or len({str(turner) for turner in turners}) > 1
     if asked.total() > left.total() or (asked - left and not may_turn):
         yield from (asked - left) or asked

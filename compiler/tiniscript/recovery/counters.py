@@ -6,6 +6,7 @@ rows read is left to them.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -45,14 +46,14 @@ def counters(source: Source) -> list[Diagnostic]:
     names = {each.name for row in found for each in row}
     if not names:
         return []
-    words = [token.text for row in rows for token in row]
+    words = Counter(token.text for row in rows for token in row)
+    ends = Counter(b.text for row in rows for a, b in pairwise(row) if _is_end(a, b, b.text))
     start = 0
     for row, own, line in zip(rows, found, source.text.split("\n"), strict=True):
         spans = _spans(row, start)
         for each in own:
             in_header = [it.text for it in row[each.start : each.end]].count(each.name)
-            ends = sum(_is_end(a, b, each.name) for k in rows for a, b in pairwise(k))
-            is_used = words.count(each.name) > in_header + ends
+            is_used = words[each.name] > in_header + ends[each.name]
             if is_used or any(said_of(it.text, "each") for it in row[each.start : each.end]):
                 span = Span(spans[each.start].start, spans[each.end - 1].end)
                 told.append(

@@ -12,7 +12,7 @@ from tiniscript.base.words import MOVES, UNIT_OF, WAYS, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import rows, slips
-from tiniscript.recovery.conserved import difference
+from tiniscript.recovery.conserved import difference, keeps_all
 from tiniscript.recovery.explanation import Explanation, explained, trimmed
 from tiniscript.recovery.meanings import lexemes, plain
 from tiniscript.recovery.search import Candidate, Recovery
@@ -21,7 +21,6 @@ from tiniscript.recovery.writing import in_one_line, laid_out
 # Codes whose sentence names what is right.
 _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
-_CR_ALONE = re.compile(r"\r(?!\n)")
 _SET = re.compile(r"(\w+) = -?[0-9.]+")
 _CLOSED = re.compile(r"(?:[^()]|\((?:[^()]|\([^()]*\))*\))*")
 _UNIT = re.compile(r"[^\d\s.]+$")
@@ -40,7 +39,7 @@ def meant_in(
     if meant is None:
         return []
     text = recovery.program
-    written = _CR_ALONE.sub("\n", source.text)  # its lines are those of the recovery
+    written = source.text
     told = explained(written, meant)
     if not told and meant.is_whole:
         misplaced = [each for each in found if each.code in rows.MISPLACED]
@@ -51,15 +50,10 @@ def meant_in(
     told_of = [(each, _diagnostic(each, meant, found)) for each in told]
     is_part = is_sure or not meant.is_whole  # what is read of a part gives up nothing
     if is_part and difference(text, meant.text, recovery.kit).lost:
-        told_of = [] if is_sure else [it for it in told_of if _keeps_all(it[1], source, recovery)]
+        kept = [] if is_sure else keeps_all([own for _, own in told_of], source.text, recovery.kit)
+        told_of = [it for it, is_kept in zip(told_of, kept, strict=False) if is_kept]
     others = [each for other in recovery.others for each in explained(written, other)]
     return [_either(_carried(own, source.text), each, others) for each, own in told_of]
-
-
-def _keeps_all(found: Diagnostic, source: Source, recovery: Recovery) -> bool:
-    """Whether the changes of a diagnostic alone lose nothing that was written."""
-    edits = found.repair.edits if found.repair else ()
-    return not difference(source.text, applied(source.text, edits), recovery.kit).lost
 
 
 def _carried(found: Diagnostic, text: str) -> Diagnostic:

@@ -101,7 +101,7 @@ def _words(row: str, start: int, names: Names, tasks: Set[str]) -> Iterator[Diag
             words = " ".join(token.source or "" for token in tokens[1:])
             span = Span(end - len(part[0].rstrip()[begin - start - part.start() :].lstrip()), end)
             repair = Repair((Edit(Span(begin, end), ""),), False)
-            values = {"words": words, "needless": words}
+            values = {"before": tokens[0].source or "", "words": words, "needless": words}
             yield Diagnostic(codes.WORDS_AFTER, span, values, span, repair)
 
 

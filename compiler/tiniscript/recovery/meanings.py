@@ -381,6 +381,10 @@ class Names:
     def is_name(self, word: str) -> bool:
         return word in self.known.values or word in self.defs or word in self.actuators
 
+    def is_yes_no(self, word: str) -> bool:
+        """Whether a word is a yes or a no by itself, which nothing is compared with."""
+        return word in ("TRUE", "FALSE") or (word in self.sensors and word not in self.asked)
+
     def meanings(self, word: str) -> tuple[Meaning, ...]:
         """Return what a word that is no name of the program may mean."""
         if self.is_name(word):
@@ -450,6 +454,7 @@ class Names:
         if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
             classes.append("@val")
             classes += ["@measured"] if {word, text} & self.asked.keys() else []
+            classes += [] if self.is_yes_no(word) or self.is_yes_no(text) else ["@amount"]
         if text in self.defs:
             own = ["@defw", "@callw"] if self.takes(text) else ["@step", "@close"]
             classes += ["@def", "@start", "@startm", *own]

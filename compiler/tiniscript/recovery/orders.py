@@ -239,10 +239,14 @@ def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
 
 
 def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
-    """Return the comparison that words ask, in words of the language; nothing for none."""
+    """Return the question that words ask, in words of the language; nothing for none.
+
+    A comparison is one, and what says yes or no by itself: `KEY_A`, `NOT KEY_A`.
+    """
     words = words[1:-1] if closed(words, 0) == len(words) else words
     readings = lines.read([made("IF"), made("("), *words, made(")")], names, is_quick=True)
     tokens = readings[0].tokens if readings else []
     end = next((k for k, lexeme in enumerate(tokens) if lexeme.text == ";"), len(tokens)) - 1
     lexemes = tokens[2:end]
-    return lexemes if any(lexeme.text in COMPARISONS for lexeme in lexemes) else []
+    is_asked = any(lexeme.text in COMPARISONS or names.is_yes_no(lexeme.text) for lexeme in lexemes)
+    return lexemes if is_asked else []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
@@ -55,6 +56,7 @@ def _distance(one: Span, other: Span) -> tuple[int, int]:
     return apart, abs(one.start - other.start)
 
 
+@lru_cache(16)
 def _each_plain(text: str) -> str:
     """Return a text in capitals without accents, each character in its place."""
     return "".join(short if len(short := plain(each)) == 1 else each for each in text)

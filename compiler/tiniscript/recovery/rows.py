@@ -10,7 +10,8 @@ sign that would be one of the signs here, `?`, `*` and `+` stand after what may 
 more often. `^` is where an instruction begins: a line, or what follows `SI|`, a `;` or a brace; `$`
 is where one ends. A row of a whole line says `^^` and `$$`. `c=` captures, and `<part>` is a piece
 of PARTS. The cheapest reading is told; 1 is usual.
-Classes: @num @word @val (a value with a name) @cross (X that is no name) @like_CM
+Classes: @num @word @val (a value with a name), of which an @amount is no yes or no by itself,
+@cross (X that is no name) @like_CM
 @like_DEG (a slip away) @name @newname @usedname @def, of which a @defw takes
 values and a @step does not, @callw (takes values)
 @device (an actuator) @start (begins an instruction) @close (ends one) @unit; a number that is
@@ -289,7 +290,7 @@ h=WHILE ( 1 )
 o==|( a=@num|@val over by|over? b=@num|@val
     | $o $a / $b | 1 | TS010 | applied
     | SHOW(10 entre 2) => SHOW(10 / 2)
-h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val ⟨then|&¦or|OR⟩ b=@val s=<|> n=@num )
+h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@amount ⟨then|&¦or|OR⟩ b=@val s=<|> n=@num )
     | &h ( $a $s $n ⟨AND¦OR⟩ $b $s $n ) | 1 | TS010 | first offered
     | IF(LIGHT_L ⟨y¦o⟩ LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 ⟨AND¦OR⟩ LIGHT_R > 500)⏎S⏎ENDIF
 a=@num|@val ⟨then|&¦or⟩ b=@val|less|more|NOT⟨|<¦⟩

@@ -183,7 +183,7 @@ SUGGESTIONS = """
 ^ c=@move|W s=WHILE (? q=@cond+ )? $
     | TS071 | found={s}; fix={c} UNTIL({contrary})
     | F(2, 80) while DISTANCE > 10 => fix=F(2, 80) UNTIL(DISTANCE <= 10)
-^ c=@cmd s=IF (? q=@cond+ )? $
+^ <does> s=IF (? q=@cond+ )? $
     | TS071 | found={s}; fix=IF({question});{c};ENDIF
     | S IF(DISTANCE < 10) => fix=IF(DISTANCE < 10);S;ENDIF
 ^ c=@move s=WHILE @word* no @word* wall $

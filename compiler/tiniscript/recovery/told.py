@@ -8,6 +8,7 @@ is told in all is held to the laws, each by a function that `told_of` names. Of 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import NamedTuple
@@ -18,11 +19,13 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, without_wrong
 from tiniscript.recovery import slips
+from tiniscript.recovery.bracketed import bracketed
 from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
+from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.leftovers import leftovers, of_its_frame
@@ -34,6 +37,7 @@ from tiniscript.recovery.usage import with_usage
 from tiniscript.syntax.parser import ENOUGH
 
 ROUNDS = 20  # of reading what follows a mistake from the repaired text
+_CR_ALONE = re.compile(r"\r(?!\n)")
 LONGEST = 4_000  # characters of a text that is read as a whole
 
 
@@ -69,12 +73,19 @@ class Wrong:
 def told_of(
     source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
-    """Return what is told of a wrong text, of which the parser and the checker say `found`."""
-    text = source.text
+    """Return what is told of a wrong text, of which the parser and the checker say `found`.
+
+    The readers know one end of a line that is a character: what the text has instead takes as much.
+    """
+    text = _CR_ALONE.sub("\n", source.text)
+    source = Source(text, source.name)
     told = _read(Wrong(source, found, check, kit), ROUNDS)
+    told = [bracketed(each, text, kit, is_offered=True) for each in told]
     told = without_wrong(told, text, check)  # what is offered is right
     told = conserving(told, text, kit)  # what is made keeps what was written
+    told = [bracketed(each, text, kit, is_offered=False) for each in told]
     told = with_sample(told, text, kit)  # of a distance that nobody wrote it says: an example
+    told = [invisible(each, text) for each in told]
     return codes.in_order([pointed(each, source) for each in told])
 
 
@@ -97,44 +108,47 @@ def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
 
 
 def _labels(wrong: Wrong) -> Findings:
-    """Return what counts the instructions of a text, before each of them."""
+    """Return what counts the instructions of a text, before each of them (`labels`)."""
     return _with_edits(labelled(wrong.source))
 
 
 def _keys(wrong: Wrong) -> Findings:
-    """Return what is wrong with keys that are asked for; the rest is read with one that exists."""
+    """Return what is wrong with keys that are asked for (`keys`).
+
+    The rest is read with a key that exists.
+    """
     told = asked_keys(wrong.source, wrong.kit)
     edits = _with_edits(told).edits
     return Findings(told, edits + [Edit(it.span, KEYS[0]) for it in told if not it.repair])
 
 
 def _beginning(wrong: Wrong) -> Findings:
-    """Return what is wrong with the lines before the program, and with its `SI|`."""
+    """Return what is wrong with the lines before the program, and with its `SI|` (`setup`)."""
     return _with_edits(beginning(wrong.source, wrong.found, wrong.check, wrong.kit))
 
 
 def _calls(wrong: Wrong) -> Findings:
-    """Return what is wrong with calls that have all their values in another form."""
+    """Return what is wrong with calls that have all their values in another form (`calls`)."""
     return _with_edits(misplaced_values(wrong.source))
 
 
 def _counters(wrong: Wrong) -> Findings:
-    """Return what is wrong with loops that count, in whose place LOOP counts nothing."""
+    """Return what is wrong with loops that count, where LOOP counts nothing (`counters`)."""
     return _with_edits(counters(wrong.source))
 
 
 def _frame(wrong: Wrong) -> Findings:
-    """Return what begins a program once more, and what ends it, which needs no word."""
+    """Return what begins a program once more, or ends it, which needs no word (`leftovers`)."""
     return _with_edits(of_its_frame(wrong.source, wrong.kit))
 
 
 def _leftovers(wrong: Wrong) -> Findings:
-    """Return words that are left over in instructions, which are whole without them."""
+    """Return words left over in instructions, which are whole without them (`leftovers`)."""
     return _with_edits(leftovers(wrong.source, wrong.kit))
 
 
 def _other_beginning(wrong: Wrong) -> Findings:
-    """Return that another word stands in the place of `SI|`, for which the rest is read."""
+    """Return that another word stands in the place of `SI|` (`setup`); the rest is read with SI."""
     begun = other_word(wrong.source, wrong.found)
     if begun is None:
         return Findings([], [])
@@ -143,7 +157,7 @@ def _other_beginning(wrong: Wrong) -> Findings:
 
 
 def _meant_surely(wrong: Wrong) -> Findings:
-    """Return what is wrong with a text that is read wholly and surely."""
+    """Return what is wrong with a text that is read wholly and surely (`search`, `findings`)."""
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])
@@ -151,7 +165,7 @@ def _meant_surely(wrong: Wrong) -> Findings:
 
 
 def _words_after(wrong: Wrong) -> Findings:
-    """Return what words say after instructions, or in the place of one."""
+    """Return what words say after instructions, or in the place of one (`suggestions`)."""
     after = suggested(wrong.source.text, wrong.kit)
     if recovery := wrong.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
         after = [each for each in after if not recovery.has_signs(each.passed.span.start)]
@@ -159,7 +173,7 @@ def _words_after(wrong: Wrong) -> Findings:
 
 
 def _guessed(wrong: Wrong) -> Findings:
-    """Return what is wrong with the lines that are read, if not surely."""
+    """Return what is wrong with the lines that are read, if not surely (`search`, `findings`)."""
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])

@@ -19,7 +19,7 @@ class Kind(NamedTuple):
 
     `field` is what is written in it: `name`, `line`, `sensor` or `actuator`; `words` are the words
     to choose from instead, and `units` of those the units after the first value, instead of
-    seconds. `is_top`: it stands inside no other block. `gives` is what a block gives that is a
+    seconds. `is_hat`: it begins a stack, which is its body. `gives` is what a block gives that is a
     value, and `part` which part of an expression it is, where its words are none. `says` is what it
     says in all languages.
     """
@@ -28,7 +28,7 @@ class Kind(NamedTuple):
     colour: str
     values: tuple[str, ...] = ()
     bodies: int = 0
-    is_top: bool = False
+    is_hat: bool = False
     gives: str = ""
     part: str = ""
     field: str = ""
@@ -79,9 +79,9 @@ KINDS = {kind.name: kind for kind in (
     Kind("forever", "control", bodies=1),
     Kind("while", "control", ("truth",), bodies=1),
     Kind("break", "control"),
-    Kind("def", "words", bodies=1, is_top=True, field="name"),
-    Kind("task", "events", bodies=1, is_top=True),
-    Kind("when", "events", ("truth",), bodies=1, is_top=True),
+    Kind("def", "words", bodies=1, is_hat=True, field="name"),
+    Kind("task", "tasks", bodies=1, is_hat=True),
+    Kind("when", "events", ("truth",), bodies=1, is_hat=True),
     Kind("comment", "others", field="line"),
     Kind("grey", "grey", field="line", says="%1"),
     Kind("number", "numbers", gives="number", part="NUMBER", says="%1"),

@@ -24,7 +24,6 @@ from tiniscript.library.shows import Show, Shows
 from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.text_levels import level_of
-from tiniscript.semantics import ir
 
 
 class Change(NamedTuple):
@@ -78,8 +77,7 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     names_robot = name_in(data) is not None
     if not found.is_right or found.program is None:
         return Checked(b"", 0, findings, (), (), (), "", profile.name, names_robot)
-    kinds = ir.are_yes_no(found.program, profile.kit)
-    variables = tuple(map(Variable, found.program.variables, kinds))
+    variables = tuple(map(Variable, found.program.variables, found.yes_no))
     places = source_map.made(found.source, found.places)
     return Checked(found.image, len(found.code), findings, places.places, _shows(places), variables,
                    found.program.start, profile.name, names_robot,

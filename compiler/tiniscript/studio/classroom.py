@@ -166,11 +166,14 @@ class Classroom:
     """Any thread may call it. `tend` must be called once a second."""
 
     def __init__(
-        self, hosting: Hosting, ports: list[str], turn_s: int = TURN_S, clock: Clock = monotonic
-    ) -> None:
+        self, hosting: Hosting, ports: list[str], turn_s: int | None = None,
+        clock: Clock = monotonic,
+    ) -> None:  # fmt: skip
+        """`turn_s` of None: as in the class from before a crash, else TURN_S."""
         self.code = _new_code()
         self._hosting = hosting
-        self._turn_s = turn_s
+        self._turn_s = TURN_S if turn_s is None else turn_s
+        self._is_turn_given = turn_s is not None
         self._clock = clock
         self._lock = RLock()
         self._pupils: dict[str, Pupil] = {}  # by token
@@ -591,6 +594,11 @@ class Classroom:
             code = kept.get("code")
             if isinstance(code, str) and len(code) == CODE_LETTERS and set(code) <= set(LETTERS):
                 self.code = code
+            with suppress(BadRequest):
+                self._places = whole(kept, "places", 1, MOST_PUPILS)
+            if not self._is_turn_given:
+                with suppress(BadRequest):
+                    self._turn_s = whole(kept, "turn_s", SHORTEST_S, LONGEST_S)
             return len(self._pupils)
 
     def _give(self, given: ClassRobot, is_given: bool) -> None:

@@ -181,6 +181,7 @@ class JudgedRun(Simulation):
         self.robot = self._trial.robot
         self.session = Session(NONCE, profile.board.baud, profile.kit.fingerprint)
         self.fault_at = None
+        self._begin_rows()
         self.marks = marks._replace(breakpoints=())
         self._score = Score(world(number, seed))
         self._owed_ms = 0  # that are less than a look of the judge's

@@ -1,11 +1,7 @@
-"""What a robot has told of a run, as a file, and the same run on the virtual robot.
+"""The file of a run, `.tsr`: all that the virtual robot needs to do it again, and what happened.
 
-A file is JSON Lines: `{"tiniscript_recording": 1, "program": "89abcdef", "robot": "tinibot"}`, then
-a line for each event, `{"ms": 120, "event": "SHOW 2.5"}`, with the milliseconds since the program
-began; those of a program that waits for the robot's button count from its first event. Events are
-SHOW, and one that is the last: DONE, FAULT, STOPPED (or saved while it ran), LOST (the link) and
-MISSED (values did not arrive). A recording is compared as far as it goes. Knows no clock and no
-page.
+docs/develop/runs.md has the form. Who reads a file checks all of it: what comes from `read` can be
+played. Knows no clock and no page.
 """
 
 from __future__ import annotations
@@ -13,92 +9,266 @@ from __future__ import annotations
 import json
 import re
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
-from tiniscript.base.fixed_point import ONE
-from tiniscript.bytecode.image import checksum
-from tiniscript.library.compiling import compile_source, for_robot
-from tiniscript.library.source_map import made
-from tiniscript.semantics import ir
-from tiniscript.studio.checking import profile_of
-from tiniscript.studio.simulation import Marks, Simulation
+from tiniscript import robots
+from tiniscript.base.version import __version__
+from tiniscript.link.remote import Pressed
+from tiniscript.robots.profile import ProfileRefused, Robot
+from tiniscript.studio.world_form import Form, form_of, toml_of
+from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
 
+HEAD = "tiniscript_run"
+OLDER = "tiniscript_recording"  # of 0.3.0 and before: without the program
 VERSION = 1
 MOST_BYTES = 1_000_000
+MOST_ROW_BYTES = 600_000  # of all rows; then the recording is over
 MOST_MS = 600_000
-LEAST_OFF_MS, OFF = 250, 0.05  # how much later or earlier is the same time
-STEP_MS = 100
-BEGINNING_MS = 1000  # limit for a program to begin after its button
-CUT = ("STOPPED", "LOST", "MISSED")  # the end of a recording, and not what the program did
-_EVENT = re.compile(
-    r"SHOW (?:TRUE|FALSE|-?\d{1,7}(?:\.\d{1,3})?)|DONE|STOPPED|LOST|MISSED|FAULT [A-Z_0-9]{1,40}"
+MOST_TEXT = 200_000  # bytes of a program
+MOST_READINGS = 10_000
+
+VIRTUAL, REAL = "virtual", "real"
+# What somebody did: the robot did the rest. HALT is a stop over the link, or while it was held.
+KEYS, DOWN, UP, HALT, HELD = "KEYS", "BUTTON DOWN", "BUTTON UP", "HALT", "HALT HELD"
+END = "END"  # the recording reaches as far as this row, the last one
+CUT = ("STOPPED", "LOST", "MISSED")  # the end of a real robot's recording, not of its program
+_EVENT = re.compile(r"[A-Z_]{1,20}(?: [A-Za-z0-9_.\-]{1,60}){0,2}")
+_KEYS = re.compile(r"KEYS (\d{1,3}) (-?\d{1,3}) (-?\d{1,3})")
+_REAL = re.compile(
+    r"SHOW (?:TRUE|FALSE|-?\d{1,7}(?:\.\d{1,3})?)|READ [A-Z0-9_]{1,40} (?:TRUE|FALSE|-?\d{1,7}"
+    r"(?:\.\d{1,3})?)|UNREAD|DONE|STOPPED|LOST|MISSED|FAULT [A-Z_0-9]{1,40}"
 )
 _PROGRAM = re.compile(r"[0-9a-f]{8}")
+_KIT = re.compile(r"[0-9a-f]{4}")
+_VERSION = re.compile(r"[0-9a-z.+]{1,20}")
 
 
 class BadRecording(Exception):
-    """`reason` is unreadable, other_version or too_long; `line` where that is, from 1."""
+    """`reason` is unreadable, cut, older, other_version, too_long or other_robot; `line` where that
+    is, from 1."""
 
-    def __init__(self, reason: str, line: int) -> None:
+    def __init__(self, reason: str, line: int = 1) -> None:
         super().__init__(reason)
         self.reason = reason
         self.line = line
 
 
-class Recorded(NamedTuple):
+class Row(NamedTuple):
+    """What happened at `ms`; `at` is where a SHOW is in the code, if it is known."""
+
     ms: int
     event: str
+    at: int = -1
+
+    @property
+    def is_input(self) -> bool:
+        """Whether somebody did that to a virtual robot."""
+        return self.event in (DOWN, UP, HALT, HELD) or self.event.startswith("KEYS ")
+
+    @property
+    def cells(self) -> list[Any]:
+        """What the file has of it."""
+        return [*self] if self.at >= 0 else [*self[:2]]
+
+    @property
+    def pressed(self) -> Pressed | None:
+        """What somebody holds from then on, if that is what the row says."""
+        found = _KEYS.fullmatch(self.event)
+        return Pressed(*map(int, found.groups())) if found else None
 
 
 class Recording(NamedTuple):
-    """`robot` is the name that the file has, which need not be that of a robot; None for none."""
+    """A run of the program `text` on `robot`, `of` a VIRTUAL or a REAL one.
 
-    program: int
-    events: tuple[Recorded, ...]
-    robot: str | None = None
-
-
-class Parting(NamedTuple):
-    """Where a recording and the virtual robot part.
-
-    `what` is same, missed (the same until values did not arrive), empty (nothing to compare),
-    other_program, value, time, robot_more or virtual_more; `line` is that of the program, or 0,
-    and `robot` and `virtual` are the events there. `agreed` events were the same.
+    Of a virtual robot `ms` count from when it is switched on, in `world` with `seed` and the
+    readings `told` in thousandths, by sensor number; of a real one from when its program began, and
+    where that `is_by_button`, from its first row. `rows` are in their order, without END, which was
+    at `end_ms`; `version` is that of the tsc which recorded it.
     """
 
-    what: str
-    agreed: int = 0
-    line: int = 0
-    robot: Recorded | None = None
-    virtual: Recorded | None = None
+    of: str
+    text: str
+    robot: str
+    kit: int
+    program: int
+    rows: tuple[Row, ...]
+    end_ms: int
+    world: World | None = None
+    seed: int = 1
+    told: Mapping[int, Sequence[int]] = {}
+    is_by_button: bool = False
+    version: str = __version__
+
+    @property
+    def is_virtual(self) -> bool:
+        return self.of == VIRTUAL
+
+
+class Rows:
+    """The rows of a run as it goes on: a reading has one only where it changes, and a stop of a
+    program that was held is the last one.
+
+    `is_full`: there is no room for more, and the recording ends before what comes then.
+    """
+
+    def __init__(self) -> None:
+        self.rows: list[Row] = []
+        self.is_full = False
+        self._read: dict[str, str] = {}
+        self._bytes = 0
+
+    def add(self, row: Row) -> bool:
+        """Take a row; return whether the file has it."""
+        if row.event.startswith("READ "):
+            _, name, value = row.event.split(" ", 2)
+            if self._read.get(name) == value:
+                return False
+            self._read[name] = value
+        self._bytes += len(line(row)) + 1
+        self.is_full = self.is_full or self._bytes > MOST_ROW_BYTES or row.ms > MOST_MS
+        if self.is_full:
+            return False
+        self.rows.append(row)
+        self.is_full = row.event == HELD  # what it would have done then, nobody knows
+        return True
+
+
+def head(
+    of: str, text: str, robot: Robot, program: int, *, world: str | Form | None = None,
+    seed: int = 1, told: dict[int, list[int]] | None = None, is_by_button: bool = False,
+) -> str:  # fmt: skip
+    """Return the first line of a file; `world` is the name of a shipped one, or a form."""
+    found: dict[str, Any] = {HEAD: VERSION, "tsc": __version__, "of": of, "robot": robot.name,
+                             "kit": f"{robot.kit.fingerprint:04x}", "program": f"{program:08x}",
+                             "text": text}  # fmt: skip
+    if of == VIRTUAL:
+        names = [device.name for device in robot.kit.readings]
+        found |= {"world": world, "seed": seed}
+        found["told"] = {names[number]: values for number, values in (told or {}).items()}
+    elif is_by_button:
+        found["is_by_button"] = True
+    return json.dumps(found, ensure_ascii=False, separators=(",", ":")) + "\n"
+
+
+def line(row: Row) -> str:
+    """Return a row as a line of the file, without its end."""
+    return json.dumps(row.cells, separators=(",", ":"))
+
+
+def written(first: str, rows: Iterable[Row], end_ms: int) -> str:
+    """Return the whole file that begins with the line `first`."""
+    return "".join((first, *(f"{line(row)}\n" for row in (*rows, Row(end_ms, END)))))
 
 
 def read(data: bytes) -> Recording:
     """Return the recording in a file. Raises BadRecording."""
     if len(data) > MOST_BYTES:
-        raise BadRecording("too_long", 1)
+        raise BadRecording("too_long")
     lines = _decoded(data).rstrip("\r\n").split("\n")
-    head = _fields(lines[0], 1)
-    if "tiniscript_recording" in head and head["tiniscript_recording"] != VERSION:
-        raise BadRecording("other_version", 1)
-    program, robot = head.get("program"), head.get("robot")
-    if head.get("tiniscript_recording") != VERSION or not _is(_PROGRAM, program):
-        raise BadRecording("unreadable", 1)
-    if robot is not None and not isinstance(robot, str):
-        raise BadRecording("unreadable", 1)
-    events: list[Recorded] = []
-    for number, line in enumerate(lines[1:], 2):
-        fields = _fields(line, number)
-        ms, event = fields.get("ms"), fields.get("event")
-        if type(ms) is not int or ms < (events[-1].ms if events else 0) or not _is(_EVENT, event):
+    fields = _parsed(lines[0], 1, dict)
+    if OLDER in fields:
+        raise BadRecording("older")
+    if HEAD in fields and fields[HEAD] != VERSION:
+        raise BadRecording("other_version" if type(fields[HEAD]) is int else "unreadable")
+    found = _begun(fields)
+    rows: list[Row] = []
+    for number, each in enumerate(lines[1:], 2):
+        if rows and rows[-1].event == END:
             raise BadRecording("unreadable", number)
-        if ms > MOST_MS:
+        row = _row(each, number, found.of)
+        if row.ms < (rows[-1].ms if rows else 0):
+            raise BadRecording("unreadable", number)
+        if row.ms > MOST_MS:
             raise BadRecording("too_long", number)
-        if events and not events[-1].event.startswith("SHOW"):
-            raise BadRecording("unreadable", number)  # after the end
-        events.append(Recorded(ms, str(event)))
-    return Recording(int(str(program), 16), tuple(events), robot)
+        if rows and not found.is_virtual and rows[-1].event in CUT and row.event != END:
+            raise BadRecording("unreadable", number)
+        rows.append(row)
+    if not rows or rows[-1].event != END:
+        raise BadRecording("cut", len(lines))
+    return found._replace(rows=tuple(rows[:-1]), end_ms=rows[-1].ms)
+
+
+def _begun(fields: dict[str, Any]) -> Recording:
+    """Return what the first line says. Raises BadRecording."""
+    text, robot, of = fields.get("text"), fields.get("robot"), fields.get("of")
+    seed = fields.get("seed", 1)
+    if (
+        fields.get(HEAD) != VERSION
+        or of not in (VIRTUAL, REAL)
+        or not isinstance(text, str)
+        or len(text.encode("utf-8", "replace")) > MOST_TEXT
+        or not isinstance(robot, str)
+        or not _is(_PROGRAM, fields.get("program"))
+        or not _is(_KIT, fields.get("kit"))
+        or not _is(_VERSION, fields.get("tsc"))
+        or type(seed) is not int
+        or not 1 <= seed < 1 << 32
+    ):
+        raise BadRecording("unreadable")
+    kit = int(fields["kit"], 16)
+    if robot not in robots.names() or robots.load(robot).kit.fingerprint != kit:
+        raise BadRecording("other_robot")
+    is_virtual = of == VIRTUAL
+    return Recording(
+        of=of, text=text, robot=robot, kit=kit, program=int(fields["program"], 16), rows=(),
+        end_ms=0, world=world_in(fields.get("world")) if is_virtual else None, seed=seed,
+        told=_told(fields.get("told"), robots.load(robot)) if is_virtual else {},
+        is_by_button=not is_virtual and fields.get("is_by_button") is True, version=fields["tsc"],
+    )  # fmt: skip
+
+
+def world_in(found: object) -> World:
+    """Return a shipped world by its name, or the one of a form. Raises BadRecording."""
+    if isinstance(found, str) and found in worlds.names():
+        return worlds.load(found)
+    try:
+        assert isinstance(found, dict)
+        return worlds.read(toml_of(found), "")
+    except (ProfileRefused, AssertionError, KeyError, TypeError, ValueError, AttributeError,
+            RecursionError, OverflowError):  # fmt: skip
+        raise BadRecording("unreadable") from None
+
+
+def kept(world: World) -> tuple[World, str | Form]:
+    """Return a world as the file of a run has it: a shipped one by its name, another one as a form
+    that is read again."""
+    if world.name in worlds.names() and worlds.load(world.name) == world:
+        return world, world.name
+    form = form_of(world)
+    return world_in(form), form
+
+
+def _told(found: object, robot: Robot) -> dict[int, list[int]]:
+    """Return the readings that single sensors gave one after the other."""
+    numbers = {device.name: k for k, device in enumerate(robot.kit.readings) if device.name}
+    told: dict[int, list[int]] = {}
+    for name, values in found.items() if isinstance(found, dict) else ():
+        number = numbers.get(name)
+        if number is None or not isinstance(values, list) or not 0 < len(values) <= MOST_READINGS:
+            raise BadRecording("unreadable")
+        device = robot.kit.readings[number]
+        if any(type(each) is not int or not device.low <= each <= device.high for each in values):
+            raise BadRecording("unreadable")
+        told[number] = values
+    return told
+
+
+def _row(written_row: str, number: int, of: str) -> Row:
+    cells = _parsed(written_row, number, list)
+    if len(cells) not in (2, 3) or any(type(cell) is not int for cell in (cells[0], *cells[2:])):
+        raise BadRecording("unreadable", number)
+    row = Row(*cells)
+    known = _EVENT.fullmatch if of == VIRTUAL else _REAL.fullmatch
+    is_event = isinstance(row.event, str) and (row.event == END or known(row.event) is not None)
+    if not is_event and not (isinstance(row.event, str) and of == VIRTUAL and row.pressed):
+        raise BadRecording("unreadable", number)
+    if row.ms < 0 or not -1 <= row.at < 1 << 16:
+        raise BadRecording("unreadable", number)
+    if row.event.startswith("KEYS") and (row.pressed is None or not row.pressed.is_sound):
+        raise BadRecording("unreadable", number)
+    return row
 
 
 def _decoded(data: bytes) -> str:
@@ -107,143 +277,20 @@ def _decoded(data: bytes) -> str:
     return data.decode("utf-16" if is_wide else "utf-8-sig", "replace")
 
 
-def _fields(line: str, number: int) -> dict[str, object]:
+def _parsed(written_line: str, number: int, kind: type) -> Any:
     try:
-        fields = json.loads(line)
+        found = json.loads(written_line)
     except (ValueError, RecursionError):
-        fields = None
-    if not isinstance(fields, dict):
+        found = None
+    if not isinstance(found, kind):
         raise BadRecording("unreadable", number)
-    return fields
+    return found
 
 
 def _is(form: re.Pattern[str], found: object) -> bool:
     return isinstance(found, str) and form.fullmatch(found) is not None
 
 
-def replay(recording: Recording, text: bytes, robot: str, world: World) -> Parting:
-    """Run a program on the virtual robot with the readings of a recording, and compare.
-
-    A reading is known where the program shows a sensor, `SHOW(DISTANCE)`: from there on the
-    virtual sensor has that reading, until the next one. Other sensors are those of `world`.
-    Raises WorldRefused.
-    """
-    profile = profile_of(robot)
-    found = compile_source(text, profile, "", is_strict=True, is_chosen=True)
-    found = for_robot(found, profile)
-    if found.program is None or not found.image or checksum(found.image) != recording.program:
-        return Parting("other_program")
-    if not recording.events or recording.events[0].event == "LOST":
-        return Parting("empty")
-    sensors = _shown_sensors(found.program)
-    places = made(found.source, found.places).places
-    shows = {place.offset: (place.line, sensors[its.span.start]) for its, place in
-             zip(found.places, places, strict=True) if its.span.start in sensors}  # fmt: skip
-    parts = tuple(place.offset for place in places)
-    simulation = Simulation(robot, world, found.image, Marks(parts, tuple(shows)))
-    virtual: list[Recorded] = []
-    lines: list[int] = []
-    is_by_button = found.program.start == "SB"
-    if is_by_button:
-        _push(simulation)
-    events = recording.events
-    until_ms = _until_ms(events, [], is_by_button)
-    while simulation.robot.now_ms - (simulation.robot.started_ms or 0) < until_ms:
-        began_ms = simulation.robot.started_ms or 0
-        if simulation.held_at is not None:
-            line, sensor = shows[simulation.held_at]
-            said = events[len(lines)].event if len(lines) < len(events) else ""
-            if sensor is not None and said.startswith("SHOW"):
-                simulation.robot.sensing.tell(sensor, _number(said))
-            lines.append(line)
-            simulation.go_on()
-        simulation.go(STEP_MS)
-        for event in simulation.robot.take_events():
-            if _EVENT.fullmatch(event.text):
-                virtual.append(Recorded(event.time_ms - began_ms, event.text))
-        until_ms = _until_ms(events, virtual, is_by_button)
-        if not simulation.robot.is_running or len(virtual) > len(events):
-            break
-    simulation.close()
-    if is_by_button:
-        events = _since(events, virtual)
-    return _compared(events, virtual, lines)
-
-
-def _push(simulation: Simulation) -> None:
-    """Push the start button, and wait until the program has begun."""
-    simulation.push()
-    for _ in range(BEGINNING_MS):
-        if simulation.robot.started_ms is not None:
-            return
-        simulation.go(1)
-    raise AssertionError("the program does not begin")
-
-
-def _until_ms(events: tuple[Recorded, ...], virtual: list[Recorded], is_by_button: bool) -> int:
-    """Return how long the virtual robot runs to be compared with all of `events`.
-
-    By its button its first event is waited for, whose time the recording does not have.
-    """
-    if not events:
-        return 0
-    if not is_by_button or not _is_said(events[0]):
-        return events[-1].ms + _off_ms(events[-1].ms)
-    if not virtual:
-        return MOST_MS
-    last_ms = _since(events, virtual)[-1].ms
-    return last_ms + _off_ms(last_ms)
-
-
-def _since(events: tuple[Recorded, ...], virtual: list[Recorded]) -> tuple[Recorded, ...]:
-    """Return `events` as if the first one had been at the time of the virtual one."""
-    if not events or not virtual:
-        return events
-    late_ms = virtual[0].ms - events[0].ms
-    return tuple(event._replace(ms=event.ms + late_ms) for event in events)
-
-
-def _is_said(event: Recorded) -> bool:
-    """Whether the program has said that, so that the virtual robot should say it, too."""
-    return event.event not in CUT
-
-
-def _shown_sensors(program: ir.Program) -> dict[int, int | None]:
-    """Return where each SHOW begins, and the sensor that it shows, if it is one alone."""
-    shown_sensors: dict[int, int | None] = {}
-    for statement in ir.every(program):
-        if isinstance(statement, ir.Show):
-            is_one = len(statement.value) == 1 and statement.value[0].op == "SENSOR"
-            shown_sensors[statement.span.start] = statement.value[0].value if is_one else None
-    return shown_sensors
-
-
-def _number(event: str) -> int:
-    """Return what a SHOW event says, as a reading."""
-    said = event.removeprefix("SHOW ")
-    return int(said == "TRUE") if said in ("TRUE", "FALSE") else round(float(said) * ONE)
-
-
-def _off_ms(ms: int) -> int:
-    return LEAST_OFF_MS + round(ms * OFF)
-
-
-def _compared(recorded: tuple[Recorded, ...], virtual: list[Recorded], lines: list[int]) -> Parting:
-    shown = tuple(filter(_is_said, recorded))
-    for count, ours in enumerate(shown):
-        line = lines[count] if count < len(lines) else 0
-        theirs = virtual[count] if count < len(virtual) else None
-        if theirs is None:
-            return Parting("robot_more", count, line, ours)
-        if ours.event != theirs.event:
-            return Parting("value", count, line, ours, theirs)
-        if abs(ours.ms - theirs.ms) > _off_ms(max(ours.ms, theirs.ms)):
-            return Parting("time", count, line, ours, theirs)
-    count = len(shown)
-    ends = recorded[-1] if recorded else Recorded(0, "STOPPED")
-    if ends.event == "STOPPED" and len(virtual) > count:
-        theirs = virtual[count]  # the robot has not said that, and had the time for it
-        if theirs.ms + _off_ms(ends.ms) < ends.ms:
-            line = lines[count] if count < len(lines) else 0
-            return Parting("virtual_more", count, line, None, theirs)
-    return Parting("missed" if ends.event == "MISSED" else "same", count)
+def from_rows(rows: Sequence[Sequence[Any]]) -> list[Row]:
+    """Return rows as the page keeps them: `[ms, event]` or `[ms, event, at]`."""
+    return [Row(*row) for row in rows]

@@ -9,11 +9,15 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 from tiniscript.base.fixed_point import ONE
+from tiniscript.base.trace import Event
 from tiniscript.bytecode.image import unpack
+from tiniscript.link.messages import HOLD_MS
+from tiniscript.link.remote import NOTHING, Pressed
 from tiniscript.link.requests import OK
 from tiniscript.studio.checking import profile_of
+from tiniscript.studio.recordings import DOWN, HALT, HELD, UP, Row, Rows
 from tiniscript.virtual.computer import Computer
-from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.score import Score
 from tiniscript.virtual.world import World
 
@@ -23,6 +27,7 @@ FAULT_MS = 500  # for a robot to tell of a fault
 NONCE = 1  # the same program makes the same run
 PART, BREAKPOINT = 1, 2  # marks in a program's code
 MOST_CODE = 1 << 16  # bytes
+SAID_MS = HOLD_MS // 10  # what is held already is said no sooner again
 
 
 class Marks(NamedTuple):
@@ -42,22 +47,28 @@ class Simulation:
     """A robot that stands at the start of a world and has the program.
 
     The program is held in front of its breakpoints, and after a step in front of the next part of
-    its text. Time does not go on while it is held, so it does nothing else than without them.
+    its text. Time does not go on while it is held, so it does nothing else than without them. For
+    the same reason what somebody does waits for the next whole millisecond, and for the robot to
+    have confirmed the program.
     """
 
-    def __init__(self, robot: str, world: World, image: bytes, marks: Marks | None = None) -> None:
+    def __init__(
+        self, robot: str, world: World, image: bytes, marks: Marks | None = None,
+        settings: Settings | None = None,
+    ) -> None:  # fmt: skip
         """Raises WorldRefused where the robot does not fit into the world."""
         profile = profile_of(robot)
-        self.robot = VirtualRobot(profile, world)
+        self.robot = VirtualRobot(profile, world, settings or Settings())
         self._score = Score(world)
         self._computer = Computer(self.robot, NONCE)
+        self._begin_rows()
         self.session = self._computer.session
         self.is_stopped = False
         self.fault_at: int | None = None  # where the last fault was, as the robot has told
         self.marks = marks or Marks(())
         self._mark()
         self._want(is_stepping=self.marks.is_held)
-        upload = self.session.upload(unpack(image), runs=True, saves=True)
+        upload = self._upload = self.session.upload(unpack(image), runs=True, saves=True)
         self._until(lambda: upload.outcome is not None or self.held_at is not None)
         is_taken = upload.outcome is not None and upload.outcome.status == OK
         assert self.held_at is not None or is_taken, "not taken"
@@ -114,13 +125,70 @@ class Simulation:
         bits = BREAKPOINT * bool(self.marks.breakpoints) | PART * bool(is_stepping)
         self.robot.watched.want(bits)
 
+    def _begin_rows(self) -> None:
+        self._rows = Rows()
+        self._taken = 0  # rows that somebody has had
+        self._events: list[Event] = []
+        self._done: list[str] = []  # by somebody, for the next whole millisecond
+        self._pressed, self._said_ms = NOTHING, 0
+        self._is_amid = False  # a millisecond: the program was held
+
     def _go(self, duration_ms: int) -> None:
         for _ in range(duration_ms):
             if self.held_at is not None:
                 break
+            if not self._is_amid and self._upload.outcome is not None:
+                self._let_in()
             self._computer.wait(1)
+            self._is_amid = self.held_at is not None
             self._score.look(self.robot)
         self._take_events()
+
+    def _let_in(self) -> None:
+        """What somebody has done meanwhile reaches the robot now."""
+        done, self._done = self._done, []
+        for each in done:
+            self._do(each)
+            self._note(each)
+
+    def _do(self, done: str) -> None:
+        if done == DOWN:
+            self.robot.press()
+        elif done == UP:
+            self.robot.let_go()
+        else:
+            pressed = Row(0, done).pressed
+            assert pressed is not None, done
+            self.session.press(*pressed)
+
+    def _note(self, event: str) -> None:
+        self._take_rows()
+        self._rows.add(Row(self.robot.now_ms, event))
+
+    def _take_rows(self) -> None:
+        """Keep what the robot has done, as the file of a run has it."""
+        events = self.robot.take_events()
+        self._events += events
+        for event in events:
+            self._rows.add(Row(event.time_ms, event.text, event.at))
+
+    def rows(self) -> list[Row]:
+        """Return the rows of the run since the last time, as its file has them."""
+        self._take_rows()
+        rows = self._rows.rows[self._taken :]
+        self._taken = len(self._rows.rows)
+        return rows
+
+    @property
+    def is_full(self) -> bool:
+        """Whether the file of the run has no room for what comes now."""
+        return self._rows.is_full
+
+    def take_events(self) -> list[Event]:
+        """Return what the robot has done since the last time."""
+        self._take_rows()
+        events, self._events = self._events, []
+        return events
 
     def _take_events(self) -> None:
         for event in self.session.events():
@@ -134,20 +202,25 @@ class Simulation:
         A held program does nothing more.
         """
         self.is_stopped = False
+        self._note(HELD if self._is_amid else HALT)
         self.session.stop(self.robot.now_ms)
         self._until(lambda: self.is_stopped)
 
     def push(self) -> None:
         """Push the start button."""
-        self.robot.press()
+        self._done.append(DOWN)
         self.go(PUSH_MS)
-        self.robot.let_go()
+        self._done.append(UP)
         self.go(1)
 
     def press(self, keys: int, x: int, y: int) -> None:
         """Hold these keys of a remote control and its pad so, until something else is said; who
         says nothing for half a second of the robot's time holds nothing."""
-        self.session.press(keys, x, y)
+        pressed, now_ms = Pressed(keys, x, y), self.robot.now_ms
+        if pressed == self._pressed and (pressed == NOTHING or now_ms - self._said_ms < SAID_MS):
+            return
+        self._pressed, self._said_ms = pressed, now_ms
+        self._done.append(f"KEYS {keys} {x} {y}")
 
     def close(self) -> None:
         self.robot.switch_off()
@@ -179,7 +252,9 @@ class Simulation:
             "variables": [value / ONE for value in robot.watched.variables(self.marks.variables)],
             "readings": [{"value": value / ONE, "text": device.text(value)}
                          for device, value in zip(kit.sensors, readings, strict=True)],
-            "events": [[event.time_ms, event.text, event.at] for event in robot.take_events()],
+            "events": [[event.time_ms, event.text, event.at] for event in self.take_events()],
+            "rows": [row.cells for row in self.rows()],
+            "is_full": self.is_full,
         }  # fmt: skip
 
     def _until(self, is_over: Callable[[], bool]) -> None:
@@ -188,5 +263,6 @@ class Simulation:
             if is_over():
                 return
             self._computer.wait(1)
+            self._is_amid = self.held_at is not None
             self._take_events()
         raise AssertionError("the virtual robot does not answer")

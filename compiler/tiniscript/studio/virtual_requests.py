@@ -10,7 +10,7 @@ from typing import Any
 from tiniscript.robots import decoded
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.refusals import describe
-from tiniscript.studio import checking, recordings
+from tiniscript.studio import checking, playing, recordings
 from tiniscript.studio.simulation import Marks, Simulation
 from tiniscript.studio.world_form import form_of, toml_of
 from tiniscript.virtual import worlds
@@ -21,6 +21,7 @@ from tiniscript.virtual.worlds import read as read_world
 Answer = dict[str, Any]
 
 _simulation: Simulation | None = None  # a page has one robot
+_opened: playing.Ready | None = None  # the recorded run that was opened last
 
 
 def _world(where: Any) -> World:
@@ -34,7 +35,7 @@ def _world(where: Any) -> World:
     if "form" in where:
         return read_world(toml_of(where["form"]), "")
     world: World = _lessons().world(where["lesson"], where["seed"])
-    return world
+    return recordings.kept(world)[0]
 
 
 def _power_on(fields: Answer, data: bytes) -> Answer:
@@ -51,7 +52,11 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
     try:
         marks = Marks(tuple(fields.get("parts", ())), tuple(fields.get("breakpoints", ())),
                       fields.get("variables", 0), fields.get("is_held", False))  # fmt: skip
-        if "until_ms" in where:
+        if fields.get("plays"):
+            assert _opened is not None, "no run was opened"
+            beside = None if _opened.recording.is_virtual else _world(where)
+            _simulation = playing.Played(_opened, beside, marks)
+        elif "until_ms" in where:
             judged = (fields["robot"], where["lesson"], where["seed"], where["until_ms"])
             _simulation = _lessons().JudgedRun(*judged, data, marks)
         else:
@@ -98,21 +103,37 @@ def _write_world(fields: Answer, data: bytes) -> Answer:
     return {"text": text, "is_blocked": Driving(body, world.obstacles(), world.start).is_blocked()}
 
 
-def _replay(fields: Answer, data: bytes) -> Answer:
-    """Compare a recording, `data`, with the same run of the program `text` on a virtual robot."""
+def _open_run(fields: Answer, data: bytes) -> Answer:
+    """Return what the page needs to play the file of a run, `data`, or why it cannot be played."""
+    global _opened
     try:
-        recording = recordings.read(data)
-        parting = recordings.replay(
-            recording, fields["text"].encode(), fields["robot"], _world(fields["world"])
-        )
+        _opened = playing.ready(recordings.read(data))
     except recordings.BadRecording as bad:
         return {"what": bad.reason, "line": bad.line}
-    except WorldRefused as refused:
-        return {"what": "refused", "said": " ".join(describe(refused, fields["language"]))}
-    robot, virtual = (
-        recorded and recorded._asdict() for recorded in (parting.robot, parting.virtual)
+    recording = _opened.recording
+    world: Any = None
+    shapes = None
+    if recording.world is not None:
+        shapes = form_of(recording.world)
+        world = recording.world.name if recording.world.name in worlds.names() else {"form": shapes}
+    return {
+        "of": recording.of, "text": recording.text, "robot": recording.robot, "world": world,
+        "shapes": shapes, "rows": [row.cells for row in recording.rows],
+        "end_ms": recording.end_ms, "is_by_button": recording.is_by_button,
+    }  # fmt: skip
+
+
+def _write_run(fields: Answer, data: bytes) -> Answer:
+    """Return the file of a run that the page has kept."""
+    robot = checking.profile_of(fields["robot"])
+    rows = recordings.from_rows(fields["rows"])
+    world = (
+        recordings.kept(_world(fields["world"]))[1] if fields["of"] == recordings.VIRTUAL else None
     )
-    return {**parting._asdict(), "robot": robot, "virtual": virtual}
+    is_by_button = fields.get("is_by_button", False)
+    first = recordings.head(fields["of"], fields["text"], robot, int(fields["program"], 16),
+                            world=world, is_by_button=is_by_button)  # fmt: skip
+    return {"file": recordings.written(first, rows, fields["end_ms"])}
 
 
 _check_of_lesson: Any = None  # the one that goes on
@@ -145,7 +166,8 @@ ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "push": _driven(lambda robot, fields: robot.push()),
     "open_world": _open_world,
     "write_world": _write_world,
-    "replay": _replay,
+    "open_run": _open_run,
+    "write_run": _write_run,
     "lesson_titles": lambda fields, data: {"lessons": _lessons().titles(fields["language"])},
     "lesson_steps": lambda fields, data: {
         "steps": _lessons().steps(fields["number"], fields["language"]),

@@ -20,13 +20,31 @@ class Computer:
         profile = robot.profile
         self.robot = robot
         self.session = Session(nonce, profile.board.baud, profile.kit.fingerprint, keys=keys)
+        self._until_ms: int | None = None  # of the millisecond in which its program was held
+        self._sent = bytearray()  # by the robot, in that
 
     def wait(self, milliseconds: int) -> None:
-        """Let the robot's time go on."""
+        """Let the robot's time go on.
+
+        A millisecond that a held program has cut goes on where it was, once the program does:
+        the session hears and says as much as if nothing had been held.
+        """
         for _ in range(milliseconds):
-            now_ms = self.robot.now_ms + 1
-            sent = self.robot.step(now_ms, self.session.poll(now_ms))
-            self.session.receive(sent, self.robot.now_ms)
+            watched = self.robot.watched
+            if self._until_ms is not None and watched.held_at is None:
+                now_ms, data = self._until_ms, b""
+            else:
+                self._hear()
+                now_ms = self.robot.now_ms + 1
+                data = self.session.poll(now_ms)
+            self._sent += self.robot.step(now_ms, data)
+            self._until_ms = now_ms if watched.held_at is not None else None
+            if self._until_ms is None:
+                self._hear()
+
+    def _hear(self) -> None:
+        sent, self._sent = bytes(self._sent), bytearray()
+        self.session.receive(sent, self.robot.now_ms)
 
     def until(self, request: PendingRequest[T], limit_ms: int = LIMIT_MS) -> Reply[T]:
         """Let time go on until a request has its outcome."""

@@ -15,6 +15,7 @@ import { pictured, robotPicture } from './page/pictures.js';
 import { pageState } from './page/page_state.js';
 import { bringsProgram } from './programs/links.js';
 import { called, currentLanguage, known, languageOf, LANGUAGES, setLanguage, text } from './page/texts.js';
+import { isRun } from './virtual/runs_window.js';
 import { SimulatorPanel } from './virtual/simulator_panel.js';
 import { Pad } from './remote/pad.js';
 import { Recorder } from './robot/recorder.js';
@@ -84,10 +85,18 @@ pageState.robotName.set(work.robot);
 const editor = new Editor(element('editor', HTMLElement));
 const views = new Views({ python, editor, work, remember });
 const pad = new Pad();
-const driving = new SimulatorPanel({ python, work, whenCompiled: () => checking.whenChecked(), remember, pad });
+const driving = new SimulatorPanel({
+  python, work, remember, pad,
+  whenCompiled: () => checking.whenChecked(),
+  put: ({ text: program, robot }) => {
+    element('side_virtual', HTMLButtonElement).click();
+    if (program !== work.text || robot !== work.robot) programs.replace({ text: program, robot, name: '' });
+    phone.show('robot');
+  },
+});
 const programs = new Programs({ python, work, put: putProgram, picturing: () => views.picture() });
 
-const recorder = new Recorder({ python, world: () => driving.world });
+const recorder = new Recorder({ runs: driving.runs, play: (run) => driving.playAgain(run) });
 const place = new RobotPlace();
 const panel = new RobotPanel({
   recorder,
@@ -238,6 +247,10 @@ words.addEventListener('click', () => pageState.areWordsShown.set(!work.words));
 element('open', HTMLButtonElement).addEventListener('click', () => file.click());
 
 whenChosen('file', async (chosen) => {
+  if (isRun(chosen.name)) {
+    driving.openRun(chosen);
+    return;
+  }
   let answer;
   try {
     const data = await bytesOf(chosen);

@@ -61,6 +61,22 @@ import { watched } from './page/progress.js';
  * @property {number | null} fault_at
  * @property {{value: number, text: string}[]} readings
  * @property {[number, string, number][]} events when and what; of a SHOW also where it is
+ * @property {import('./virtual/runs.js').Row[]} [rows] what the file of its run has of that
+ * @property {boolean} [is_full] the file has no room for more
+ * @property {boolean} [is_over] a recorded run that is played has ended
+ * @property {Parting | null} [parting] where it and the recorded one part
+ */
+
+/**
+ * @typedef {object} Parting
+ * @property {string} what
+ * @property {number} agreed
+ * @property {number} line
+ * @property {{ms: number, event: string} | null} robot
+ * @property {{ms: number, event: string} | null} virtual
+ * @property {string} sensor
+ * @property {number | null} at_ms by the virtual robot's clock
+ * @property {number} began_ms from when on the rows count
  */
 
 /** @typedef {{resolve: (answer: any) => void, reject: (why: Error) => void}} Waiting */

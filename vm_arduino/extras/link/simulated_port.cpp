@@ -199,6 +199,14 @@ void port_release() {
 
 uint16_t port_run_at() { return port.at; }
 
+Answer port_set_breakpoints(const uint8_t* places, uint8_t count) {
+  for (uint8_t k = 0; k < count; k++) say("BREAK %u", places[2 * k] | unsigned{places[2 * k + 1]} << 8);
+  if (count == 0) say("BREAK nowhere");
+  return Answer::kOk;
+}
+
+void port_resume(ResumeHow how) { say("RESUME %u", static_cast<unsigned>(how)); }
+
 uint16_t port_shown_at() { return port.at; }
 const uint8_t* port_run_image() { return bytes_of(port.run_image); }
 

@@ -9,6 +9,19 @@
 
 namespace tiniscript {
 
+#ifdef tiniscript_has_breakpoints
+// Of a robot that halts nothing.
+__attribute__((weak)) Answer port_set_breakpoints(const uint8_t*, uint8_t) {
+  return Answer::kUnknownMessage;
+}
+__attribute__((weak)) void port_forget_breakpoints() {}
+__attribute__((weak)) bool port_is_halted() { return false; }
+__attribute__((weak)) uint8_t port_halted_task() { return 0; }
+__attribute__((weak)) void port_resume(ResumeHow) {}
+__attribute__((weak)) const int32_t* port_variables() { return nullptr; }
+__attribute__((weak)) bool port_report_task(uint8_t, TaskReport*) { return false; }
+#endif
+
 namespace {
 
 constexpr uint8_t kLiveByte = static_cast<uint8_t>(Message::kLive);
@@ -93,12 +106,15 @@ void Link::turn() {
   } else if (console_.is_due() || receiver_->has_text()) {
     talk();
   }
-  if (is_attached_ && dead_man_ms() <= kListenMs - kDeadManMs &&
+  if ((is_attached_ || attends()) && is_dead_man_over() &&
       port_status().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
   }
   if (kHasOwners && left_ms_[kListen] <= kListenMs - kAuthorityMs) expire();
+#ifdef tiniscript_has_breakpoints
+  if (attends() && left_ms_[kHaltedAgain] == 0) halted();
+#endif
 }
 
 void Link::send_due() {
@@ -269,6 +285,35 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
     case Message::kPing:
       said_.detail = length;
       break;
+#ifdef tiniscript_has_breakpoints
+    case Message::kBreak:
+      if (length % 2 != 0) {
+        found = Answer::kBadLength;
+      } else if (port_status().state == State::kRunning ||
+                 (found = lacks_program()) == Answer::kOk) {
+        found = port_set_breakpoints(payload, static_cast<uint8_t>(length / 2));
+        if (found == Answer::kOk) has_breakpoints_ = length != 0;
+      }
+      break;
+    case Message::kResume:
+      if (payload[kResumeHowAt] > static_cast<uint8_t>(ResumeHow::kStep)) {
+        found = Answer::kBadValue;
+      } else {
+        said_.detail = port_is_halted();
+        port_resume(static_cast<ResumeHow>(payload[kResumeHowAt]));
+      }
+      break;
+    case Message::kReadVariables:
+      said_.detail = payload[kReadVariablesFirstAt];
+      if (said_.detail >= kVariables) found = Answer::kBadValue;
+      break;
+#else
+    case Message::kBreak:
+    case Message::kResume:
+    case Message::kReadVariables:
+#endif
+    case Message::kReadTasks:
+    case Message::kHalted:
     case Message::kStatus:
     case Message::kShow:
     case Message::kFault:
@@ -367,7 +412,10 @@ Answer Link::hold(const RemoteKeys& remote_keys) {
 uint8_t Link::hello(const uint8_t* payload) {
   const bool is_new = !is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt);
   left_ms_[kFrameSent] = 0;  // who says it may have heard no frame before
-  if (is_new) renew();
+  if (is_new) {
+    renew();
+    forget_breakpoints();
+  }
   if (is_new || may_seal()) expire();
   if (is_new) forget_answer();
   is_open_ = true;
@@ -383,5 +431,14 @@ void Link::renew() {
   epoch_++;
   image_ = nullptr;
 }
+
+#ifdef tiniscript_has_breakpoints
+// Of a session that is over: what is halted for it ends.
+void Link::forget_breakpoints() {
+  if (attends()) port_end();
+  if (has_breakpoints_) port_forget_breakpoints();
+  has_breakpoints_ = attends_ = false;
+}
+#endif
 
 }  // namespace tiniscript

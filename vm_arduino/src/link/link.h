@@ -73,6 +73,11 @@ class Link {
   void done();
   void faulted();  // port_status() has the record
   void stopped(Cause cause);
+#ifdef tiniscript_has_breakpoints
+  void halted();
+  // Whether a program may halt: somebody is there who lets it go on.
+  bool may_halt() const { return is_listened_to() && !is_dead_man_over(); }
+#endif
   bool show(int32_t value, bool is_yes_no);
 
   // The button starts the program that the robot holds: cancels a program in transfer, which must
@@ -137,6 +142,7 @@ class Link {
 
   // Nobody is connected any more: whoever comes next begins a session.
   void forget_client() {
+    forget_breakpoints();
     is_open_ = false;
     due_ = 0;
     left_ = 0;
@@ -163,13 +169,18 @@ class Link {
   static constexpr uint8_t kDueReply = 2;
   static constexpr uint8_t kDueFault = 4;
   static constexpr uint8_t kDueDone = 8;
-  static constexpr uint8_t kDueText = 16;
+  static constexpr uint8_t kDueHalted = 16;
+  static constexpr uint8_t kDueText = kHasBreakpoints ? 32 : 16;
 
   // Times that run down to 0: until a client without frames no longer counts as listening, until
   // STOPPED is sent again, until a second of silence has passed, until text may follow the last
-  // frame, until the remote control says nothing any more; and, as `kListen`, since a sealed frame.
-  enum Time : uint8_t { kListen, kAgain, kSilence, kFrameSent, kHold, kSealHeard };
-  static constexpr uint8_t kTimes = kMaySeal ? kSealHeard + 1 : kHasRemote ? kSealHeard : kHold;
+  // frame, until the remote control says nothing any more, until HALTED is sent again; and, as
+  // `kListen`, since a sealed frame.
+  enum Time : uint8_t { kListen, kAgain, kSilence, kFrameSent, kHold, kHaltedAgain, kSealHeard };
+  static constexpr uint8_t kTimes = kMaySeal          ? kSealHeard + 1
+                                    : kHasBreakpoints ? kSealHeard
+                                    : kHasRemote      ? kHaltedAgain
+                                                      : kHold;
 
   // Rights of the session, one bit each: it has a challenge, it has asked for a claim, the button
   // has confirmed that. And the robot was stopped with the teacher's key.
@@ -305,6 +316,16 @@ class Link {
   void note_end(uint8_t due);
   void confirm(Cause cause);
   void send();
+  bool is_dead_man_over() const { return dead_man_ms() <= kListenMs - kDeadManMs; }
+#ifdef tiniscript_has_breakpoints
+  bool attends() const { return attends_ && port_is_halted(); }
+  void forget_breakpoints();
+  void tell_tasks();
+  void tell_variables();
+#else
+  static constexpr bool attends() { return false; }
+  static void forget_breakpoints() {}
+#endif
   void reply();
   void describe();
   void fetch();
@@ -365,6 +386,10 @@ class Link {
 #endif
 #ifdef tiniscript_transports
   bool has_halted_;
+#endif
+#ifdef tiniscript_has_breakpoints
+  bool has_breakpoints_;  // of this session
+  bool attends_;          // it was told of the last halt: that ends with it
 #endif
 #ifdef tiniscript_has_remote
   RemoteKeys remote_;  // what the remote control has said last

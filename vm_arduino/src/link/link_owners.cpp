@@ -51,7 +51,8 @@ bool Link::may(bool has_right) const { return has_right && (!has_seal() || is_se
 tini_noinline void Link::expire() {
   Identity& its = port_identity();
   its.features &= static_cast<uint8_t>(~kYours);
-  its.more_features = kHasSeals ? its.more_features & (kMoreSeals | kMoreWifiRests) : 0;
+  constexpr uint8_t kStays = kMoreBreakpoints | (kHasSeals ? kMoreSeals | kMoreWifiRests : 0);
+  its.more_features = kStays != 0 ? its.more_features & kStays : 0;
   drop_seal();
   rights_ &= kHeldBack;
   is_ready_ = false;  // what was made ahead was made with that authority

@@ -166,16 +166,32 @@ const RemoteKeys* Links::remote() const {
   return found->remote();
 }
 
-bool Links::show(int32_t value, bool is_yes_no) {
+// The place of who drives; if nobody does, of the first that takes values; or kNobody.
+uint8_t Links::listener() const {
   uint8_t place = driver_;
   for (uint8_t each = 0; place == kNobody && each < kTransports; each++) {
     if (links_[each].takes_values()) place = each;
   }
+  return place;
+}
+
+bool Links::show(int32_t value, bool is_yes_no) {
+  const uint8_t place = listener();
   if (place == kNobody) return true;
   enter(place);
   const bool is_taken = links_[place].show(value, is_yes_no);
   leave();
   return is_taken;
+}
+
+bool Links::may_halt() const {
+  const uint8_t place = listener();
+  return place != kNobody && links_[place].may_halt();
+}
+
+void Links::halted() {
+  const uint8_t place = listener();
+  if (place != kNobody) links_[place].halted();
 }
 
 bool Links::part(Transport transport) {

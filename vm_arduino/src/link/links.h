@@ -32,6 +32,8 @@ class Links {
   void done();
   void faulted();
   void stopped(Cause cause);
+  void halted();
+  bool may_halt() const;
   void drop();
   bool is_attached() const;
   void expire();
@@ -79,6 +81,7 @@ class Links {
   static uint8_t place_of(Transport transport) { return static_cast<uint8_t>(transport); }
   bool is_driven() const;
   bool keeps_wheel() const;
+  uint8_t listener() const;
   void drive();
   void enter(uint8_t place);
   void leave();

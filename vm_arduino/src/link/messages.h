@@ -7,6 +7,7 @@
 
 #include <stdint.h>
 
+#include "../vm/build.h"
 #include "../vm/cpu.h"
 
 // clang-format off
@@ -14,7 +15,7 @@
 namespace tiniscript {
 
 constexpr uint8_t kLinkMajor = 2;
-constexpr uint8_t kLinkMinor = 1;
+constexpr uint8_t kLinkMinor = 2;
 constexpr uint8_t kSmallFrame = 63;
 constexpr uint8_t kLargeFrame = 250;
 constexpr uint8_t kLargeWindow = 4;
@@ -50,6 +51,7 @@ constexpr uint8_t kBrokerNameBytes = 96;
 constexpr uint16_t kTrustBytes = 2048;
 constexpr uint8_t kMostPad = 100;
 constexpr uint16_t kHoldMs = 500;
+constexpr uint8_t kMostBreakpoints = 4;
 
 // How a program starts, in one byte.
 constexpr uint8_t kStartBits = 3;
@@ -73,6 +75,7 @@ constexpr uint8_t kYours = 128;
 constexpr uint16_t kByTeacher = 256;
 constexpr uint16_t kSeals = 512;
 constexpr uint16_t kWifiRests = 1024;
+constexpr uint16_t kBreakpoints = 2048;
 
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
@@ -97,15 +100,24 @@ enum class Message : uint8_t {
   kBegin = 22,  // Begins a longer program: what its image's header says before its checksum.
   kAbort = 23,  // Drops the program that was begun.
   kKeys = 24,  // What a remote control says now: a bit for each key that is held, and its pad. Also a heartbeat.
+  kBreak = 25,  // All places where what runs halts, or else the program that the robot holds: offsets of 16 bits.
+  kResume = 26,  // Lets a program that is halted go on: `how` of RESUMES.
+  kReadVariables = 27,  // What runs has these values, from the variable `first` on: 32 bits each.
+  kReadTasks = 28,  // The tasks of what runs, and which of them is where.
   kShow = 32,  // A value that a program shows. `place`: its run, and where its SHOW is.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped: it has a new epoch. Repeated: it is still stopped.
   kDone = 35,  // The program has ended.
+  kHalted = 37,  // The program is halted before a statement. Repeated: it still is.
 };
 
 // Requests are the numbers from 1 up to this one; from kFirstActing on they act.
 constexpr uint8_t kFirstActing = 6;
+#ifdef tiniscript_has_breakpoints
+constexpr uint8_t kLastRequest = 28;
+#else
 constexpr uint8_t kLastRequest = 24;
+#endif
 
 // How long the payload of each request may be, from the first one on: least and most.
 // What this robot does not know has kUnknownRequest as its least.
@@ -148,6 +160,9 @@ constexpr uint8_t kBeginCodeLengthAt = 7;
 constexpr uint8_t kKeysKeysAt = 0;
 constexpr uint8_t kKeysXAt = 1;
 constexpr uint8_t kKeysYAt = 2;
+constexpr uint8_t kBreakPlacesAt = 0;
+constexpr uint8_t kResumeHowAt = 0;
+constexpr uint8_t kReadVariablesFirstAt = 0;
 
 // What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.
 enum class Answer : uint8_t {
@@ -178,6 +193,7 @@ enum class Answer : uint8_t {
   kUnowned = 92,  // The robot has no owner, and over WiFi only one with an owner drives.
   kUnreadable = 93,  // The robot cannot read its memory, so it does not know whose it is: nobody drives it.
   kNoRemote = 94,  // The robot's firmware has no remote control: no KEY_UP, no PAD_X.
+  kNoBreakpoints = 95,  // The robot's firmware cannot halt a program at a breakpoint.
 };
 
 enum class State : uint8_t {
@@ -259,6 +275,19 @@ enum class WifiState : uint8_t {
   kExpired = 6,  // The broker's certificate had expired before the robot got it.
   kNoTls = 7,  // The broker and the robot agree on no TLS, or the robot has no memory left for it.
   kRests = 8,  // Off: three times in a row the robot has restarted soon after WiFi began. JOIN, HOST and FORGET end that.
+};
+
+enum class ResumeHow : uint8_t {
+  kGo = 0,  // To the next place.
+  kStep = 1,  // To the next statement of the same task, or to a place of another one if that comes first.
+};
+
+enum class TaskState : uint8_t {
+  kEnded = 0,  // It has ended, or there is none.
+  kReady = 1,  // It is its turn, or it waits for a reading, or to send a value.
+  kWaiting = 2,  // It waits for its clock, and for the check of an UNTIL or a WHEN.
+  kDriving = 3,  // Its move has the motors.
+  kBlocked = 4,  // Its move waits for the motors.
 };
 
 // Faults that no instruction makes. The others are `Fault`.

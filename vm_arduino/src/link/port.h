@@ -83,6 +83,7 @@ constexpr uint8_t kFeaturesBytes = 2;  // of an Identity, from `features` on
 constexpr uint8_t kMoreByTeacher = kByTeacher >> 8;
 constexpr uint8_t kMoreSeals = kSeals >> 8;
 constexpr uint8_t kMoreWifiRests = kWifiRests >> 8;
+constexpr uint8_t kMoreBreakpoints = kHasBreakpoints ? kBreakpoints >> 8 : 0;
 
 // The robot's name.
 struct DeviceInfo {
@@ -172,6 +173,36 @@ uint16_t port_run_at();
 // Where the SHOW is whose value is shown now. Only while something is.
 uint16_t port_shown_at();
 const uint8_t* port_run_image();
+
+#ifdef tiniscript_has_breakpoints
+// Where no build defines these, nothing halts.
+
+// A task, as READ_TASKS sends it: how long until its clock is reached, or 0.
+struct tini_packed TaskReport {
+  TaskState state;
+  uint16_t at;
+  uint32_t left_ms;
+};
+
+// Sets the places where what runs halts, or else the program that the robot holds: offsets of 16 bits.
+// kBadValue: no statement begins at one of them, and nothing has changed; kBusy: the link reports this,
+// and the client tries again.
+Answer port_set_breakpoints(const uint8_t* places, uint8_t count);
+void port_forget_breakpoints();
+
+// Whether the program that runs is halted, and the task that is; its place is `port_run_at`.
+bool port_is_halted();
+uint8_t port_halted_task();
+
+// Lets it go on.
+void port_resume(ResumeHow how);
+
+// The values of what runs, or nullptr; only while something runs.
+const int32_t* port_variables();
+
+// Reports a task of what runs, from 0 on. False: there are no more.
+bool port_report_task(uint8_t task, TaskReport* report);
+#endif
 
 // The length of the image that the robot holds.
 uint16_t port_image_length();

@@ -52,6 +52,12 @@
 #define tiniscript_reads_keys
 #endif
 
+// Places where a program halts, so that a computer follows it step by step: an ATmega328P has no room;
+// tiniscript_without_breakpoints is for tests.
+#if !defined(__AVR_ATmega328P__) && !defined(tiniscript_without_breakpoints)
+#define tiniscript_has_breakpoints
+#endif
+
 // An ATmega328P reads a program where the one is that it holds; tiniscript_no_draft is for tests of
 // that. Others have room for both.
 #if (!defined(__AVR__) || defined(__AVR_ATmega2560__)) && !defined(tiniscript_no_draft)
@@ -129,6 +135,12 @@ constexpr bool kReadsDefs = false;
 constexpr bool kHasRemote = true;
 #else
 constexpr bool kHasRemote = false;
+#endif
+
+#ifdef tiniscript_has_breakpoints
+constexpr bool kHasBreakpoints = true;
+#else
+constexpr bool kHasBreakpoints = false;
 #endif
 
 #ifdef tiniscript_has_draft

@@ -68,6 +68,7 @@ Status Machine::tick(uint32_t now_ms, uint8_t budget) {
     return Status::kWaiting;
   }
   if (fault_ != Fault::kNone) {
+    if (is_trapped()) return status_ = Status::kHalted;
     robot_off();
     status_ = Status::kFault;
   }

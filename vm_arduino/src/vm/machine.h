@@ -51,6 +51,22 @@ class Machine : public Scheduler {
   // The begin of the instruction that runs or has faulted.
   uint16_t at() const { return at_; }
 
+  // For breakpoints: `halt.cpp`, where kHasBreakpoints.
+
+  // After kHalted: goes on with the instruction there, in whose place the kTrap no longer is. An
+  // instruction of the text begins there, so the stack is empty.
+  void resume();
+
+  // Whose turn it is, as the number of its record; not between two rounds.
+  uint8_t turn() const;
+
+  // Where a task goes on. Where the innermost open call of the one whose turn it is goes on.
+  uint16_t place_of(uint8_t task) const;
+  uint16_t return_place() const;
+
+  // Sets the motors again as the program has them, to what is left of a way.
+  void set_motors_again();
+
   // Where the SHOW is whose value `robot_show` gets, also if it gets it again: it is a byte, and a
   // task goes on after it.
   uint16_t shown_at() const { return static_cast<uint16_t>(task_.pc - 1); }
@@ -70,6 +86,11 @@ class Machine : public Scheduler {
   // Passes the time. Returns whether the program may run: a wait is over, or it has none.
   bool wake(uint32_t now_ms);
   bool is_due() const;
+
+  // Whether it has faulted at a kTrap.
+  bool is_trapped() const {
+    return kHasBreakpoints && fault_ == Fault::kBadCode && at_ < length_ && code_[at_] == kTrap;
+  }
 
   // Whether a way that the robot measures has failed before an instruction runs.
   bool is_stuck() const { return kHasDiscs && fault_ != Fault::kNone; }

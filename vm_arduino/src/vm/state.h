@@ -22,7 +22,12 @@ enum class Status : uint8_t {
   kWaiting,  // nothing to do before the machine's `wake_ms`
   kDone,
   kFault,
+  kHalted,  // in front of a kTrap, until `Machine::resume`
 };
+
+// In the place of an instruction's first byte: nothing of that instruction has happened. No
+// instruction has this code.
+constexpr uint8_t kTrap = 0xfe;
 
 // Powers of both wheels in percent, the left one in the low byte.
 using Powers = uint16_t;

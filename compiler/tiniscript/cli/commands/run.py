@@ -1,4 +1,4 @@
-"""`tsc run`: prints the trace of a simulated robot, or compares a robot with the virtual one."""
+"""`tsc run`: prints the trace of a simulated robot, or plays a recorded run again."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError, not_installed
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.options import sensor_lists, thousandths, whole_number
+from tiniscript.cli.paths import is_recording
 from tiniscript.cli.texts import say_aside
 from tiniscript.library.runs import begun, cpp_machine
 from tiniscript.robots.profile import Robot
@@ -22,18 +23,22 @@ LONGEST = 10**12  # milliseconds
 
 
 def run(options: Namespace, language: str) -> int:
-    if options.replay is not None:
-        from tiniscript.cli.robot.replay import replay
+    given = inputs.program(options)
+    if is_recording(given.data):
+        from tiniscript.cli.robot.recorded_run import play
 
-        return replay(options, language)
+        return play(given, options, language)
+    if options.record is not None:
+        from tiniscript.cli.robot.recorded_run import record
+
+        return record(given, options, language)
+    if options.world is not None:
+        raise CommandError(2, "world_alone")
     max_ms = thousandths("--max-time", options.max_time, 60_000, 0, LONGEST, language)
     pace = thousandths("--pace", options.pace, 1000, 0, 10**9, language)
     max_steps = whole_number("--max-steps", options.max_steps, MAX_STEPS, 0, 10**15, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
-    given = inputs.program(options)
     robot = inputs.robot_for(given, options, language)
-    if options.world is not None:
-        raise CommandError(2, "world_without_replay")
     lists = sensor_lists(options.sensor, robot, language)
     ready = images.ready(given, robot, language)
     if ready is None:

@@ -22,7 +22,6 @@ from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 
 PORT = 7070
-TURN_MINUTES = 3
 ELSEWHERE = "198.51.100.1"  # an address of documents, which nobody has
 
 
@@ -33,14 +32,14 @@ class _Class(NamedTuple):
 
 def run(options: Namespace, language: str) -> int:
     port = whole_number("--listen", options.listen, PORT, 0, 65535, language)
-    minutes = whole_number("--turn", options.turn, TURN_MINUTES, 1, 60, language)
+    minutes = whole_number("--turn", options.turn, 0, 1, 60, language)
     hosting = Hosting()
     if not options.is_class:
         if options.address or options.ports or options.turn:
             raise CommandError(2, "studio_needs_class")
         return _serve(options, language, (serving.HOST, port), hosting)
     host = _given(options.address) if options.address else _address()
-    room = Classroom(hosting, list(map(inputs.port, options.ports)), 60 * minutes)
+    room = Classroom(hosting, list(map(inputs.port, options.ports)), 60 * minutes or None)
     with closing(_keeper()) as keeper:
         return _serve(options, language, (host, port), hosting, _Class(room, keeper))
 

@@ -7,7 +7,6 @@ import sys
 from argparse import Namespace
 from time import monotonic
 
-from tiniscript.bytecode.image import pack
 from tiniscript.cli import images, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit
@@ -24,7 +23,6 @@ from tiniscript.cli.robot.program_upload import (
 )
 from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
 from tiniscript.cli.terminal.progress import Progress
-from tiniscript.library import source_map
 from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.robots.profile import Robot
@@ -42,8 +40,14 @@ def run(options: Namespace, language: str) -> int:
     is_followed = ready.image.start == "SI" and not (options.no_run or options.detach)
     if options.record is not None and (is_many or not is_followed):
         raise CommandError(2, "record_follows")
+    if options.record is not None:
+        from tiniscript.cli.robot.recorded_run import known_robot, source_text
+
+        known_robot(robot)
+        options.recorded_text = source_text(given)
+    if options.breaks and (is_many or not is_followed):
+        raise CommandError(2, "break_follows")
     if is_many:
-        _keep_map(ready)
         from tiniscript.cli.robot.fleet_upload import upload_to_many
 
         return upload_to_many(options, robot, language, ready, inputs.shown(given.name))
@@ -106,11 +110,13 @@ def _upload(
     recorder = None
     if options.record is not None:
         from tiniscript.cli.robot.recorder import Recorder
+        from tiniscript.studio import recordings
 
-        robot = connection.profile.name
         own = connection.simulator
         robot_ms = None if own is None else own.told_ms
-        recorder = Recorder(options.record, values.program, robot, began_s, robot_ms)
+        text, robot = options.recorded_text, connection.profile
+        head = recordings.head(recordings.REAL, text, robot, values.program)
+        recorder = Recorder(options.record, head, began_s, robot_ms)
         printer.rows = recorder.add
     saving = Saving(connection, printer, values)
     try:
@@ -119,7 +125,7 @@ def _upload(
         else:
             print(_receipt_line(connection, ready, name, values, options), flush=True)
         connection.quiet.note_words()
-        _keep_map(ready)  # only now, so that the robot starts earlier
+        images.keep_map(ready)  # only now, so that the robot starts earlier
         return follow_run(connection, ready, saving, options, printer)
     except KeyboardInterrupt:
         code = stop_and_say(connection)
@@ -141,15 +147,6 @@ def _upload(
     finally:
         if recorder is not None:
             recorder.close()
-
-
-def _keep_map(ready: images.Ready) -> None:
-    """Save the source map for other commands."""
-    if ready.places is not None:
-        image = ready.image
-        source_map.remember(
-            pack(image.start, image.devices, image.code, needs=image.needs), ready.places
-        )
 
 
 def _receipt_line(

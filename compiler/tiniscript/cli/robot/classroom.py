@@ -8,9 +8,7 @@ from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from tiniscript.cli import inputs
-from tiniscript.cli.commands import stop as stop_verb
-from tiniscript.cli.commands import upload as upload_verb
+from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
@@ -20,10 +18,13 @@ from tiniscript.cli.robot.connect import Connection, opening_port
 from tiniscript.cli.robot.description import in_a_line
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.fleet_upload import upload_to_many
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.recorder import Rows
+from tiniscript.cli.robot.stopping import stop_one
 from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts import say, say_aside, text
+from tiniscript.cli.texts.options import of_verb
 from tiniscript.link.errors import NOT_INSTALLED, PortError
 from tiniscript.link.port_connection import now_ms
 
@@ -31,10 +32,7 @@ if TYPE_CHECKING:
     from tiniscript.link.transports.broker import Access, Broker, Present
 
 STOPS = 3  # messages to all, as each may be lost
-WITHOUT: dict[str, object] = {  # what the fleet and its verbs ask of options that this verb has not
-    "ports": [], "port": None, "all": False, "baud": None, "virtual": False, "plot": None,
-    "record": None,
-}  # fmt: skip
+UPLOAD = "upload"  # the verb that asks most of a fleet's options
 
 
 class Classroom:
@@ -88,9 +86,10 @@ class Classroom:
         from tiniscript.link.transports.broker import port_of
 
         ports = [port_of(*self.place, self.group, each.id) for each in found if each.is_here]
-        own = Namespace(**{**WITHOUT, **vars(self.options)})
+        of_fleet = {option.name: option.unset for option in of_verb(UPLOAD)}
+        own = Namespace(**{**of_fleet, "port": None, **vars(self.options)})
         own.ports, own.verb = ports, verb
-        if verb == "upload":
+        if verb == UPLOAD:
             own.attend = self.broker.attend
         return own
 
@@ -106,7 +105,14 @@ def list_robots(room: Classroom) -> int:
 
 
 def upload(room: Classroom) -> int:
-    return upload_verb.run(room.targets(room.present(), "upload"), room.language)
+    """Send a program to all at once, and follow it until it ends on each."""
+    own = room.targets(room.present(), UPLOAD)
+    given = inputs.program(own)
+    robot = inputs.robot_for(given, own, room.language)
+    ready = images.ready(given, robot, room.language, is_strict=True)
+    if ready is None:
+        return 1
+    return upload_to_many(own, robot, room.language, ready, shown(given.name))
 
 
 def stop(room: Classroom) -> int:
@@ -121,7 +127,8 @@ def stop(room: Classroom) -> int:
         if is_published:
             say_aside("class_stop_sent", room.language, group=shown(room.group))
         raise
-    return stop_verb.run(room.targets(found, "stop"), room.language)
+    own = room.targets(found, "stop")
+    return together(own, inputs.robot(own, room.language), room.language, stop_one)
 
 
 def show(room: Classroom) -> int:

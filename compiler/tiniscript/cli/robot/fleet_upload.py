@@ -7,6 +7,7 @@ import sys
 from argparse import Namespace
 from functools import partial
 
+from tiniscript.cli import images
 from tiniscript.cli.images import Ready
 from tiniscript.cli.robot import program_upload
 from tiniscript.cli.robot.connect import Connection
@@ -23,7 +24,8 @@ from tiniscript.robots.profile import Robot
 def upload_to_many(
     options: Namespace, robot: Robot, language: str, ready: Ready, name: str
 ) -> int:  # fmt: skip
-    """Send a program to many robots; return the exit code."""
+    """Send a program to many robots, keep its source map; return the exit code."""
+    images.keep_map(ready)
     is_ping = ready.image.start == "PING"  # a program that asks who is there
     work = measured if is_ping else partial(_upload, options, ready, name)
     return together(options, robot, language, work)

@@ -31,11 +31,19 @@ def send_program(
 ) -> ReceiptReply:
     """Send a program to the robot; return its receipt. `draw` gets the number of code bytes that
     have arrived. Raises CommandError."""
-    reply = connection.send_program(
-        ready.image, not options.no_run, not options.no_save, options.detach, draw
-    )
+    places: tuple[int, ...] = ()
+    if options.breaks:
+        from tiniscript.cli.robot import debugger
+
+        places = debugger.places_of(options.breaks, ready, connection.language)
+        debugger.require(connection)
+    runs = not options.no_run and not places
+    reply = connection.send_program(ready.image, runs, not options.no_save, options.detach, draw)
     if reply.status:
         raise _failure(connection, reply, ready)
+    if places:  # it starts with them
+        connection.ask(lambda session: session.break_at(places))
+        return connection.ask(lambda session: session.start()).values
     return reply.values
 
 
@@ -53,11 +61,29 @@ def follow_run(
             return 0
         if connection.simulator is not None:
             connection.simulator.watch()
-        code = RunMonitor(connection, printer, look=saving.look).follow(saving.run)
+        if options.breaks:
+            code = _follow_halts(connection, ready, saving, printer)
+        else:
+            code = RunMonitor(connection, printer, look=saving.look).follow(saving.run)
     elif has_button(connection, ready, options):
         code = follow_button(connection, printer, saving)
     saving.wait()
     return code
+
+
+def _follow_halts(
+    connection: Connection, ready: images.Ready, saving: Saving, printer: EventPrinter
+) -> int:
+    """The same for a program with breakpoints."""
+    from tiniscript.cli.robot.debugger import Debugger
+
+    with Debugger(connection, printer, ready) as debugger:
+
+        def look() -> None:
+            saving.look()
+            debugger.look()
+
+        return RunMonitor(connection, printer, debugger.hold, look).follow(saving.run)
 
 
 def is_running(ready: images.Ready, options: Namespace) -> bool:

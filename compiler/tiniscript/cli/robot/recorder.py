@@ -1,13 +1,12 @@
 """Writes what a robot tells of a run into a file: `tsc upload --record`, and rows of CSV.
 
-The form of a recording is that of `studio/recordings.py`, which reads it. Each line is flushed
+The file of a run has the form of `studio/recordings.py`, which reads it. Each line is flushed
 before the next one comes.
 """
 
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -17,7 +16,8 @@ from time import monotonic
 from tiniscript.base import files
 from tiniscript.cli.errors import CommandError, unwritable
 from tiniscript.cli.inputs import shown
-from tiniscript.studio.recordings import MOST_MS, VERSION
+from tiniscript.studio import recordings
+from tiniscript.studio.recordings import END, MOST_MS, Row
 
 
 class Rows:
@@ -67,32 +67,29 @@ class Rows:
         return unwritable(self._how, shown(self._name), why)
 
 
-MOST = 10_000  # events; then it is over
 ENDS = ("DONE", "FAULT", "STOPPED", "MISSED")
 
 
 class Recorder:
-    """The recording of a run that began at `began_s` (monotonic); None: at its first event.
+    """The file of a run that began at `began_s` (monotonic); None: at its first event.
 
-    A virtual robot has a clock of its own: `robot_ms` says when it did an event, since the run
-    began. Until there is an event, the old file stays. Raises CommandError where it cannot be
-    written.
+    `head` is the first line. A virtual robot has a clock of its own: `robot_ms` says when it did an
+    event, since the run began. Until there is an event, the old file stays. Raises CommandError
+    where it cannot be written.
     """
 
     def __init__(
         self,
         name: str,
-        program: int,
-        robot: str,
+        head: str,
         began_s: float | None,
         robot_ms: Callable[[str], int] | None = None,
     ) -> None:
-        head = {"tiniscript_recording": VERSION, "program": f"{program:08x}", "robot": robot}
         self._began_s = began_s
         self._robot_ms = robot_ms
-        self._count = 0
+        self._kept = recordings.Rows()
         self._is_over = False
-        self._rows = Rows(name, (json.dumps(head) + "\n").encode(), "unwritable_more --record")
+        self._rows = Rows(name, head.encode(), "unwritable_more --record")
 
     def add(self, _: int, name: str, what: str, __: str = "") -> None:
         """Add an event as `EventPrinter` tells it, at the time at which it came here."""
@@ -101,19 +98,20 @@ class Recorder:
         event = f"{name} {what}" if name in ("SHOW", "FAULT") else name
         if self._began_s is None:
             self._began_s = monotonic()
-        ms = self._ms(event)
-        self._count += 1
-        if ms > MOST_MS or self._count >= MOST:
-            self._end(ms, "STOPPED")
-        elif name in ENDS:
-            self._end(ms, event)
-        else:
-            self._put(ms, event)
+        row = Row(self._ms(event), event)
+        is_kept = self._kept.add(row)
+        if is_kept:
+            self._rows.line(recordings.line(row))
+        if not is_kept or name in ENDS:
+            self._end(row.ms)
 
     def end(self, event: str) -> None:
         """The recording is over now, if it was not: `event` is the last one."""
         if not self._is_over:
-            self._end(self._ms(event), event)
+            row = Row(self._ms(event), event)
+            if self._kept.add(row):
+                self._rows.line(recordings.line(row))
+            self._end(row.ms)
 
     def close(self) -> None:
         """Close the file; a run whose end nobody has told was stopped by this computer."""
@@ -127,9 +125,6 @@ class Recorder:
             return self._robot_ms(event)
         return 0 if self._began_s is None else round((monotonic() - self._began_s) * 1000)
 
-    def _end(self, ms: int, event: str) -> None:
+    def _end(self, ms: int) -> None:
         self._is_over = True
-        self._put(min(ms, MOST_MS), event)
-
-    def _put(self, ms: int, event: str) -> None:
-        self._rows.line(json.dumps({"ms": ms, "event": event}))
+        self._rows.line(recordings.line(Row(min(ms, MOST_MS), END)))

@@ -53,6 +53,11 @@ class Option(NamedTuple):
         """Its name in the code."""
         return self.dest or self.flags.split()[-1].lstrip("-").replace("-", "_")
 
+    @property
+    def unset(self) -> object:
+        """Its value where nobody has given it."""
+        return [] if self.repeats else False if self.kind is None else None
+
     def help(self, language: str) -> str:
         """Return what it does."""
         return said(f"option/{self.flags}/{self.verbs.split()[0]}", language)
@@ -75,7 +80,6 @@ PICTURE = Kind("file", writes="unwritable_at --plot")
 REPORT = Kind("file", writes="unwritable_at --report")
 ROWS = Kind("file", writes="unwritable_more --csv")
 RECORDING = Kind("file", writes="unwritable_more --record")
-OLD_RECORDING = Kind("file", reads="path_recording")
 KEYS = Kind("file", reads="path_keys")
 NEW_KEYS = Kind("file", writes="unwritable_more --export")
 MEMORY = Kind("file", reads="path_memory", writes="unwritable_at --memory")
@@ -177,7 +181,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--show", "run"),
     Option("--pace", "run", NUMBER, N),
     Option("--machine", "run", MACHINE, "python|cpp"),
-    Option("--replay", "run", OLD_RECORDING, A_FILE),
+    Option("--record", "run", RECORDING, A_FILE),
     Option("--world", "run", WORLD, A_ROBOT),
     # another machine or robot
     Option("--machine", "conform", TEXT, "COMMAND"),
@@ -207,6 +211,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--no-save", "upload class"),
     Option("--detach", "upload start class"),
     Option("--record", "upload", RECORDING, A_FILE),
+    Option("--break", "upload", NUMBER, N, "breaks", repeats=True),
     Option("--verbose", "upload class"),
     Option("--ask", "ports"),
     Option("--count", "doctor", NUMBER, N),

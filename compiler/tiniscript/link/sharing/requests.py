@@ -6,6 +6,7 @@ The server checks every field of a message before it reaches the session.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from struct import iter_unpack
 from typing import Any, TypeVar
 
 from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
@@ -14,6 +15,7 @@ from tiniscript.link.messages import (
     BY_NAME,
     KEYS,
     LEAST_PASSWORD,
+    MOST_BREAKPOINTS,
     NETWORK_BYTES,
     PACE_BYTES,
     PASSWORD_BYTES,
@@ -129,6 +131,13 @@ def _pressed(message: JsonMessage) -> tuple[object, ...]:
     return pressed
 
 
+def _places(message: JsonMessage) -> tuple[int, ...]:
+    data = _bytes(message, "places", 0, 2 * MOST_BREAKPOINTS)
+    if len(data) % 2:
+        raise BadMessage
+    return tuple(place for (place,) in iter_unpack("<H", data))
+
+
 def _trim(message: JsonMessage) -> bytes:
     trim = protocol.data(message, "trim")
     if len(trim) not in (0, TRIM_BYTES, TRIM_BYTES + PACE_BYTES):
@@ -198,6 +207,7 @@ _GIVEN: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
     ),
     "press": _pressed,
     "trim": lambda message: (_trim(message),),
+    "break_at": lambda message: (_places(message),),
     "claim": lambda message: (_below(message, "which", len(KEYS)),),
     "disown": lambda message: (_below(message, "which", len(KEYS)),),
     "allow_text": lambda message: (protocol.field(message, "is_allowed", bool),),

@@ -200,14 +200,17 @@ def of_beep(beep: Beep, around: Around, look: Look) -> None:
     if time is None or hertz is None or time < LONG_BEEP:
         return
     # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
+    rival = f"BEEP({as_text(time // 1000)}, {as_text(hertz)})"
     fix = f"BEEP({as_text(hertz // 1000)}, {as_text(time)})"
     sound = ""
     if time % (100 * SECOND) == 0:  # a round time, and no note's hertz
-        fix = f"BEEP({as_text(time // 1000)}, {as_text(hertz)})"
-        fix = fix if hertz % 100_000 else ""
+        fix, rival = rival if hertz % 100_000 else "", ""
     elif hertz <= LOW_HERTZ:  # `BEEP(440, 80)`: how long it lasts is not said
-        fix, sound = "", f"BEEP(seconds, {as_text(time)})"
-    look.report(codes.LONG_TIME, beep.span, time=as_text(time), fix=fix, sound=sound)
+        fix, rival, sound = "", "", f"BEEP(seconds, {as_text(time)})"
+    elif time % (50 * SECOND) == 0 and hertz % 50_000:  # `BEEP(250, 440)`
+        fix, rival = rival, fix
+    gaps = {"fix": fix, "sound": sound} | ({"rival": rival} if rival else {})
+    look.report(codes.LONG_TIME, beep.span, time=as_text(time), **gaps)
 
 
 def swapped_rounds(look: Look) -> None:

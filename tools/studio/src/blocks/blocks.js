@@ -3,7 +3,7 @@
 // The text is what is kept: a change of the blocks is told to the page, which asks for their text.
 
 import * as Blockly from 'blockly/core';
-import { clear, drawForm, formOf, keepPlaces, showForm } from './form.js';
+import { clear, drawForm, formOf, isLoose, keepPlaces, knownPlaces, makeRoom, showForm } from './form.js';
 import { follow, labelCalls } from './own_words.js';
 import { setActuators } from './places.js';
 import { Checker, defineBlocks, setRobot } from './shapes.js';
@@ -147,10 +147,11 @@ export class Blocks {
     const { form } = formOf(this.#workspace);
     const places = this.#places.map(([, place]) => place);
     const { scrollX, scrollY, scale } = this.#workspace;
+    const known = knownPlaces(this.#workspace, this.#stood);
     this.#workspace.dispose();
     this.#workspace = this.#begin();
     this.#workspace.setScale(scale);
-    this.show(form);
+    this.show(form, known);
     if (this.#isTouched) this.#workspace.scroll(scrollX, scrollY);
     this.placed(this.#places.map(([id]) => id), places);
   }
@@ -200,6 +201,7 @@ export class Blocks {
   resize() {
     if (!this.#place.clientWidth) return; // hidden: Blockly would forget what was seen
     Blockly.svgResize(this.#workspace);
+    if (!this.isBusy) makeRoom(this.#workspace, true);
     this.#seeBeginning();
     for (const [id] of this.#places) if (!this.#put(id)) this.#badgeOf(id)?.setBubbleVisible(false);
   }
@@ -215,8 +217,12 @@ export class Blocks {
     this.#stood.clear();
   }
 
-  /** Replaces the blocks: what stays the same stays in its place, and the focus, too. @param {Form} form */
-  show(form) {
+  /**
+   * Replaces the blocks: what stays the same stays in its place, and the focus, too.
+   * @param {Form} form
+   * @param {import('./form.js').Stood} known
+   */
+  show(form, known = knownPlaces(this.#workspace, this.#stood)) {
     const workspace = this.#workspace;
     const { scrollX, scrollY } = workspace;
     const focus = this.hasFocus ? this.#places.findIndex(([id]) => id === this.#focused()?.id) : null;
@@ -224,7 +230,7 @@ export class Blocks {
     Blockly.hideChaff();
     this.#marked = {};
     this.#fault = { id: '', said: '' };
-    const ids = showForm(this.#workspace, form, this.#stood);
+    const ids = showForm(this.#workspace, form, known);
     labelCalls(this.#workspace);
     this.placed(ids, inOrder(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
     this.#use(form);
@@ -252,6 +258,7 @@ export class Blocks {
 
   /** @returns {{form: Form, ids: string[]}} */
   read() {
+    makeRoom(this.#workspace);
     const found = formOf(this.#workspace);
     this.#use(found.form);
     this.#greyLoose();
@@ -260,7 +267,7 @@ export class Blocks {
 
   /** What is not joined to the program looks it, and is found where it is now. */
   #greyLoose() {
-    this.#mark('loose', this.#workspace.getTopBlocks(false).filter((block) => block.type !== 'program').map(({ id }) => id));
+    this.#mark('loose', this.#workspace.getTopBlocks(false).filter(isLoose).map(({ id }) => id));
     if (this.#stood.size > MOST_STOOD) this.#stood.clear();
     keepPlaces(this.#workspace, this.#stood);
   }

@@ -8,6 +8,7 @@ export const COLOURS = {
   control: '#8a3c00',
   choose: '#8a3c00',
   events: '#6f5b00',
+  tasks: '#5d4037',
   sensors: '#0d6040',
   decide: '#3f5c12',
   numbers: '#6226b0',

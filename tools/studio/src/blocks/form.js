@@ -4,6 +4,7 @@
 
 import * as Blockly from 'blockly/core';
 import { WAY } from './fields.js';
+import { calledEarly, inTextOrder } from './hats.js';
 import { wordOf, wordOn } from './places.js';
 import { Checker } from './shapes.js';
 import { atOnce, slowly } from './slices.js';
@@ -28,6 +29,17 @@ const KIND_OF = new Map(Object.entries(KINDS).flatMap(([kind, { part, words }]) 
 const CORNER = 32; // where the program begins
 const DISTANCE = 64; // between stacks: Blockly pushes what is nearer than it would join
 
+/**
+ * What is known of blocks since they were made of a text.
+ * @typedef {object} Shown
+ * @property {string[]} program ids of its blocks
+ * @property {Map<string, {before: number, x: number, y: number, isOwn: boolean}>} hats by their ids in the order of
+ *   the text: so many blocks of the program stand before it, where it was put, and whether somebody had moved it
+ * @property {Set<string>} excused
+ */
+/** @type {WeakMap<Blockly.Workspace, Shown>} */
+const SHOWN = new WeakMap();
+
 // -- blocks to their form --------------------------------------------------------------------------
 
 /**
@@ -35,10 +47,9 @@ const DISTANCE = 64; // between stacks: Blockly pushes what is nearer than it wo
  * @returns {{form: Form, ids: string[]}} `ids` of the blocks of the body, in the order of the text
  */
 export function formOf(workspace) {
-  /** @type {string[]} */
-  const ids = [];
-  const tops = workspace.getTopBlocks(true).filter((block) => !block.isInsertionMarker());
+  const tops = topsOf(workspace);
   const program = tops.find((block) => block.type === 'program');
+  const items = itemsOf(workspace);
   const kept = dataOf(program);
   const word = String(program?.getFieldValue('WORD') ?? 'SI');
   return {
@@ -46,11 +57,58 @@ export function formOf(workspace) {
       start: kept.isUnsaid && word === 'SI' ? '' : word,
       note: program?.getCommentText() ?? '',
       is_one_line: Boolean(kept.isOneLine),
-      body: bodyOf(program?.getNextBlock() ?? null, ids),
-      loose: tops.filter((block) => block !== program).map(stackOf),
+      body: items.map(({ block }) => block),
+      loose: tops.filter(isLoose).map(stackOf),
     },
-    ids,
+    ids: items.flatMap(({ ids }) => ids),
   };
+}
+
+/** @param {Blockly.WorkspaceSvg} workspace */
+function topsOf(workspace) {
+  return workspace.getTopBlocks(true).filter((block) => !block.isInsertionMarker());
+}
+
+/** @param {Blockly.Block} block */
+function isHat(block) {
+  return Boolean(KINDS[block.type]?.is_hat);
+}
+
+/** Whether a block at the top is no part of the program. @param {Blockly.Block} top */
+export function isLoose(top) {
+  return top.type !== 'program' && !isHat(top);
+}
+
+/** @param {Blockly.WorkspaceSvg} workspace @returns {import('./hats.js').Item[]} the blocks of the text's top level, in its order */
+function itemsOf(workspace) {
+  const tops = topsOf(workspace);
+  const program = stackFrom(tops.find((block) => block.type === 'program')?.getNextBlock() ?? null);
+  const shown = SHOWN.get(workspace) ?? { program: [], hats: new Map(), excused: new Set() };
+  const numbers = new Map(shown.program.map((id, k) => [id, k]));
+  const order = [...shown.hats.keys()];
+  const hats = tops.filter(isHat).sort((a, b) => order.indexOf(a.id) - order.indexOf(b.id));
+  return inTextOrder(program.map(itemOf), hats.map((hat) => {
+    const { x, y } = hat.getRelativeToSurfaceXY();
+    const before = isMoved(hat) ? null : shown.hats.get(hat.id)?.before ?? 0;
+    if (before === null) return { ...itemOf(hat), x, y, gap: null };
+    const isLast = before === shown.program.length;
+    const above = program.findLastIndex(({ id }) => (numbers.get(id) ?? Infinity) < before);
+    return { ...itemOf(hat), x, y, gap: isLast ? program.length : above + 1 };
+  }), shown.excused);
+}
+
+/** Whether somebody has put a hat where it stands, since it was made. @param {Blockly.Block} hat */
+function isMoved(hat) {
+  const put = SHOWN.get(hat.workspace)?.hats.get(hat.id);
+  const { x, y } = hat.getRelativeToSurfaceXY();
+  return !put || Math.abs(put.x - x) > 1 || Math.abs(put.y - y) > 1;
+}
+
+/** @param {Blockly.Block} block @returns {import('./hats.js').Item} */
+function itemOf(block) {
+  /** @type {string[]} */
+  const ids = [];
+  return { block: blockOf(block, ids), ids };
 }
 
 /** @param {Blockly.Block} top @returns {Form['loose'][number]} */
@@ -58,17 +116,53 @@ function stackOf(top) {
   return top.outputConnection ? { body: [], value: valueOf(top) } : { body: bodyOf(top, []), value: [] };
 }
 
-/** @typedef {Map<string, Blockly.utils.Coordinate[]>} Stood where loose stacks stand, or stood last */
+/** @typedef {Map<string, Blockly.utils.Coordinate[]>} Stood where loose stacks stand, and hats that were moved, or stood last */
 
 /**
- * Keeps where each loose stack stands, for when it is made anew.
+ * Keeps where each loose stack stands and each hat that somebody moved, for when it is made anew.
  * @param {Blockly.WorkspaceSvg} workspace
  * @param {Stood} stood
  */
 export function keepPlaces(workspace, stood) {
-  const tops = workspace.getTopBlocks(true).filter((top) => top.type !== 'program');
+  const tops = topsOf(workspace).filter(isLoose);
   for (const top of tops) stood.set(JSON.stringify(stackOf(top)), []);
   for (const top of tops) stood.get(JSON.stringify(stackOf(top)))?.push(top.getRelativeToSurfaceXY());
+  const shown = SHOWN.get(workspace);
+  const hats = hatsOf(workspace);
+  for (const [k, name] of namesOf(hats).entries()) {
+    const hat = /** @type {Blockly.Block} */ (hats[k]);
+    if (isMoved(hat) || shown?.hats.get(hat.id)?.isOwn) stood.set(name, [hat.getRelativeToSurfaceXY()]);
+    else stood.delete(name);
+  }
+}
+
+/**
+ * Those places that blocks may be put at again: what comes back, once it was gone, is put where it is seen.
+ * @param {Blockly.WorkspaceSvg} workspace
+ * @param {Stood} stood
+ * @returns {Stood}
+ */
+export function knownPlaces(workspace, stood) {
+  const { left, top, width, height } = workspace.getMetricsManager().getViewMetrics(true);
+  const view = new Blockly.utils.Rect(top, top + height - CORNER, left, left + width - CORNER);
+  const here = new Set([...namesOf(hatsOf(workspace)), ...topsOf(workspace).filter(isLoose).map((each) => JSON.stringify(stackOf(each)))]);
+  return new Map([...stood].map(([name, places]) => [name, places.filter(({ x, y }) => here.has(name) || view.contains(x, y))]));
+}
+
+/** @param {Blockly.WorkspaceSvg} workspace @returns {Blockly.Block[]} in the order of the text */
+function hatsOf(workspace) {
+  return itemsOf(workspace).flatMap(({ ids }) => workspace.getBlockById(ids[0] ?? '') ?? []).filter(isHat);
+}
+
+/** @param {Blockly.Block[]} hats in the order of the text @returns {string[]} a name for each: of its kind and word the how manieth it is */
+function namesOf(hats) {
+  /** @type {Map<string, number>} */
+  const counts = new Map();
+  return hats.map((hat) => {
+    const name = `${hat.type} ${hat.type === 'def' ? hat.getFieldValue('WORD') : ''}`;
+    counts.set(name, (counts.get(name) ?? 0) + 1);
+    return `${name} ${counts.get(name)}`;
+  });
 }
 
 /** @param {Blockly.Block | undefined} block @returns {any} */
@@ -80,28 +174,31 @@ function dataOf(block) {
   }
 }
 
-/**
- * @param {Blockly.Block | null} first
- * @param {string[]} ids
- * @returns {FormBlock[]}
- */
-function bodyOf(first, ids) {
+/** @param {Blockly.Block | null} first @returns {Blockly.Block[]} it and those that hang below it */
+function stackFrom(first) {
   const found = [];
-  for (let block = first; block; block = block.getNextBlock()) {
-    if (block.isInsertionMarker()) continue;
-    ids.push(block.id);
-    const kept = dataOf(block);
-    found.push({
-      kind: block.type,
-      word: String(wordOn(block) ?? kept.word ?? wordOf(block.type)),
-      values: valuesOf(block),
-      bodies: block.inputList.filter((input) => /^B\d|^OTHERWISE/.test(input.name))
-        .map((input) => bodyOf(input.connection?.targetBlock() ?? null, ids)),
-      note: block.getCommentText() ?? '',
-      is_apart: Boolean(kept.isApart),
-    });
-  }
+  for (let block = first; block; block = block.getNextBlock()) if (!block.isInsertionMarker()) found.push(block);
   return found;
+}
+
+/** @param {Blockly.Block | null} first @param {string[]} ids @returns {FormBlock[]} */
+function bodyOf(first, ids) {
+  return stackFrom(first).map((block) => blockOf(block, ids));
+}
+
+/** @param {Blockly.Block} block @param {string[]} ids @returns {FormBlock} */
+function blockOf(block, ids) {
+  ids.push(block.id);
+  const kept = dataOf(block);
+  const inside = block.inputList.filter((input) => /^B\d|^OTHERWISE/.test(input.name)).map((input) => input.connection?.targetBlock() ?? null);
+  return {
+    kind: block.type,
+    word: String(wordOn(block) ?? kept.word ?? wordOf(block.type)),
+    values: valuesOf(block),
+    bodies: (isHat(block) ? [block.getNextBlock()] : inside).map((first) => bodyOf(first, ids)),
+    note: block.getCommentText() ?? '',
+    is_apart: Boolean(kept.isApart),
+  };
 }
 
 /** @param {Blockly.Block} block @returns {Value[]} what is in its places; of a DEF the names of its values */
@@ -164,8 +261,13 @@ export function showForm(workspace, form, stood) {
     for (const block of made) block.initSvg();
     for (const block of made.reverse()) block.queueRender();
     Blockly.renderManagement.triggerQueuedRenders(workspace);
-    stand(tops, stood); // while they were drawn, blocks pushed each other
+    stand(workspace, tops, stood); // while they were drawn, blocks pushed each other
   });
+  makeRoom(workspace);
+  for (const [id, put] of SHOWN.get(workspace)?.hats ?? []) {
+    const { x, y } = workspace.getBlockById(id)?.getRelativeToSurfaceXY() ?? put;
+    Object.assign(put, { x, y }); // nobody has moved it there
+  }
   workspace.resizeContents();
   return ids;
 }
@@ -192,7 +294,7 @@ function* drawing(workspace, form) {
     block.renderEfficiently();
     yield;
   }
-  stand(tops, new Map());
+  stand(workspace, tops, new Map());
 }
 
 /**
@@ -221,37 +323,120 @@ function quietly(act) {
   }
 }
 
+/** @typedef {{program: Blockly.BlockSvg, hats: [Blockly.BlockSvg, number][], loose: (Blockly.BlockSvg | null)[]}} Tops each hat with how many blocks of the program stand before it in the text */
+
 /**
  * Makes the blocks of a form, which nobody sees yet.
  * @param {Form} form
  * @param {Make} make
  * @param {string[]} ids of the blocks of the body are added
- * @returns {Generator<void, (Blockly.BlockSvg | null)[]>} the program, and the loose ones
+ * @returns {Generator<void, Tops>}
  */
 function* making(form, make, ids) {
   const program = make('program');
   program.setFieldValue(form.start || 'SI', 'WORD');
   program.data = JSON.stringify({ isUnsaid: !form.start, isOneLine: form.is_one_line });
   if (form.note) program.setCommentText(form.note);
-  yield* hang(form.body, program.nextConnection, make, ids);
-  /** @type {(Blockly.BlockSvg | null)[]} */
-  const tops = [program];
-  for (const { body, value } of form.loose) tops.push(body.length ? yield* hang(body, null, make, []) : valueBlock(value, make));
-  return tops;
+  /** @type {Tops['hats']} */
+  const hats = [];
+  /** @type {string[]} */
+  const own = [];
+  let above = program.nextConnection;
+  for (const each of form.body) {
+    const isHung = !KINDS[each.kind]?.is_hat;
+    const block = yield* hang([each], isHung ? above : null, make, ids);
+    if (!block) continue;
+    if (isHung) {
+      own.push(block.id);
+      above = block.nextConnection;
+    } else hats.push([block, own.length]);
+  }
+  const loose = [];
+  for (const { body, value } of form.loose) loose.push(body.length ? yield* hang(body, null, make, []) : valueBlock(value, make));
+  SHOWN.set(program.workspace, { program: own, hats: new Map(), excused: calledEarly(form.body) });
+  return { program, hats, loose };
 }
 
-/** Puts the program into the corner, and loose stacks where they stood, or below it. @param {(Blockly.BlockSvg | null)[]} tops @param {Stood} stood */
-function stand([program, ...loose], stood) {
+/**
+ * Puts the program into the corner, hats beside it, and loose stacks below it; what is known to have stood somewhere, there.
+ * @param {Blockly.WorkspaceSvg} workspace
+ * @param {Tops} tops
+ * @param {Stood} stood
+ */
+function stand(workspace, { program, hats, loose }, stood) {
   const left = new Map([...stood].map(([name, places]) => [name, [...places]]));
-  const { Coordinate } = Blockly.utils;
-  program?.moveTo(new Coordinate(CORNER, CORNER));
-  let y = CORNER + (program?.getHeightWidth().height ?? 0) + DISTANCE;
+  const shown = SHOWN.get(workspace);
+  program.moveTo(new Blockly.utils.Coordinate(CORNER, CORNER));
+  for (const [k, name] of namesOf(hats.map(([hat]) => hat)).entries()) {
+    const [hat, before] = /** @type {Tops['hats'][number]} */ (hats[k]);
+    const known = left.get(name)?.shift();
+    if (known) hat.moveTo(known);
+    const { x, y } = hat.getRelativeToSurfaceXY();
+    shown?.hats.set(hat.id, { before, x, y, isOwn: Boolean(known) });
+  }
+  lineUp(workspace, program, hats.map(([hat]) => hat).filter((hat) => !shown?.hats.get(hat.id)?.isOwn));
+  const inColumn = [program, ...hats.map(([hat]) => hat)].map((block) => block.getBoundingRectangle()).filter((box) => box.left < CORNER + DISTANCE);
+  let y = Math.max(...inColumn.map(({ bottom }) => bottom)) + DISTANCE;
   for (const block of loose) {
     if (!block) continue;
     const known = left.get(JSON.stringify(stackOf(block)))?.shift();
-    block.moveTo(known ?? new Coordinate(CORNER, y));
+    block.moveTo(known ?? new Blockly.utils.Coordinate(CORNER, y));
     if (!known) y += block.getHeightWidth().height + DISTANCE;
   }
+}
+
+/**
+ * Whether hats are seen beside the program.
+ * @param {Blockly.WorkspaceSvg} workspace
+ * @param {Blockly.BlockSvg} program
+ * @param {Blockly.BlockSvg[]} hats
+ */
+function isRoomBeside(workspace, program, hats) {
+  const widest = Math.max(...hats.map((hat) => hat.getHeightWidth().width));
+  return program.getBoundingRectangle().right + DISTANCE + widest <= workspace.getMetricsManager().getViewMetrics(true).width;
+}
+
+/**
+ * Puts hats one below the other, beside the program where they are seen there, else below it.
+ * @param {Blockly.WorkspaceSvg} workspace
+ * @param {Blockly.BlockSvg} program
+ * @param {Blockly.BlockSvg[]} hats
+ */
+function lineUp(workspace, program, hats) {
+  const { right, bottom } = program.getBoundingRectangle();
+  const isBeside = isRoomBeside(workspace, program, hats);
+  let y = isBeside ? CORNER : bottom + DISTANCE;
+  for (const hat of hats) {
+    hat.moveTo(new Blockly.utils.Coordinate(isBeside ? right + DISTANCE : CORNER, y));
+    y += hat.getHeightWidth().height + DISTANCE;
+    const put = SHOWN.get(workspace)?.hats.get(hat.id);
+    if (put) Object.assign(put, { x: hat.getRelativeToSurfaceXY().x, y: hat.getRelativeToSurfaceXY().y });
+  }
+}
+
+/**
+ * Has no hat stand on the program or on another hat: those that nobody has moved are lined up anew, one that
+ * somebody drops there goes below.
+ * @param {Blockly.WorkspaceSvg} workspace
+ * @param {boolean} [isResized] hats that were beside the program may be out of sight now
+ */
+export function makeRoom(workspace, isResized = false) {
+  const program = /** @type {Blockly.BlockSvg | undefined} */ (workspace.getBlocksByType('program')[0]);
+  const hats = workspace.getTopBlocks(true).filter(isHat);
+  const [moved, still] = [true, false].map((is) => hats.filter((hat) => is === Boolean(isMoved(hat) || SHOWN.get(workspace)?.hats.get(hat.id)?.isOwn)));
+  if (!program || !moved || !still) return;
+  const under = (/** @type {Blockly.BlockSvg} */ hat) => [program, ...hats].find((other) =>
+    other !== hat && other.getBoundingRectangle().intersects(hat.getBoundingRectangle()));
+  const isBeside = still[0] && still[0].getRelativeToSurfaceXY().x > CORNER;
+  quietly(() => {
+    if (still.some(under) || (isResized && still.length && isBeside !== isRoomBeside(workspace, program, still))) lineUp(workspace, program, still);
+    for (const hat of moved) {
+      let other = under(hat);
+      for (let tries = hats.length + 1; tries && other; tries -= 1, other = under(hat)) {
+        hat.moveTo(new Blockly.utils.Coordinate(hat.getRelativeToSurfaceXY().x, other.getBoundingRectangle().bottom + DISTANCE));
+      }
+    }
+  });
 }
 
 /** @typedef {(kind: string) => Blockly.BlockSvg} Make */
@@ -284,7 +469,7 @@ function* hang(blocks, place, make, ids) {
     each.values.forEach((value, k) => put(value, block.getInput(`V${k}`)?.connection ?? null, make));
     for (const [k, body] of each.bodies.entries()) {
       const input = block.getInput(`B${k}`) ?? block.getInput('OTHERWISE');
-      yield* hang(body, input?.connection ?? null, make, ids);
+      yield* hang(body, isHat(block) ? block.nextConnection : input?.connection ?? null, make, ids);
     }
     if (block.previousConnection) above?.connect(block.previousConnection);
     above = block.nextConnection;

@@ -63,7 +63,6 @@ export const DEF = {
       const tip = tipOf(`${name}_values`);
       row.appendField(new Blockly.FieldImage(`./${name}.svg`, 24, 24, tip, /** @type {any} */ (act))).fieldRow.at(-1).setTooltip(tip);
     }
-    this.moveInputBefore('NAMES', 'B0');
   },
 };
 

@@ -30,20 +30,8 @@ export class Checker extends Blockly.ConnectionChecker {
 
   /** @param {Blockly.Connection} a @param {Blockly.Connection} b */
   doTypeChecks(a, b) {
-    return Checker.isLenient || (super.doTypeChecks(a, b) && (isAtTop(a) || !isOfTop(b)) && (isAtTop(b) || !isOfTop(a)));
+    return Checker.isLenient || super.doTypeChecks(a, b);
   }
-}
-
-/** Whether what hangs on a connection is inside no other block. @param {Blockly.Connection} connection */
-function isAtTop(connection) {
-  const block = connection.getSourceBlock();
-  return connection === block.nextConnection && !block.getSurroundParent();
-}
-
-/** Whether a connection is that by which a block hangs that stands inside no other. @param {Blockly.Connection} connection */
-function isOfTop(connection) {
-  const block = connection.getSourceBlock();
-  return connection === block.previousConnection && Boolean(KINDS[block.type]?.is_top);
 }
 
 /**
@@ -149,14 +137,15 @@ function build(block, kind, shape) {
     if (unit && number === 3) return named(unit, 'UNIT');
     return `V${value++}`;
   }, (name) => shape.values[Number(name.slice(1))] ?? 'any', !shape.gives);
-  for (let k = 0; k < shape.bodies; k += 1) block.appendStatementInput(`B${k}`);
+  for (let k = 0; k < shape.bodies && !shape.is_hat; k += 1) block.appendStatementInput(`B${k}`);
   block.setInputsInline(true);
   if (shape.gives) block.setOutput(true, CHECKS[shape.gives]);
   else {
-    block.setPreviousStatement(true);
+    block.setPreviousStatement(!shape.is_hat);
     block.setNextStatement(true);
   }
   block.setStyle(shape.colour);
+  if (shape.is_hat) block.hat = 'cap';
   fill(block, kind, shape.values);
 }
 

@@ -49,7 +49,11 @@ export class Wall {
       if (this.element.children[k] !== tile.item) this.element.insertBefore(tile.item, this.element.children[k] ?? null);
       this.#fill(tile, each, lessons);
     });
-    for (const [key, tile] of old) if (!this.#tiles.has(key)) tile.item.remove();
+    for (const [key, tile] of old) {
+      if (this.#tiles.has(key)) continue;
+      release(tile);
+      tile.item.remove();
+    }
     if (old.size !== this.#tiles.size) this.#fit();
   }
 
@@ -57,7 +61,7 @@ export class Wall {
   picture(key, address) {
     const tile = this.#tiles.get(key);
     if (!tile) return false;
-    if (tile.picture.src.startsWith('blob:')) URL.revokeObjectURL(tile.picture.src);
+    release(tile);
     tile.picture.hidden = !address;
     tile.empty.hidden = Boolean(address);
     if (address) tile.picture.src = address;
@@ -135,6 +139,11 @@ export class Wall {
     this.element.style.setProperty('--columns', String(best.columns));
     this.element.style.setProperty('--high', `${high}px`);
   }
+}
+
+/** Nothing is kept of the picture in a tile. @param {Tile} tile */
+function release({ picture }) {
+  if (picture.src.startsWith('blob:')) URL.revokeObjectURL(picture.src);
 }
 
 /** @param {number} seconds */

@@ -55,7 +55,7 @@ export function nameOf(device) {
 }
 
 /** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
-/** @typedef {{colour: string, words: string[], values: Place[], units: Record<string, string>, bodies: number, is_top: boolean, gives: '' | Place, part: string, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Kind */
+/** @typedef {{colour: string, words: string[], values: Place[], units: Record<string, string>, bodies: number, is_hat: boolean, gives: '' | Place, part: string, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Kind */
 
 export const KINDS = /** @type {Record<string, Kind>} */ (blocks.kinds);
 /** @type {Record<string, string>} */

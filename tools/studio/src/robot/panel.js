@@ -292,6 +292,7 @@ export class RobotPanel {
     }
     this.#speech.begin('say_sending');
     this.#know(program);
+    this.#page.recorder.sends(program);
     this.#ask({ do: 'upload', image: program.image, robot: pageState.robotName.value, runs }, (answer) => {
       const { program: sum = '', saved = 'MEMORY' } = answer;
       this.#sent = { program: sum, places: program.places, of: program };

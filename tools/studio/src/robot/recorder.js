@@ -1,60 +1,36 @@
-// Records what a robot tells of a run, saves it, and compares it with the virtual robot.
-//
-// The form of a recording is that of `recordings.py`, which reads it.
+// Records what a robot tells of a run of a program that it has from here: the run is kept beside those of the virtual robot.
 
 import { element, hide } from '../page/elements.js';
-import { bugSaid } from '../page/faults.js';
-import { bytesOf, download, whenChosen } from '../page/files.js';
 import { pageState } from '../page/page_state.js';
-import { currentLanguage, known, text } from '../page/texts.js';
+import { Run } from '../virtual/runs.js';
 
 /** @typedef {import('./transport.js').RobotEvent} RobotEvent */
-/** @typedef {{ms: number, event: string}} Recorded */
+/** @typedef {import('../python.js').Checked} Checked */
 
-const VERSION = 1;
 const MOST = 10_000; // events; then it is over
 const MOST_MS = 600_000;
 
 export class Recorder {
   #page;
-  #said = () => ''; // so that it can be said in another language
-  #program = '';
+  /** The programs that robots have from here, by their checksums. @type {Map<string, {checked: Checked, text: string, robot: string}>} */
+  #sent = new Map();
+  /** @type {Run | null} */
+  #run = null;
   /** When what is recorded began; null until the first event of a run by the robot's button. @type {number | null} */
   #began = null;
   #isOver = true;
-  /** @type {Recorded[]} */
-  #events = [];
-  #save = element('record_save', HTMLButtonElement);
-  #compare = element('record_compare', HTMLButtonElement);
+  #play = element('record_play', HTMLButtonElement);
 
-  /**
-   * @param {{python: import('../python.js').Python, world: () => unknown}} page
-   */
+  /** @param {{runs: import('../virtual/runs.js').Runs, play: (run: Run) => void}} page */
   constructor(page) {
     this.#page = page;
-    this.#save.addEventListener('click', () => download(text('record_name'), this.#whole()));
-    this.#compare.addEventListener('click', () => this.#replay(new TextEncoder().encode(this.#whole())));
-    element('record_open', HTMLButtonElement).addEventListener('click', () => element('record_file', HTMLInputElement).click());
-    whenChosen('record_file', async (chosen) => {
-      try {
-        this.#replay(await bytesOf(chosen));
-      } catch {
-        this.#tell(() => text('unreadable'));
-      }
-    });
-    pageState.language.subscribe(() => this.#say());
-    pageState.checked.subscribe((program) => hide(element('record_keys', HTMLElement), !program?.remote.length));
+    this.#play.addEventListener('click', () => this.#run && page.play(this.#run));
     this.#show();
   }
 
-  #say() {
-    element('record_said', HTMLElement).textContent = this.#said();
-  }
-
-  /** @param {() => string} said */
-  #tell(said) {
-    this.#said = said;
-    this.#say();
+  /** A robot gets a program. @param {Checked} checked */
+  sends(checked) {
+    this.#sent.set(checked.program, { checked, text: pageState.programText.value, robot: pageState.robotName.value });
   }
 
   /** A program waits for the robot's button: no robot tells when it begins. @param {string} program its checksum, in hexadecimal */
@@ -65,8 +41,11 @@ export class Recorder {
   /** The recording is over, if there is one. @param {string} event the last one */
   end(event) {
     if (this.#isOver) return;
-    this.#events.push({ ms: Math.min(this.#ms, MOST_MS), event });
+    const ms = Math.min(this.#ms, MOST_MS);
+    this.#run?.put([ms, event]);
+    if (this.#run) this.#run.end_ms = ms;
     this.#isOver = true;
+    this.#page.runs.trim();
     this.#show();
   }
 
@@ -77,11 +56,11 @@ export class Recorder {
       else this.end('STOPPED');
     }
     const row = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', MISSED: 'MISSED' }[event.event];
-    if (!row || this.#isOver) return;
+    if (!row || this.#isOver || !this.#run) return;
     this.#began ??= performance.now();
     if (event.event !== 'SHOW') this.end(row);
-    else if (this.#events.length >= MOST || this.#ms > MOST_MS) this.end('STOPPED');
-    else this.#events.push({ ms: this.#ms, event: row });
+    else if (this.#run.rows.length >= MOST || this.#ms > MOST_MS) this.end('STOPPED');
+    else this.#run.put([this.#ms, row]);
     this.#show();
   }
 
@@ -90,10 +69,17 @@ export class Recorder {
    * @param {number | null} began
    */
   #record(program, began) {
-    this.#program = program;
+    this.end('STOPPED');
+    const sent = this.#sent.get(program);
+    this.#run = null;
+    this.#isOver = !sent;
     this.#began = began;
-    this.#events = [];
-    this.#isOver = false;
+    if (sent) {
+      const { checked, text, robot } = sent;
+      const run = this.#run = new Run({ of: 'real', text, robot, program, is_by_button: began === null }, checked, null);
+      run.clock = () => Math.min(MOST_MS, run === this.#run ? this.#ms : run.rows.at(-1)?.[0] ?? 0);
+      this.#page.runs.begin(run);
+    }
     this.#show();
   }
 
@@ -101,42 +87,7 @@ export class Recorder {
     return this.#began === null ? 0 : Math.round(performance.now() - this.#began);
   }
 
-  /** The file; of a run that goes on, what there is. */
-  #whole() {
-    const head = { tiniscript_recording: VERSION, program: this.#program, robot: pageState.robotName.value };
-    const end = this.#isOver ? [] : [{ ms: Math.min(this.#ms, MOST_MS), event: 'STOPPED' }];
-    return [head, ...this.#events, ...end].map((row) => `${JSON.stringify(row)}\n`).join('');
-  }
-
   #show() {
-    this.#save.disabled = this.#compare.disabled = !this.#events.length;
+    hide(this.#play, !this.#run?.rows.length);
   }
-
-  /** @param {Uint8Array} data a recording */
-  async #replay(data) {
-    this.#tell(() => text('record_comparing'));
-    const { python, world } = this.#page;
-    try {
-      const request = { do: 'replay', robot: pageState.robotName.value, world: world(), text: pageState.programText.value, language: currentLanguage() };
-      const answer = await python.ask(request, data);
-      this.#tell(() => said(answer));
-    } catch (why) {
-      this.#tell(() => bugSaid(why));
-    }
-  }
-}
-
-/** @param {{what: string, said?: string, agreed?: number, line: number, robot?: Recorded | null, virtual?: Recorded | null}} found */
-function said({ what, said = '', agreed = 0, line, robot, virtual }) {
-  if (what === 'refused') return said;
-  const place = line ? text('line', { line }) : text('record_end');
-  return text(known(`record_${what}`), { count: agreed, line, place, robot: told(robot), virtual: told(virtual) });
-}
-
-/** @param {Recorded | null | undefined} event */
-function told(event) {
-  if (!event) return '';
-  const seconds = (event.ms / 1000).toFixed(1);
-  const what = event.event.startsWith('SHOW ') ? event.event.slice('SHOW '.length) : event.event;
-  return text('record_at', { what, seconds });
 }

@@ -6,6 +6,7 @@
 
 const WHOLE = 64; // of so many moments one is kept whole
 const LEAST_MS = 40; // of the robot's time between two moments in which nothing happens
+const NOT_KEPT = new Set(['rows', 'is_full', 'is_over', 'parting']); // of the run, not of a moment
 const MOST = 2_000_000; // characters; then of the moments in which nothing happens every other one is forgotten
 
 export class Moments {
@@ -73,9 +74,9 @@ export class Moments {
    * @param {RobotState} state
    */
   add(state) {
-    const keys = new Map(Object.entries(state).map(([key, value]) => [key, JSON.stringify(value, rounded)]));
+    const keys = new Map(Object.entries(state).filter(([key]) => !NOT_KEPT.has(key)).map(([key, value]) => [key, JSON.stringify(value, rounded)]));
     const isPart = keys.get('places') !== this.#last.get('places') || keys.get('at') !== this.#last.get('at');
-    const isEvent = state.events.length > 0 || keys.get('bumps') !== this.#last.get('bumps');
+    const isEvent = state.events.some(isSeen) || keys.get('bumps') !== this.#last.get('bumps');
     if (this.length && !isPart && !isEvent && state.is_running && state.now_ms - this.last_ms < LEAST_MS) return;
     const k = this.length;
     if (isEvent) this.#events.push(k);
@@ -121,6 +122,15 @@ export class Moments {
     return /** @type {RobotState} */ (state);
   }
 
+  /** Each moment, one after the other. @returns {Generator<RobotState>} */
+  *all() {
+    let state = {};
+    for (const row of this.#rows) {
+      state = { ...state, ...JSON.parse(row) };
+      yield /** @type {RobotState} */ (state);
+    }
+  }
+
   /** @param {number} at_ms of the robot's time @returns {number} the last moment until then */
   until(at_ms) {
     return Math.max(0, countUntil(this.#times, at_ms) - 1);
@@ -141,6 +151,11 @@ export class Moments {
   shows(k) {
     return this.#shows.slice(0, countUntil(this.#shows.map(([moment]) => moment), k)).map(([, event]) => event);
   }
+}
+
+/** Whether it is something that the robot did: a program that waits reads its sensors fifty times in a second. @param {[number, string, number]} event */
+export function isSeen([, what]) {
+  return !what.startsWith('READ ');
 }
 
 /** How many of ascending numbers are at most so large. @param {readonly number[]} numbers @param {number} most */

@@ -54,8 +54,9 @@ export class Simulator {
    * @param {number[]} breakpoints offsets in its code
    * @param {boolean} isPaused in front of its first part
    * @param {number} least times as quick as the robot, whatever `speed` is
+   * @param {boolean} plays the recorded run that was opened last
    */
-  async begin(program, robot, world, breakpoints = [], isPaused = false, least = 0) {
+  async begin(program, robot, world, breakpoints = [], isPaused = false, least = 0, plays = false) {
     if (this.#isAsking) return;
     this.#least = least;
     const bytes = program.image.match(/../g)?.map((pair) => parseInt(pair, 16)) ?? [];
@@ -67,7 +68,7 @@ export class Simulator {
     this.phase = isPaused ? 'paused' : 'running';
     this.#rest = 0;
     this.#last = performance.now();
-    const request = { do: 'power_on', robot, world, language: currentLanguage(), parts, breakpoints, variables, is_held: isPaused };
+    const request = { do: 'power_on', robot, world, language: currentLanguage(), parts, breakpoints, variables, is_held: isPaused, plays };
     await this.#ask(request, new Uint8Array(bytes));
     if (this.phase === 'running') this.#goOnWithNext();
   }
@@ -201,6 +202,6 @@ export class Simulator {
 
   /** @param {RobotState} state */
   #hasEnded(state) {
-    return state.began_ms !== null && !state.is_running;
+    return state.is_over ?? (state.began_ms !== null && !state.is_running);
   }
 }

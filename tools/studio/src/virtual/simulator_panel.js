@@ -11,9 +11,11 @@ import { made } from '../page/made.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
+import { Run, Runs } from './runs.js';
+import { RunsWindow } from './runs_window.js';
 import { TimeLine } from './time_line.js';
 import { pageState } from '../page/page_state.js';
-import { hasText, text } from '../page/texts.js';
+import { hasText, known, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
 import { devicesOf, nameOf, onBlock } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
@@ -30,13 +32,15 @@ import { WorldDrawing } from '../world/drawing.js';
  * @property {() => Promise<Checked | null>} whenCompiled what the compiler says of the newest text, when it is done; null if it cannot say
  * @property {() => void} remember
  * @property {import('../remote/pad.js').Pad} pad
+ * @property {(program: {text: string, robot: string}) => void} put the program of a recorded run into the editor
  */
 
 const SHOWN = 200; // lines of the trace
 const READ_MS = 100; // nobody reads what changes more often; where the program is and what is measured take turns
 const SHORT = 12; // characters of a name whose value stands beside another one
 const SPEEDS = [0.1, 0.5, 1, 4, 20]; // times as quick as the robot
-const PLAYED_MS = 6000; // at most for a run of a lesson
+const PLAYED_MS = 6000; // at most for a run of a lesson, or a recorded one
+const NEAR_MS = 60; // of a moment: nothing else of it is kept
 /** What of a run is seen, by the button that shows it. */
 const SEEN = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_place' };
 
@@ -51,13 +55,17 @@ export class SimulatorPanel {
   #sounds = new Sounds();
   #where = new Where();
   #timeLine = new TimeLine(() => this.#lookBack());
+  runs = new Runs();
+  #window;
+  /** The newest one. @type {Run | null} */
+  #newest = null;
   #bumps = 0; // that were seen
   /** What each SHOW has shown last. @type {Map<string, string>} */
   #shown = new Map();
   /** What each had shown when somebody looks back. @type {Map<string, string>} */
   #seenShows = new Map();
-  /** Whose run it is. @type {Pick<Checked, 'places' | 'shows'>} */
-  #program = { places: [], shows: [] };
+  /** Whose run it is. @type {Pick<Checked, 'places' | 'shows' | 'variables'>} */
+  #program = { places: [], shows: [], variables: [] };
   #wasStopped = false;
   /** What the run reads of a remote control; nothing of one that was judged. @type {string[]} */
   #remote = [];
@@ -84,6 +92,7 @@ export class SimulatorPanel {
   constructor(page) {
     const { python, work, remember } = page;
     this.#page = page;
+    this.#window = new RunsWindow({ python, runs: this.runs, see: (run) => this.#see(run), play: (opened, again) => this.#play(opened, again) });
     this.#world = new WorldChoice(python, work, () => this.#enter());
     this.#simulator = new Simulator(python, (state) => {
       if (state) this.#keep(state);
@@ -217,6 +226,63 @@ export class SimulatorPanel {
     return this.#timeLine.seen ?? this.#simulator.state;
   }
 
+  /** What is seen of which robot. */
+  get #robotSeen() {
+    return this.#timeLine.seen ? this.#timeLine.run.of.robot : pageState.robotName.value;
+  }
+
+  get #variablesSeen() {
+    return this.#timeLine.seen ? this.#timeLine.run.program.variables : this.#variables;
+  }
+
+  get #placesSeen() {
+    if (!this.#timeLine.seen || this.#timeLine.run === this.#newest) return this.#places;
+    const { of, program } = this.#timeLine.run;
+    return of.text === pageState.programText.value ? program.places : [];
+  }
+
+  /** Plays a run that is kept, with its own program. @param {Run} run */
+  async playAgain(run) {
+    await this.#window.openData(new TextEncoder().encode(await this.#window.fileOf(run)), '', run);
+  }
+
+  /** Shows a run that is kept, at its end; a real robot's is played first. @param {Run} run */
+  async #see(run) {
+    if (run.moments.length < 2 || !run.shapes) {
+      await this.playAgain(run);
+      return;
+    }
+    if (this.#simulator.phase === 'running') this.#pauseIt();
+    this.#timeLine.begin(run);
+    this.#drawWay(run);
+    this.#timeLine.look(run.moments.last_ms);
+  }
+
+  /** @param {Run} run its world, and the way that it has taken */
+  #drawWay(run) {
+    this.#arena.begin(run.shapes ?? this.#world.shapes, run.of.robot, run === this.#newest ? this.#world.goals : []);
+    for (const state of run.moments.all()) this.#arena.follow(state);
+  }
+
+  /** Opens the file of a run. @param {File} file */
+  openRun(file) {
+    return this.#window.open(file);
+  }
+
+  /** Plays a recorded run, which may be kept already. @param {import('./runs_window.js').Opened} opened @param {Run | null} again */
+  async #play(opened, again) {
+    await this.#simulator.stop();
+    this.#page.put(opened);
+    if (typeof opened.world === 'string') this.#world.choose(opened.world);
+    else if (opened.world && opened.shapes) {
+      this.#world.bring({ request: opened.world, shapes: opened.shapes, label: () => text('world_of_run'), goals: [] });
+    }
+    this.begin();
+    this.#choose('seen_arena');
+    const lasts_ms = Math.max(1, opened.rows.at(-1)?.[0] ?? 0);
+    await this.#start(false, null, lasts_ms / PLAYED_MS, { opened, again });
+  }
+
   /** What runs stands still while somebody looks back. */
   #lookBack() {
     if (this.#simulator.phase === 'running') this.#pauseIt();
@@ -228,6 +294,10 @@ export class SimulatorPanel {
   /** The newest moment is seen again. */
   #lookAtNow() {
     if (!this.#timeLine.seen) return;
+    if (this.#newest && this.#timeLine.run !== this.#newest) {
+      this.#timeLine.begin(this.#newest);
+      this.#drawWay(this.#newest);
+    }
     this.#timeLine.leave();
     this.#keepShows(this.#shown, this.#timeLine.shows);
     this.#show();
@@ -331,8 +401,9 @@ export class SimulatorPanel {
    * @param {boolean} isPaused
    * @param {import('../lesson/lessons.js').JudgedRun | null} judged
    * @param {number} least times as quick as the robot
+   * @param {{opened: import('./runs_window.js').Opened, again: Run | null} | null} played a recorded run
    */
-  async #start(isPaused, judged = null, least = 0) {
+  async #start(isPaused, judged = null, least = 0, played = null) {
     this.#seenRun();
     const start = ++this.#starts;
     this.#drawing.said = '';
@@ -355,15 +426,38 @@ export class SimulatorPanel {
     this.#bumps = 0;
     this.#arena.begin(this.#world.shapes, pageState.robotName.value, this.#world.goals);
     this.#plot.begin();
-    this.#timeLine.begin();
     this.#shown.clear();
     this.#program = program;
     this.#places = program.places;
     this.#variables = program.variables;
     this.#findStops();
-    this.#remote = judged ? [] : program.remote;
+    this.#remote = judged || played ? [] : program.remote;
     const world = judged ?? this.#world.request;
-    await this.#simulator.begin(program, pageState.robotName.value, world, judged ? [] : this.#offsets, isPaused, least);
+    const run = this.#newest = this.#runOf(program, world, played);
+    run.isJudged = judged !== null;
+    this.#timeLine.begin(run);
+    const stops = judged || played ? [] : this.#offsets;
+    await this.#simulator.begin(program, pageState.robotName.value, world, stops, isPaused, least, played !== null);
+  }
+
+  /**
+   * The run that begins, among those that are kept.
+   * @param {Checked} program
+   * @param {unknown} world
+   * @param {{opened: import('./runs_window.js').Opened, again: Run | null} | null} played
+   */
+  #runOf(program, world, played) {
+    const run = played?.again ?? new Run({ of: 'virtual', text: pageState.programText.value, robot: pageState.robotName.value, program: program.program, world }, program, null);
+    if (played && !played.again) {
+      run.of = { ...run.of, of: played.opened.of };
+      run.file = played.opened.file;
+    }
+    run.shapes = this.#world.shapes;
+    run.program = program;
+    run.again();
+    if (played) run.markKeys(played.opened.rows);
+    if (!played?.again) this.runs.begin(run);
+    return run;
   }
 
   stop() {
@@ -428,8 +522,9 @@ export class SimulatorPanel {
     this.#shown_ms = performance.now();
     this.#isReadingNext = true;
     const range = this.#place();
+    const places = this.#placesSeen;
     const isAlone = !state || state.fault || state.is_held;
-    const ranges = isAlone ? [range] : state.places.map((at) => rangeAt(this.#places, at));
+    const ranges = isAlone ? [range] : state.places.map((at) => rangeAt(places, at));
     pageState.virtualRun.set({ ranges: ranges.filter((each) => each !== null), isHeld: Boolean(state?.is_held) });
     pageState.fault.set({ range: state?.fault ? range : null, said: state?.fault ? faultSaid(state.fault) : '' });
   }
@@ -437,13 +532,14 @@ export class SimulatorPanel {
   /** What runs in the text that is seen, or what had a fault. */
   #place() {
     const state = this.#state;
-    return rangeAt(this.#places, state?.fault ? state.fault_at : state?.at);
+    return rangeAt(this.#placesSeen, state?.fault ? state.fault_at : state?.at);
   }
 
   /** Keeps what is to be seen, and lets be heard what is. @param {import('../python.js').RobotState} state */
   #keep(state) {
     this.#arena.follow(state);
-    this.#timeLine.add(state);
+    this.#newest?.add(state);
+    this.runs.trim();
     if (state.bumps > this.#bumps) {
       this.#arena.shake();
       this.#sounds.crash();
@@ -473,7 +569,7 @@ export class SimulatorPanel {
     for (const [at_ms, what, at] of events) {
       if (!what.startsWith('SHOW ')) continue;
       const value = what.slice('SHOW '.length);
-      const show = showAt(this.#program, at);
+      const show = showAt(this.#timeLine.seen ? this.#timeLine.run.program : this.#program, at);
       shown.set(show ? nameOfShow(show, `SHOW(${show[1]})`, true) : 'SHOW', value);
       this.#arena.say(value, at_ms);
     }
@@ -484,6 +580,9 @@ export class SimulatorPanel {
     const { phase, state, isStopping, failure } = this.#simulator;
     if (failure) return failure;
     if (isStopping) return text('robot_stopping');
+    const { parting } = this.#timeLine.run;
+    const partsHere = parting && (this.#timeLine.seen ? parting.at_ms !== null && Math.abs(this.#timeLine.seen.now_ms - parting.at_ms) < NEAR_MS : phase === 'ended');
+    if (parting && partsHere) return partingSaid(parting);
     if (this.#timeLine.seen) return this.#lookedBack(this.#timeLine.seen);
     if (phase === 'off' || !state) return this.#task() || text('robot_off');
     if (state.fault) {
@@ -513,8 +612,8 @@ export class SimulatorPanel {
   /** @param {import('../python.js').RobotState} state @returns {[string, string][]} the value of each sensor and variable, by its name */
   #valuesOf(state) {
     return [
-      ...devicesOf(pageState.robotName.value, 'sensor').map(({ text: name }, k) => /** @type {[string, string]} */ ([name, state.readings[k]?.text ?? ''])),
-      ...this.#variables.map(({ name, is_yes_no }, k) => /** @type {[string, string]} */ ([name, written(state.variables[k], is_yes_no)])),
+      ...devicesOf(this.#robotSeen, 'sensor').map(({ text: name }, k) => /** @type {[string, string]} */ ([name, state.readings[k]?.text ?? ''])),
+      ...this.#variablesSeen.map(({ name, is_yes_no }, k) => /** @type {[string, string]} */ ([name, written(state.variables[k], is_yes_no)])),
     ];
   }
 
@@ -541,8 +640,8 @@ export class SimulatorPanel {
       [text('time'), state ? `${secondsOf(state)} s` : '–'],
       [text('motors'), state ? state.motors.map((power) => `${power} %`).join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...devicesOf(pageState.robotName.value, 'sensor').map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
-      ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
+      ...devicesOf(this.#robotSeen, 'sensor').map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
+      ...this.#variablesSeen.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
       ...(this.#timeLine.seen ? this.#seenShows : this.#shown),
     ];
     const place = element('values', HTMLElement);
@@ -558,6 +657,14 @@ export class SimulatorPanel {
       });
     });
   }
+}
+
+/** Where a recorded run and the one that was played part, in words. @param {import('../python.js').Parting} parting */
+function partingSaid({ what, agreed, line, robot, virtual, sensor, began_ms }) {
+  /** @param {{ms: number, event: string} | null} row */
+  const told = (row) => row ? text('record_at', { what: row.event.replace(/^SHOW /, ''), seconds: ((row.ms - began_ms) / 1000).toFixed(1) }) : text('record_nothing');
+  const place = line ? text('line', { line }) : text('record_end');
+  return text(known(`record_${what}`), { count: agreed, line, place, robot: told(robot), virtual: told(virtual), sensor });
 }
 
 /** How long the program has run. @param {import('../python.js').RobotState} state */

@@ -1,0 +1,156 @@
+"""Halts a program at lines of its text, says where it is, and lets a person step it at the keys."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from functools import partial
+from struct import iter_unpack
+
+from tiniscript.base.fixed_point import value_of, value_text
+from tiniscript.bytecode.statements import begins
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.images import Ready
+from tiniscript.cli.options import whole_number
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.event_printer import EventPrinter
+from tiniscript.cli.terminal.keys import Keys, is_in_front
+from tiniscript.cli.texts import text
+from tiniscript.library.source_map import Map, MapLocation
+from tiniscript.link.connection import Requester
+from tiniscript.link.messages import (
+    BREAKPOINTS,
+    MOST_BREAKPOINTS,
+    RESUME_GO,
+    RESUME_STEP,
+    STATUSES,
+    TASK_STATES,
+)
+from tiniscript.link.outcomes import Event
+from tiniscript.link.requests import Reply
+
+STEP, GO = "sS \n\r", "gG"  # keys
+
+
+def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, ...]:
+    """Return the offset of the first statement from each line on. Raises CommandError."""
+    lines = [whole_number("--break", line, 1, 1, 10**6, language) for line in given]
+    if ready.places is None:
+        raise CommandError(2, "break_image")
+    if len(set(lines)) > MOST_BREAKPOINTS:
+        raise CommandError(2, "break_most", most=str(MOST_BREAKPOINTS))
+    statements = begins(ready.image.code)
+    found = []
+    for line in lines:
+        places = [_first(place, statements) for place in ready.places.places if place.line >= line]
+        if not places:
+            raise CommandError(1, "break_nowhere", line=str(line))
+        found.append(min(places))
+    return tuple(sorted(set(found)))
+
+
+def _first(place: MapLocation, statements: Sequence[int]) -> int:
+    return next((at for at in statements if at >= place.offset), statements[-1])
+
+
+def require(connection: Connection) -> None:
+    """Raise CommandError where the robot halts nothing."""
+    if not connection.device_info.values.features & BREAKPOINTS:
+        raise connection.failure(Reply(STATUSES["NO_BREAKPOINTS"]))
+
+
+class Debugger:
+    """Tells where a program halts. At a terminal a key steps it or lets it go on; elsewhere it goes
+    on by itself."""
+
+    def __init__(self, connection: Connection, printer: EventPrinter, ready: Ready) -> None:
+        assert ready.places is not None
+        self.connection = connection
+        self.printer = printer
+        self.map: Map = ready.places
+        self.statements = begins(ready.image.code)
+        self.keys = Keys()
+        self.has_keys = sys.stdin.isatty() and is_in_front() and not printer.is_json
+        self.is_halted = False
+        self.is_stepping = False
+
+    def __enter__(self) -> Debugger:
+        if self.has_keys:
+            self.keys.__enter__()
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        if self.has_keys:
+            self.keys.__exit__(*raised)
+
+    def hold(self, event: Event) -> bool:
+        """Take an event; return whether it is told."""
+        if event.name != "HALTED":
+            return False
+        place = self.map.at(event.at)
+        is_inside = place is not None and _first(place, self.statements) != event.at
+        if self.is_stepping and is_inside:  # of one instruction of the text
+            self._resume(RESUME_STEP)
+            return True
+        self._tell(event.at, event.task, place)
+        self.is_halted = True
+        if not self.has_keys:
+            self._resume(RESUME_GO)
+        return True
+
+    def look(self) -> None:
+        """Do what the first key says that was pressed at this halt; while the program runs, none
+        does anything."""
+        pressed = self.keys.pressed() if self.has_keys else ""
+        key = next((key for key in pressed if key in STEP + GO), "")
+        if key and self.is_halted:
+            self._resume(RESUME_STEP if key in STEP else RESUME_GO)
+
+    def _resume(self, how: int) -> None:
+        self.is_halted, self.is_stepping = False, how == RESUME_STEP
+        self.connection.ask(lambda session: session.resume(how))
+
+    def _tell(self, at: int, task: int, place: MapLocation | None) -> None:
+        language = self.printer.language
+        variables = self._variables()
+        tasks = self._tasks(task)
+        line = 0 if place is None else place.line
+        what = "" if place is None else self.map.line(line)[place.column - 1 :].split(";")[0]
+        said = [text("halted", language).format(line=line, what=what.strip())]
+        values = ", ".join(
+            f"{name} = {value_text(value, is_yes_no)}" for name, value, is_yes_no in variables
+        )
+        said += [f"  {values}"] * bool(values)
+        for state, where in tasks:
+            key = f"halted_task_{TASK_STATES[state][0]}"
+            said.append("  " + text(key, language).format(line=where))
+        if self.has_keys:
+            said.append(text("halted_keys", language))
+        self.printer.say(
+            0, "HALTED", str(line), "\n".join(said), line=line, at=at,
+            variables={name: value_of(value, is_yes_no) for name, value, is_yes_no in variables},
+            tasks=[{"state": TASK_STATES[state][0], "line": where} for state, where in tasks],
+        )  # fmt: skip
+
+    def _variables(self) -> list[tuple[str, int, bool]]:
+        """Return name, value in thousandths and whether it is a yes/no of the variables that have
+        names."""
+        names, values = self.map.variables, list[int]()
+        while len(values) < len(names):
+            reply = self.connection.ask(partial(Requester.read_variables, first=len(values)))
+            piece = [value for (value,) in iter_unpack("<i", reply.values.values)]
+            if not piece:
+                break
+            values += piece
+        yes_no = self.map.yes_no or [False] * len(names)  # of a map of an earlier version
+        return list(zip(names, values, yes_no, strict=False))
+
+    def _tasks(self, halted: int) -> list[tuple[int, int]]:
+        """Return state and line of each task beside the one that is halted, and has not ended."""
+        reply = self.connection.ask(lambda session: session.read_tasks())
+        found = []
+        for number, (state, at, _) in enumerate(iter_unpack("<BHI", reply.values.tasks)):
+            place = self.map.at(at)
+            if number != halted and state and place is not None:
+                found.append((state, place.line))
+        return found

@@ -1,0 +1,138 @@
+"""`tsc run --record FILE`: a run on the virtual robot, and its file; `tsc run FILE` plays it."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+
+from tiniscript import robots
+from tiniscript.bytecode.image import pack
+from tiniscript.cli import images, inputs, outputs
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.faults import fault_text
+from tiniscript.cli.inputs import Input
+from tiniscript.cli.options import sensor_lists, thousandths, whole_number
+from tiniscript.cli.robot.simulator_options import refusing, world_of
+from tiniscript.cli.texts import text
+from tiniscript.robots.profile import Robot
+from tiniscript.studio import recordings
+from tiniscript.studio.playing import SAME, STEP_MS, Parting, Played, Ready, ready
+from tiniscript.studio.recordings import MOST_MS, VIRTUAL, BadRecording, Row
+from tiniscript.studio.simulation import Simulation
+from tiniscript.virtual.robot import Settings
+
+# options of `tsc run` that are not for the virtual robot, and those that a recorded run has in it
+NOT_RECORDED = ("max_steps", "machine", "show", "pace")
+NOT_PLAYED = ("sensor", "seed", "max_time", "robot", "record", *NOT_RECORDED)
+MAX_MS = 60_000
+
+
+def refuse(options: Namespace, names: tuple[str, ...], key: str) -> None:
+    """Raise CommandError with the sentence `key` where one of these options is there."""
+    for name in names:
+        if getattr(options, name) not in (None, False, []):
+            raise CommandError(2, key, option="--" + name.replace("_", "-"))
+
+
+def known_robot(robot: Robot) -> None:
+    """Raise CommandError where nobody else could play a run of this robot."""
+    if robot.name not in robots.names() or robots.load(robot.name).kit != robot.kit:
+        raise CommandError(2, "record_robot", known=", ".join(robots.names()))
+
+
+def source_text(given: Input) -> str:
+    """Return the text of a program, for the file of its run. Raises CommandError for an image."""
+    if given.is_image:
+        raise CommandError(2, "record_text")
+    return given.data.decode("utf-8", "replace")
+
+
+def record(given: Input, options: Namespace, language: str) -> int:
+    """Run a program on the virtual robot, print its trace, and write the file of the run."""
+    refuse(options, NOT_RECORDED, "record_only")
+    source = source_text(given)
+    robot = inputs.robot_for(given, options, language)
+    known_robot(robot)
+    max_ms = thousandths("--max-time", options.max_time, MAX_MS, 0, MOST_MS, language)
+    seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
+    told = sensor_lists(options.sensor, robot, language)
+    world, form = recordings.kept(world_of(options, language))
+    found = images.ready(given, robot, language, is_strict=True)
+    if found is None:
+        return 1
+    image = found.image
+    data = pack(image.start, image.devices, image.code, image.later, image.needs)
+    with refusing(world.name, language):
+        run = Simulation(robot.name, world, data, settings=Settings(seed=seed, told=told))
+    if image.start == "SB":
+        run.push()
+    began_ms = run.robot.started_ms or 0
+    while run.robot.now_ms < began_ms + max_ms and not run.is_full:
+        run.go(min(STEP_MS, began_ms + max_ms - run.robot.now_ms))
+        if not run.robot.is_running and run.robot.started_ms is not None:
+            break
+    rows, fault, fault_at = run.rows(), run.robot.fault, run.fault_at
+    end_ms = rows[-1].ms if run.is_full and rows else run.robot.now_ms
+    run.close()
+    _print(rows, began_ms)
+    head = recordings.head(VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=told)
+    whole = recordings.written(head, rows, end_ms)
+    outputs.write(Path(options.record), whole.encode(), "unwritable_more --record")
+    if fault:
+        said = fault_text(fault, fault_at or 0, found.places, given.is_image, language)
+        print(said, file=sys.stderr)
+    return int(bool(fault))
+
+
+def play(given: Input, options: Namespace, language: str) -> int:
+    """Play the file of a run again; return the exit code: 1 where it is another run then."""
+    refuse(options, NOT_PLAYED, "play_only")
+    run = _read(given)
+    if options.world is not None and run.recording.is_virtual:
+        raise CommandError(2, "play_only", option="--world")
+    world = run.recording.world or world_of(options, language)
+    with refusing(world.name, language):
+        played = Played(run, world)
+    while not played.is_over:
+        played.go(STEP_MS)
+    began_ms = played.robot.started_ms or 0
+    _print(played.rows(), began_ms)
+    played.close()
+    sys.stdout.flush()
+    parting = played.parting or Parting("empty")
+    print(sentence(parting, began_ms if run.recording.is_virtual else 0, language), file=sys.stderr)
+    return int(parting.what not in SAME)
+
+
+def _read(given: Input) -> Ready:
+    try:
+        return ready(recordings.read(given.data))
+    except BadRecording as bad:
+        values = {"file": inputs.shown(given.name), "line": str(bad.line)}
+        raise CommandError(2, f"recording_{bad.reason}", **values) from None
+
+
+def _print(rows: list[Row], began_ms: int) -> None:
+    for row in rows:
+        sys.stdout.write(f"{row.ms - began_ms} {row.event}\n")
+
+
+def sentence(parting: Parting, began_ms: int, language: str) -> str:
+    """Return what a person reads of a comparison; the rows count from `began_ms`."""
+    place = text("replay_line" if parting.line else "replay_end", language)
+    return text(f"replay_{parting.what}", language).format(
+        count=parting.agreed,
+        place=place.format(line=parting.line),
+        robot=_told(parting.robot, began_ms, language),
+        virtual=_told(parting.virtual, began_ms, language),
+        sensor=parting.sensor,
+    )
+
+
+def _told(row: Row | None, began_ms: int, language: str) -> str:
+    if row is None:
+        return text("replay_nothing", language)
+    what = row.event.removeprefix("SHOW ")
+    seconds = f"{(row.ms - began_ms) / 1000:.1f}"
+    return text("replay_at", language).format(what=what, seconds=seconds)

@@ -1,0 +1,37 @@
+"""Stops one robot of a fleet, and asks for what a stop may need beside it."""
+
+from __future__ import annotations
+
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.member import Member, Result
+from tiniscript.cli.texts import text
+
+
+def stop_one(connection: Connection, member: Member) -> Result:
+    """Stop one of many robots. Raises CommandError where it does not confirm."""
+    member.tell("crew_stopping")
+    if connection.stop():
+        if connection.options.teacher:
+            hold_back(connection)
+            return Result(True, text("held_back_short", connection.language))
+        return Result(True, text("robot_stopped", connection.language))
+    if may_be_opened(connection):
+        from tiniscript.cli.robot.fleet import Again
+
+        raise Again
+    raise CommandError(3, "not_confirmed", port=shown(connection.port))
+
+
+def hold_back(connection: Connection) -> None:
+    """Have a robot that was stopped wait for the teacher, or its button. Raises CommandError."""
+    connection.meet()
+    connection.ask_or(
+        lambda session: session.hold_back(), "no_teachers_key", "NOT_OWNER", "WRONG_KEY"
+    )
+
+
+def may_be_opened(connection: Connection) -> bool:
+    """Whether the port's server has ended during the stop, so that the port can be opened now."""
+    return bool(connection.line.held_by) and connection.line.has_ended

@@ -1,0 +1,34 @@
+"""Signs that nobody sees, and no keyboard has: what takes one out names it, as `U+2028`."""
+
+from __future__ import annotations
+
+from unicodedata import category
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+
+_KINDS = ("Cc", "Cf", "Zl", "Zp")
+_SEEN = "\t\n\r"
+
+
+def invisible(diagnostic: Diagnostic, text: str) -> Diagnostic:
+    """Return a mistake whose repair takes invisible signs out alone as one of such a sign."""
+    edits = diagnostic.repair.edits if diagnostic.repair else ()
+    pairs = [(text[slice(*edit.span)], edit.text) for edit in edits]
+    pairs = pairs or [(text[slice(*diagnostic.span)], "")] * (
+        diagnostic.code is codes.ODD_CHARACTER
+    )
+    if not pairs or not all(old != new == _seen(old) for old, new in pairs):
+        return diagnostic
+    sign = next(each for old, _ in pairs for each in old if _is_invisible(each))
+    return diagnostic._replace(
+        code=codes.ODD_CHARACTER, values={"found": f"U+{ord(sign):04X}", "fix": ""}
+    )
+
+
+def _is_invisible(sign: str) -> bool:
+    return sign not in _SEEN and category(sign) in _KINDS
+
+
+def _seen(text: str) -> str:
+    return "".join(sign for sign in text if not _is_invisible(sign))

@@ -1,0 +1,206 @@
+"""`tsc upload --break`: where a program halts, what is told there, and what the keys do."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import Tsc
+from tests.support.pty_robot import PtyRobot, on
+from tests.support.terminal import Terminal
+from tiniscript.cli.robot import debugger
+from tiniscript.cli.terminal.keys import Keys
+from tiniscript.link.messages import RESUME_STEP
+
+PROGRAM = """SI|N = 1
+FAR = DISTANCE > 20
+IF(FAR OR N > 5)
+F(0.1, 80)
+ENDIF
+N = N + 4.5
+SHOW(N)
+"""
+KEYS = "  s: step   g: go on   Ctrl-C: stop"
+BEFORE_4 = ["Halted before line 4: F(0.1, 80)", "  N = 1, FAR = TRUE"]
+BEFORE_6 = ["Halted before line 6: N = N + 4.5", "  N = 1, FAR = TRUE"]
+BEFORE_7 = ["Halted before line 7: SHOW(N)", "  N = 5.5, FAR = TRUE"]
+END = ["N 5.5", "Done."]
+TASKS = """SI|TASK; W(0.5); END_TASK
+TASK; F(0.5, 50); END_TASK
+TASK; W(0.05); B(0.5, 60); END_TASK
+W(0.1); N = 3
+S
+"""
+
+
+@pytest.fixture
+def program(tmp_path: Path, pty_robot: PtyRobot) -> Path:
+    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    path = tmp_path / "drive.ts"
+    path.write_text(PROGRAM, encoding="utf-8")
+    return path
+
+
+def at_a_terminal(robot: PtyRobot, program: Path, *lines: int) -> Terminal:
+    breaks = [word for line in lines for word in ("--break", str(line))]
+    port = ("--port", robot.port)
+    return Terminal("upload", program, "--no-save", *port, *breaks, size=(100, 50))
+
+
+def told(terminal: Terminal) -> list[str]:
+    """Wait for the end; return what it has printed of the halts and after them."""
+    assert terminal.end() == 0
+    lines = [line for line in terminal.whole() if line]
+    first = next(k for k, line in enumerate(lines) if line.startswith("Halted"))
+    return lines[first:]
+
+
+def test_without_a_terminal_it_tells_each_halt_and_goes_on(
+    pty_robot: PtyRobot, program: Path
+) -> None:
+    done = on(pty_robot, "upload", program, "--no-save", "--break", "7", "--break", "4").gives(
+        0, ""
+    )
+    assert done.out.splitlines()[1:] == [*BEFORE_4, *BEFORE_7, *END]
+    assert pty_robot.did[-1] == "FINISHED"
+
+
+def test_json_has_the_values_in_their_types(pty_robot: PtyRobot, program: Path) -> None:
+    done = on(pty_robot, "upload", program, "--no-save", "--json", "--break", "7").gives(0, "")
+    rows = [json.loads(line) for line in done.out.splitlines()]
+    [halted] = [row for row in rows if row["event"] == "HALTED"]
+    assert (halted["line"], halted["tasks"]) == (7, [])
+    assert halted["variables"] == {"N": 5.5, "FAR": True}
+    assert isinstance(halted["variables"]["FAR"], bool)
+
+
+def test_a_line_without_an_instruction_halts_before_the_next_one(
+    pty_robot: PtyRobot, program: Path
+) -> None:
+    done = on(pty_robot, "upload", program, "--no-save", "--break", "5").gives(0)
+    assert done.out.splitlines()[1:] == [*BEFORE_6, *END]
+
+
+def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
+    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    done = on(pty_robot, "upload", "-e", TASKS, "--no-save", "--break", "5").gives(0)
+    first = done.out.splitlines()[1:6]
+    assert first == [
+        "Halted before line 5: S",
+        "  N = 3",
+        "  Line 1: another task, waiting",
+        "  Line 2: another task, with the motors",
+        "  Line 3: another task, waiting for the motors",
+    ]
+
+
+@pytest.mark.parametrize("keys", ["s", "S", " ", "\n"])
+def test_a_key_steps_one_instruction_of_the_text(
+    keys: str, pty_robot: PtyRobot, program: Path
+) -> None:
+    terminal = at_a_terminal(pty_robot, program, 4)
+    for halted, *_ in (BEFORE_4, BEFORE_6, BEFORE_7):
+        terminal.until(rf"(?s){halted.split(':')[0]}.*Ctrl-C: stop\n*$")
+        terminal.type(keys)
+    assert told(terminal) == [*BEFORE_4, KEYS, *BEFORE_6, KEYS, *BEFORE_7, KEYS, *END]
+    assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+@pytest.mark.parametrize("key", ["g", "G"])
+def test_a_key_goes_on_to_the_next_place(key: str, pty_robot: PtyRobot, program: Path) -> None:
+    terminal = at_a_terminal(pty_robot, program, 4, 7)
+    for line in (4, 7):
+        terminal.until(rf"(?s)before line {line}.*Ctrl-C: stop\n*$")
+        terminal.type(key)
+    assert told(terminal) == [*BEFORE_4, KEYS, *BEFORE_7, KEYS, *END]
+
+
+def test_a_key_counts_once_and_others_do_nothing(pty_robot: PtyRobot, program: Path) -> None:
+    """What is typed before the halt is told is no answer to it."""
+    terminal = at_a_terminal(pty_robot, program, 4)
+    terminal.until(r"(?s)before line 4.*Ctrl-C: stop\n*$")
+    terminal.type("x?ssg")
+    terminal.until(r"(?s)before line 6.*Ctrl-C: stop\n*$")
+    terminal.type("1g")
+    assert told(terminal) == [*BEFORE_4, KEYS, *BEFORE_6, KEYS, *END]
+
+
+def test_a_loop_is_stepped_one_instruction_at_a_time(pty_robot: PtyRobot, tmp_path: Path) -> None:
+    path = tmp_path / "loop.ts"
+    text = "SI|N = 2\nLOOP(N)\nSHOW(N * N + 1)\nN = N - 1\nEND_LOOP\n"
+    path.write_text(text, encoding="utf-8")
+    terminal = at_a_terminal(pty_robot, path, 3)
+    seen = []
+    for k in range(6):
+        terminal.until(rf"(?s)(.*Ctrl-C: stop){{{k + 1}}}\n*$")
+        seen.append([line for line in terminal.lines() if line.startswith("Halted")][-1])
+        terminal.type("s")
+    told(terminal)
+    loop = ["line 3: SHOW(N * N + 1)", "line 4: N = N - 1", "line 2: LOOP(N)"]
+    assert seen == [f"Halted before {each}" for each in loop * 2]
+
+
+def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None:
+    terminal = at_a_terminal(pty_robot, program, 4)
+    terminal.until(r"(?s)before line 4.*Ctrl-C: stop\n*$")
+    terminal.interrupt()
+    assert terminal.end() == 2
+    assert "the robot has confirmed it" in "\n".join(terminal.whole())
+    assert "MOTORS 80 80" not in pty_robot.did
+    on(pty_robot, "start").gives(0)
+    assert "MOTORS 80 80" in pty_robot.did, "it has no breakpoint any more"
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (["--break", "9"], 1, "from line 9 on"),
+        (["--break", "0"], 2, "--break"),
+        (["--break", "one"], 2, "--break"),
+        ([word for line in "12467" for word in ("--break", line)], 2, "at most 4"),
+        (["--break", "4", "--detach"], 2, "--break is for one run"),
+        (["--break", "4", "--no-run"], 2, "--break is for one run"),
+    ],
+)
+def test_what_no_robot_does_is_said_before_anything_is_sent(
+    words: list[str], code: int, said: str, pty_robot: PtyRobot, program: Path
+) -> None:
+    on(pty_robot, "upload", program, *words).gives(code, said)
+    assert pty_robot.did == [] and on(pty_robot, "start").code == 3, "it holds no program"
+
+
+def test_an_image_whose_text_nobody_knows_has_no_lines(
+    pty_robot: PtyRobot, program: Path, tmp_path: Path, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    image = tmp_path / "drive.bin"
+    tsc("compile", program, "-o", image).gives(0)
+    done = on(pty_robot, "upload", image, "--no-save", "--break", "7").gives(0)
+    assert done.out.splitlines()[1:] == [*BEFORE_7, *END], "its map is in the cache"
+    monkeypatch.setattr("tiniscript.library.source_map.recall", lambda checksum: None)
+    on(pty_robot, "upload", image, "--break", "7").gives(2, "an image has no lines")
+
+
+def test_a_robot_that_cannot_halt_gets_nothing(
+    pty_robot: PtyRobot, program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(debugger, "BREAKPOINTS", 0)
+    on(pty_robot, "upload", program, "--break", "4").gives(3, "breakpoint")
+    assert on(pty_robot, "start").code == 3, "it holds no program"
+
+
+def test_a_key_that_is_pressed_while_the_program_runs_does_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    it = debugger.Debugger.__new__(debugger.Debugger)
+    it.has_keys, it.is_halted, typed, asked = True, False, ["g", "", "s"], list[int]()
+    monkeypatch.setattr(debugger.Debugger, "_resume", lambda self, how: asked.append(how))
+    it.keys = Keys()
+    monkeypatch.setattr(it.keys, "pressed", lambda: typed.pop(0))
+    it.look()
+    it.is_halted = True
+    it.look()
+    assert asked == []
+    it.look()
+    assert asked == [RESUME_STEP]

@@ -1,0 +1,473 @@
+"""Breakpoints on a robot: where a program halts, what stands then, and what never sees a trap."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.firmware.test_host_firmware import KIT, computer, held, stored, switched_on
+from tests.machines.host_firmware import drives
+from tests.support.debugging import Debugged, Halt, debugged
+from tests.support.images import image_of
+from tiniscript.base.trace import TracedRobot
+from tiniscript.bytecode.image import Image
+from tiniscript.bytecode.statements import begins
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import (
+    BREAKPOINTS,
+    BY_NAME,
+    STATE_FAULTED,
+    STATE_IDLE,
+    STATE_RUNNING,
+    STATE_STOPPED,
+    STATUSES,
+)
+from tiniscript.link.payloads import FaultEvent
+from tiniscript.link.requests import OK
+from tiniscript.vm.machine import Machine
+
+DRIVE = "SI|N = 1;F(1, 80);N = 5;B(1, 60);SHOW(N)"  # at 0, 2, 5, 7, 10 and 11
+SECOND = 2  # where F is
+MAIN = 4  # the last task
+BAD_VALUE = STATUSES["BAD_VALUE"]
+
+
+def state(it: Debugged) -> int:
+    return it.robot.done(it.session, it.session.status()).state
+
+
+def test_a_robot_says_that_it_halts() -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.hello()) == OK
+    assert session.robot and session.robot.values.features & BREAKPOINTS
+
+
+def test_a_program_halts_before_an_instruction_and_goes_on() -> None:
+    it = debugged(DRIVE, SECOND)
+    assert it.halt() == Halt(SECOND, MAIN)
+    assert it.variables()[:2] == [1000, 0]
+    assert drives(it.robot.did) == [], "nothing of the instruction is done"
+    it.talk(3000)
+    assert it.is_halted() and state(it) == STATE_RUNNING and drives(it.robot.did) == []
+    assert it.go()
+    assert it.halt() is None
+    moved = drives(it.robot.did)
+    assert [line.split(maxsplit=1)[1] for line in moved] == [
+        "MOTORS 80 80", "MOTORS 0 0", "MOTORS -60 -60", "MOTORS 0 0"
+    ]  # fmt: skip
+    times = [int(line.split()[0]) for line in moved]
+    assert times[1] - times[0] == times[3] - times[2] == 1000
+    assert not it.go(), "nothing is halted any more"
+
+
+def test_a_step_is_a_statement() -> None:
+    it = debugged(DRIVE, 0)
+    assert it.halt() == Halt(0, MAIN)
+    found = []
+    while it.step():
+        halt = it.halt()
+        if halt is None:
+            break
+        found.append(halt.at)
+    assert found == [2, 5, 7, 10]
+    assert it.robot.did[-1].endswith("FINISHED")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        DRIVE,
+        "SI|N = 1;F(1, 80) UNTIL(DISTANCE < 9 AND LIGHT_L > 5);IF(N > 2 OR LIGHT_R < 3);STOP;ENDIF",
+        "SI|WHEN(LIGHT_R > 5);B(0.1, 50);END_WHEN;TASK;F(9, 40) UNTIL(DISTANCE < 10);END_TASK;W(1)",
+        "SI|DEF SIDE(SIZE, SPEED);F(SIZE, SPEED);R(9 DEG, 50);END_DEF;LOOP(3);SIDE(2, 60);END_LOOP",
+    ],
+)
+def test_what_begins_no_statement_is_no_place(text: str) -> None:
+    it = Debugged(text)
+    begun = begins(it.image.code)
+    for at in range(len(it.image.code) + 3):
+        assert it.places(at) == (OK if at in begun else BAD_VALUE), at
+    assert it.places(*begun[:4]) == OK
+    assert it.places(*begun[:3], 1000) == BAD_VALUE
+
+
+def test_places_are_even_bytes_of_a_program_that_is_there() -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.break_at((0,))) == STATUSES["NO_PROGRAM"]
+    it = Debugged(DRIVE)
+    for payload in (b"\0", b"\0\0\0", b"\0" * 10):
+        it.session._seq += 1
+        sent = it.robot.step(
+            b"\0"
+            + encoded(
+                Frame(BY_NAME["BREAK"].number, it.session._seq & 255, it.session._epoch, payload)
+            )
+        )
+        assert bytes((STATUSES["BAD_LENGTH"],)) in sent
+    assert it.robot.until(it.session, it.session.resume(2)) == BAD_VALUE
+    assert it.robot.until(it.session, it.session.read_variables(32)) == BAD_VALUE
+
+
+# -- what never sees a trap ------------------------------------------------------------------------
+
+TASK_FROM_OPERAND = (
+    "SI|W(3.5);SHOW(1);W(3.5);SHOW(2)"  # a trap there would make an operand an instruction
+)
+
+
+def test_a_start_finds_the_tasks_of_the_program_and_no_others() -> None:
+    it = debugged(TASK_FROM_OPERAND, 0)
+    assert it.halt() == Halt(0, MAIN)
+    assert [state for state, _, _ in it.tasks()[:MAIN]] == [0] * MAIN
+    it.go()
+    it.start()
+    assert it.halt() == Halt(0, MAIN), "the next start, with places set"
+    assert [state for state, _, _ in it.tasks()[:MAIN]] == [0] * MAIN
+
+
+def test_who_fetches_a_program_that_is_halted_gets_it_as_it_was_sent() -> None:
+    it = debugged(DRIVE, 0, SECOND, 5, 7)
+    assert it.halt()
+    assert held(it.robot, it.session)[15:] == it.image.code
+    it.step()
+    assert it.halt()
+    assert held(it.robot, it.session)[15:] == it.image.code
+
+
+def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
+    robot, session = switched_on(), computer()
+    image = image_of(DRIVE)
+    assert robot.until(session, session.upload(image, runs=False)) == OK
+    assert robot.until(session, session.break_at((0, SECOND, 5, 7))) == OK
+    assert robot.until(session, session.start()) == OK
+    stored(robot, session)
+    assert robot.done(session, session.read_tasks()).is_halted
+    again = switched_on(robot.memory())
+    assert held(again, other := computer(7))[15:] == image.code
+    assert again.done(other, other.status()).program == image.checksum
+
+
+def test_a_place_is_told_with_the_programs_checksum() -> None:
+    it = debugged(DRIVE, SECOND)
+    assert it.halt()
+    it.session.tells_places = True
+    events = it.talk(1000)
+    assert [(e.program, e.at) for e in events if e.name == "PLACE"] == [(it.image.checksum, SECOND)]
+
+
+def test_a_fault_is_that_of_the_programs_image() -> None:
+    it = debugged("SI|N = 0;SHOW(1 / N)", 0, SECOND)
+    assert it.halt() == Halt(0, MAIN)
+    it.step()
+    assert it.halt() == Halt(SECOND, MAIN)
+    it.go()
+    fault = it.until(lambda event: event.name == "FAULT")
+    assert isinstance(fault, FaultEvent) and fault.program == it.image.checksum
+
+
+def test_the_board_finds_the_same_code_at_each_start_and_while_it_runs() -> None:
+    """The robot for tests looks at the code that runs after each tick: CHANGED, UNVERIFIED."""
+    it = debugged("SI|LOOP(5);F(0.1, 50) UNTIL(DISTANCE < 5);SHOW(1);END_LOOP", 0, SECOND)
+    while it.halt():
+        it.step()
+    assert not [line for line in it.robot.did if "CHANGED" in line or "UNVERIFIED" in line]
+
+
+# -- what ends a run -------------------------------------------------------------------------------
+
+ENDS = ("stop", "button", "message", "lost", "undo", "program", "live", "start", "hello", "text")
+
+
+@pytest.mark.parametrize("way", ENDS)
+def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
+    it = debugged("SI|LOOP(FOREVER);F(0.2, 80);SHOW(1);END_LOOP", 1)
+    robot, session = it.robot, it.session
+    assert it.halt() == Halt(1, MAIN)
+    expected = STATE_IDLE
+    if way == "stop":
+        session.stop(robot.now_ms)
+        assert it.until(lambda event: event.name == "STOPPED")
+        expected = STATE_STOPPED
+    elif way == "button":
+        robot.push()
+        assert it.until(lambda event: event.name == "STOPPED")
+        expected = STATE_STOPPED
+    elif way == "message":
+        session.halt(session.run or 0, robot.now_ms)
+        it.talk(100)
+        expected = STATE_STOPPED
+    elif way == "lost":
+        robot.wait(1100)
+        assert robot.did[-1].endswith("FAULTED")
+        expected = STATE_FAULTED
+    elif way == "undo":
+        assert robot.until(session, session.undo()) == STATUSES["NO_PREVIOUS"]
+    elif way == "program":
+        assert robot.until(session, session.upload(image_of("SB|SHOW(1)"), saves=False)) == OK
+    elif way == "live":
+        assert robot.until(session, session.live(image_of("SI|SHOW(7)").code)) == OK
+        assert it.until(lambda event: event.name == "DONE")
+    elif way == "start":
+        assert robot.until(session, session.start()) == OK
+        assert it.halt() == Halt(1, MAIN), "it begins anew, and halts there again"
+        expected = STATE_RUNNING
+    elif way == "hello":
+        it.session = computer(99)
+        assert robot.until(it.session, it.session.hello()) == OK
+    elif way == "text":
+        robot.wait(5, b"\0")
+        robot.wait(1200)
+        robot.wait(100, b"SI|W(0.01)\n")
+    assert state(it) == expected
+    assert drives(robot.did) == [], "no motor has turned"
+    if way not in ("program", "start", "text", "hello", "live"):
+        assert held(robot, it.session)[15:] == it.image.code
+
+
+def test_the_button_starts_what_was_verified_and_it_halts_again() -> None:
+    it = debugged("SI|F(0.2, 80);SHOW(1)", 0)
+    assert it.halt() == Halt(0, MAIN)
+    it.robot.push()
+    it.talk(100)
+    assert state(it) == STATE_STOPPED
+    it.robot.push()
+    assert it.halt() == Halt(0, MAIN)
+    it.go()
+    assert it.until(lambda event: event.name == "DONE")
+    assert it.image.code == it.robot.codes()[-1]
+
+
+def test_another_program_has_no_places_and_the_same_one_again_has_none() -> None:
+    it = debugged("SI|W(0.05);SHOW(1)", 0)
+    assert it.halt()
+    for text in ("SI|W(0.05);SHOW(2)", "SI|W(0.05);SHOW(1)"):
+        assert it.robot.until(it.session, it.session.upload(image_of(text), saves=False)) == OK
+        assert it.halt() is None and it.events[-1].name == "DONE"
+
+
+def test_a_new_session_has_no_places() -> None:
+    it = debugged("SI|W(0.05);SHOW(1)", 0)
+    assert it.halt()
+    it.session = computer(99)
+    assert it.robot.until(it.session, it.session.start()) == OK
+    assert it.halt() is None and it.events[-1].name == "DONE"
+
+
+# -- what stands and what goes on ------------------------------------------------------------------
+
+
+def test_nothing_halts_where_nobody_is_there() -> None:
+    robot = switched_on()
+    it = Debugged("SI|LOOP(FOREVER);F(1.2, 80);END_LOOP", robot)
+    assert it.places(1) == OK
+    it.start(is_detached=True)
+    assert it.halt() == Halt(1, MAIN)
+    it.go()
+    robot.wait(5000)
+    assert len(drives(robot.did)) == 9
+    assert not [line for line in robot.did if "FAULTED" in line], "a detached run goes on alone"
+
+
+def test_a_halted_run_is_attached_even_if_it_was_not() -> None:
+    it = Debugged("SI|LOOP(FOREVER);F(0.2, 80);W(0.2);END_LOOP")
+    assert it.places(1) == OK
+    it.start(is_detached=True)
+    assert it.halt()
+    it.robot.wait(1100)
+    assert [line for line in it.robot.did if "FAULTED" in line]
+    assert state(it) == STATE_FAULTED
+
+
+def test_max_run_goes_on_while_it_is_halted() -> None:
+    it = Debugged("SI|W(5);SHOW(1)", switched_on(max_run_ms=3000))
+    assert it.places(0) == OK
+    it.start(is_detached=True)
+    assert it.halt()
+    assert it.until(lambda event: event.name == "FAULT") and state(it) == STATE_FAULTED
+
+
+def test_motors_stand_while_it_is_halted_and_a_move_has_the_rest_of_its_time() -> None:
+    """Another task halts while a move of one second has 600 ms left."""
+    it = Debugged("SI|TASK;F(1, 80);END_TASK;W(0.4);SHOW(1);W(2);SHOW(TIME)")
+    show = begins(it.image.code)[4]
+    assert it.places(show) == OK
+    it.start()
+    halted = it.halt()
+    assert halted is not None and halted.task == MAIN
+    assert [line.split(maxsplit=1)[1] for line in drives(it.robot.did)] == [
+        "MOTORS 80 80",
+        "MOTORS 0 0",
+    ]
+    [driving] = [task for task in it.tasks() if task[0] == 3]
+    assert driving[2] == 600
+    it.talk(700)
+    it.go()
+    assert it.halt() is None
+    times = [int(line.split()[0]) for line in drives(it.robot.did)]
+    assert times[1] - times[0] == 400 and times[3] - times[2] == 600
+    shown = [event.value for event in it.events if event.name == "SHOW"]
+    assert shown[-1] == 2400, "TIME stands while it is halted"
+
+
+def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
+    gone = []
+    for is_halted in (False, True):
+        robot = switched_on()
+        robot.discs(cm=100_000, degrees=20_000)
+        it = Debugged("SI|TASK;F(30 CM, 80);END_TASK;W(0.2);SHOW(1)", robot)
+        show = begins(it.image.code)[4]
+        assert it.places(*[show] * is_halted) == OK
+        it.start()
+        if is_halted:
+            assert it.halt() == Halt(show, MAIN)
+            it.talk(1000)
+            there = robot.gone()[0]
+            it.talk(500)
+            assert 0 < there == robot.gone()[0], "it stands"
+            it.go()
+        assert it.halt() is None and it.events[-1].name == "DONE"
+        it.talk(1000)
+        gone.append(robot.gone()[0])
+    assert abs(gone[1] - gone[0]) < 1.5, "edges"
+
+
+def test_a_check_that_is_repeated_halts_once() -> None:
+    it = Debugged("SI|LOOP(2);F(0.3, 40) UNTIL(DISTANCE < 10);END_LOOP;SHOW(1)")
+    code = it.image.code
+    _, check = begins(code)[1:3]
+    it.robot.sense(*[30_000] * len(KIT.sensors))
+    assert it.places(check) == OK
+    it.start()
+    halts = []
+    while (halt := it.halt()) is not None:
+        halts.append(halt.at)
+        it.go()
+    assert halts == [check, check], "once for each move"
+
+
+def test_a_when_halts_once_until_it_has_gone_through() -> None:
+    it = Debugged("SI|WHEN(LIGHT_R > 5);SHOW(1);END_WHEN;W(3)")
+    check = begins(it.image.code)[1]
+    quiet, loud = ([0] * len(KIT.sensors) for _ in range(2))
+    loud[KIT.names.index("LIGHT_R")] = 9000
+    it.robot.sense(*quiet)
+    assert it.places(check) == OK
+    it.start()
+    assert it.halt() == Halt(check, 0)
+    it.go()
+    assert it.halt(500) is None, "its check is FALSE again and again"
+    it.robot.sense(*loud)
+    assert it.halt() == Halt(check, 0), "once it has gone through it begins anew"
+    assert [event.value for event in it.events if event.name == "SHOW"] == [1000]
+
+
+def visits(image: Image, place: int) -> int:
+    """Return how often the machine in Python begins the instruction at a place."""
+    machine = Machine(image.code, TracedRobot(KIT, lambda sensor: 0), len(KIT.readings))
+    count = now_ms = 0
+    while True:
+        is_there = machine.task.pc == place and now_ms >= machine.task.wake_ms
+        found = machine.tick(now_ms, 1)
+        count += is_there
+        if found in ("done", "fault"):
+            return count
+        if found == "waiting":
+            now_ms = max(now_ms + 1, machine.task.wake_ms)
+
+
+def test_a_loop_around_one_statement_halts_each_time() -> None:
+    for text in (
+        "SI|N = 0;LOOP(4);N = N + 1;END_LOOP",
+        "SI|LOOP(4);W(0);END_LOOP",
+        "SI|N = 0;DEF MORE;N = N + 1;END_DEF;LOOP(4);MORE;END_LOOP",
+        "SI|N = 0;LOOP(2);LOOP(2);N = N + 1;END_LOOP;LOOP(0);W(9);END_LOOP;END_LOOP;SHOW(N)",
+        "SI|N = 0;WHILE(N < 3);N = N + 1;IF(N = 2);BREAK;ENDIF;END_WHILE;W(0.1)",
+    ):
+        it = Debugged(text)
+        for at in begins(it.image.code):
+            session = it.session
+            assert it.robot.until(session, session.break_at((at,))) == OK
+            it.start()
+            count = 0
+            while it.halt() is not None:
+                count += 1
+                assert count < 20
+                it.go()
+            assert count == visits(it.image, at), (text, at, count)
+
+
+def test_a_show_without_room_halts_once() -> None:
+    robot = switched_on()
+    robot.pace(40)
+    it = debugged("SI|LOOP(6);SHOW(1);END_LOOP", SECOND, robot=robot)
+    show = begins(it.image.code)[1]
+    assert it.places(show) == OK
+    count = 0
+    while it.halt(3000) is not None:
+        count += 1
+        it.go()
+    assert count in (5, 6)  # the first may have been before its place was set
+
+
+def test_a_halt_is_told_again_and_a_session_tells_it_once() -> None:
+    it = debugged(DRIVE, SECOND)
+    assert it.halt()
+    number = bytes((BY_NAME["HALTED"].number | 0x80,))
+    sent = b""
+    for _ in range(1600):
+        data = it.session.poll(it.robot.now_ms)
+        piece = it.robot.step(data)
+        sent += piece
+        it.session.receive(piece, it.robot.now_ms)
+    assert sent.count(number) >= 3
+    assert not [event for event in it.session.events() if event.name == "HALTED"]
+    it.step()
+    assert it.halt() == Halt(5, MAIN)
+
+
+def test_places_may_change_while_it_runs_and_while_it_is_halted() -> None:
+    it = debugged("SI|N = 0;LOOP(FOREVER);W(0.1);N = N + 1;SHOW(N);END_LOOP")
+    assert it.halt(300) is None
+    _, _, _, add, show, _ = begins(it.image.code)
+    assert it.places(add) == OK
+    assert it.halt() == Halt(add, MAIN)
+    assert it.places(show) == OK
+    it.go()
+    assert it.halt() == Halt(show, MAIN)
+    it.go()
+    assert it.halt() == Halt(show, MAIN)
+    assert it.places() == OK
+    it.go()
+    assert it.halt(500) is None and state(it) == STATE_RUNNING
+
+
+def test_a_step_stays_in_its_task_and_a_place_of_another_one_ends_it() -> None:
+    text = "SI|TASK;W(0.1);SHOW(1);W(0.1);SHOW(2);END_TASK;W(0.15);SHOW(8);W(1);SHOW(9)"
+    it = Debugged(text)
+    places = begins(it.image.code)
+    main = places.index(next(at for at in places if at >= places[6]))
+    assert it.places(places[1]) == OK
+    it.start()
+    assert it.halt() == Halt(places[1], 0)
+    for place in places[2:6]:
+        it.step()
+        assert it.halt() == Halt(place, 0)
+    assert main
+
+
+def test_a_program_that_is_typed_halts_as_well() -> None:
+    robot, session = switched_on(), computer()
+    robot.wait(200, b"SI|LOOP(FOREVER);W(0.1);SHOW(1);END_LOOP\n")
+    assert robot.until(session, session.hello()) == OK
+    assert robot.done(session, session.status()).state == STATE_RUNNING
+    assert robot.until(session, session.break_at((1,))) == OK
+    robot.talk(session, 500)
+    assert robot.done(session, session.read_tasks()).is_halted
+
+
+def test_a_session_asks_no_robot_that_cannot_halt() -> None:
+    it = Debugged(DRIVE)
+    assert it.session.robot
+    features = it.session.robot.values.features & ~BREAKPOINTS
+    it.session._handshake._take_features(features)
+    assert it.robot.until(it.session, it.session.break_at((0,))) == STATUSES["NO_BREAKPOINTS"]
+    assert it.robot.until(it.session, it.session.break_at(())) == OK

@@ -1,0 +1,113 @@
+"""Random programs that are stepped through do what they do alone.
+
+`python -m tests.firmware.test_breakpoints_campaign 1000` runs many.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+
+import pytest
+
+from tests.machines.host_firmware import HostFirmware
+from tests.oracle import programs
+from tests.support.debugging import Debugged
+from tests.support.images import image_of
+from tests.support.kits import KITS
+from tiniscript.base.kit import Kit
+from tiniscript.bytecode.image import Image
+from tiniscript.bytecode.statements import begins
+from tiniscript.link.messages import RESUME_GO, RESUME_STEP
+from tiniscript.link.payloads import HaltedEvent
+from tiniscript.link.requests import OK
+
+LIMIT_MS = 3000  # that are looked at
+BEGINS_MS = 1500  # each run: a seed of RANDOM comes from the time
+ENDS = ("DONE", "FAULT", "STOPPED")
+
+
+def switched_on(kit: Kit, seed: int) -> HostFirmware:
+    robot = HostFirmware(kit, seed=seed)
+    robot.wait(200)
+    rng = random.Random(seed)
+    robot.sense(*(rng.choice((0, 5000, 30_000)) for _ in kit.sensors))
+    return robot
+
+
+def run(image: Image, kit: Kit, seed: int, how: str) -> list[str]:
+    """Run a program alone, step by step, or from place to place; return what it did and shown,
+    without what halts did to the motors, up to the first event after LIMIT_MS of its own time."""
+    rng = random.Random(seed)
+    it = Debugged(image, switched_on(kit, seed), kit.fingerprint)
+    statements = begins(image.code)
+    if how != "alone":
+        some = statements[:1] if how == "steps" else rng.sample(statements, min(4, len(statements)))
+        assert it.places(*some) == OK
+    it.talk(BEGINS_MS - it.robot.now_ms)
+    done = len(it.robot.did)
+    it.start()
+    own_ms, found, halted_in = 0, list[str](), 0
+    while own_ms < LIMIT_MS:
+        events = it.talk(1)
+        own_ms += 1
+        lines = [line.split(maxsplit=1)[1] for line in it.robot.did[done:]]
+        done = len(it.robot.did)
+        halts = [event for event in events if isinstance(event, HaltedEvent)]
+        found += lines
+        found += [f"SHOW {event.value}" for event in events if event.name == "SHOW"]
+        if any(event.name in ENDS for event in events):
+            break
+        for event in halts:
+            assert event.at in statements
+            halted_in += 1
+            it.go(RESUME_STEP if how == "steps" or rng.random() < 0.3 else RESUME_GO)
+            found.append("HALT")
+    assert how != "steps" or halted_in
+    return found
+
+
+def without_halts(lines: list[str], kind: str) -> list[str]:
+    """Return the lines of one kind: of MOTORS only those that change what the program has set."""
+    mine = [line for line in lines if line.split()[0] == kind]
+    if kind != "MOTORS":
+        return mine
+    changes, last = list[str](), "MOTORS 0 0"
+    for line in mine:
+        if line not in ("MOTORS 0 0", last):
+            changes.append(line)
+            last = line
+    return changes
+
+
+def compare(seed: int) -> bool:
+    """Compare a program; return whether it was long enough to be one."""
+    rng = random.Random(seed)
+    oracle_kit, kit = KITS[seed % len(KITS)]
+    text = programs.program(rng, oracle_kit)
+    image = image_of(text, kit)
+    if image.start != "SI" or not begins(image.code) or "TIME" in text or image.needs & 1:
+        return False
+    alone = run(image, kit, seed, "alone")
+    for how in ("steps", "places"):
+        other = run(image, kit, seed, how)
+        for kind in ("SHOW", "SET", "BEEP", "MOTORS"):
+            first, second = without_halts(alone, kind), without_halts(other, kind)
+            count = min(len(first), len(second))
+            assert first[:count] == second[:count], (seed, how, kind, text)
+            ended = "FINISHED" in alone and "FINISHED" in other
+            assert not ended or len(first) == len(second), (seed, how, kind, text)
+        assert not [line for line in other if "CHANGED" in line or "UNVERIFIED" in line]
+    return True
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_program_that_is_stepped_does_what_it_does_alone(seed: int) -> None:
+    compare(seed)
+
+
+if __name__ == "__main__":
+    total = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+    counted = sum(compare(seed) for seed in range(first, first + total))
+    print(f"{counted} of {total} programs, stepped and from place to place: the same as alone")

@@ -1,0 +1,28 @@
+"""Breakpoints cost nothing where none is set: cycles of the machine on a simulated Mega."""
+
+from __future__ import annotations
+
+from struct import pack
+
+import pytest
+
+from tools.bench import avr_bench, workloads
+from tools.bench.machine import BUDGET
+from tools.bench.workloads import Work, code_of
+
+pytestmark = pytest.mark.skipif(bool(avr_bench.missing()), reason=avr_bench.missing())
+
+
+def cycles(work: Work, *flags: str) -> tuple[list[str], int]:
+    """Return what a Mega shows, and the cycles of all ticks."""
+    code = code_of(work)
+    readings = work.thousandths
+    request = pack(f"<BB{len(readings)}iH", BUDGET, len(readings), *readings, len(code)) + code
+    program = avr_bench.built("cycles", avr_bench.SOURCES, *flags, chip="atmega2560")
+    *shown, count, _ = avr_bench.run(program, request, "atmega2560")
+    return shown, int(count.split()[1])
+
+
+@pytest.mark.parametrize("work", workloads.WORKS, ids=lambda work: work.name)
+def test_a_mega_with_breakpoints_is_as_fast_as_one_without(work: Work) -> None:
+    assert cycles(work) == cycles(work, "-Dtiniscript_without_breakpoints")

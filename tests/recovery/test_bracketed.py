@@ -1,0 +1,40 @@
+"""What a message says to cut out is named: nobody drops a value or a question without a word."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source
+from tiniscript.diagnostics.rendering import message
+
+PLACES = ("SI|{}", "{}", "W(1);{}", "{}\nW(1)", "LOOP(2);{};W(1);END_LOOP", "W(1)\n{};W(2)")
+INSIDE = ("7", "DISTANCE < 23", "7.5, 23", "ABS(7)")
+
+
+@pytest.mark.sampled("place", keep=2)
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("word", ["S", "STOP", "BREAK", "END_LOOP", "ENDIF", "START", "DISTANCE"])
+def test_what_stands_in_needless_brackets_is_named(word: str, place: str) -> None:
+    for inside, language in product(INSIDE, ("en", "es", "pt")):
+        text = place.format(f"{word}({inside})")
+        said = [message(each, Source(text), language) for each in check(text) if each.is_mistake]
+        told = [each for each in said if each.code in ("TS039", "TS118")]
+        number = "23" if "23" in inside else "7"
+        assert told or said, text
+        assert all(number in each.message + each.fix for each in told), (text, told)
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_a_question_in_needless_brackets_is_asked(place: str) -> None:
+    text = place.format("STOP(DISTANCE < 10)")
+    offers = [each.values.get("fix") for each in check(text)]
+    assert "IF(DISTANCE < 10);STOP;ENDIF" in offers
+
+
+@pytest.mark.parametrize(("text", "lost"), [("TASK(1)\nS\nEND_TASK", "1"), ("SHOW1(5)", "1")])
+def test_what_a_shown_change_only_cuts_out_is_named(text: str, lost: str) -> None:
+    first, *_ = check(text)
+    assert first.values["lost"] == lost

@@ -1,0 +1,172 @@
+"""Whoever has a port has it, whatever other commands do to the files of ports at any moment.
+
+Something happens before each line of the registry that another command is at: a server registers,
+or a lock is taken or let go. What is there then is what would be there had they come one after the
+other: the server is found, and a lock has one owner.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import IO, Any
+
+import pytest
+
+from tiniscript.link.sharing import registry
+from tiniscript.link.sharing.registry import Registration
+
+PORT = "socket://127.0.0.1:9"
+
+
+@pytest.fixture(autouse=True)
+def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+
+
+@pytest.fixture
+def number() -> Iterator[int]:
+    """A port of this computer at which somebody listens."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield server.getsockname()[1]
+
+
+def registration(number: int, verb: str) -> Registration:
+    return Registration(PORT, number, "0" * 32, "1" * 32, verb, 9600, os.getpid())
+
+
+def dead() -> Registration:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return registration(server.getsockname()[1], "upload")
+
+
+def at_line(wanted: int, does: Callable[[], object], runs: Callable[[], object]) -> bool:
+    """Run something; before its so many-th line in the registry something else happens. Return
+    whether it has so many lines."""
+    lines = 0
+
+    def trace(frame: Any, event: str, argument: object) -> Any:
+        nonlocal lines
+        if frame.f_code.co_filename != registry.__file__:
+            return None
+        if event == "line":
+            lines += 1
+            if lines == wanted:
+                sys.settrace(None)
+                does()
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        runs()
+    finally:
+        sys.settrace(before)
+    return lines >= wanted
+
+
+def each_line(
+    prepare: Callable[[], tuple[Callable[[], object], Callable[[], object]]],
+) -> Iterator[bool]:
+    """Run it with something that happens at its first line, its second, and so on, until it has no
+    more lines; yield each time whether it has happened."""
+    wanted, is_more = 0, True
+    while is_more:
+        wanted += 1
+        does, runs = prepare()
+        is_more = at_line(wanted, does, runs)
+        yield is_more
+    assert wanted > 5
+
+
+@pytest.mark.parametrize("other", ["tidies", "leaves"])
+def test_a_server_that_registers_while_another_command_removes_is_found(
+    number: int, other: str
+) -> None:
+    live = registration(number, "live")
+
+    def prepare() -> tuple[Callable[[], object], Callable[[], object]]:
+        gone = dead()
+        registry.write(gone)
+        runs = registry.tidy if other == "tidies" else lambda: registry.remove(gone)
+        return (lambda: registry.write(live)), runs
+
+    for has_registered in each_line(prepare):
+        if not has_registered:
+            continue
+        assert registry.found(PORT) == live
+        assert registry.all_found() == [live]
+        registry.remove(live)
+        assert registry.all_found() == []
+
+
+def lock() -> IO[bytes] | None:
+    return registry.claimed(PORT)
+
+
+def has_one_owner(owners: list[IO[bytes] | None]) -> None:
+    """No two have the lock; once they let go, the next one gets it, and nothing is left."""
+    there = [each for each in owners if each is not None and not each.closed]
+    assert len(there) <= 1, "two have the same lock"
+    next_one = lock()
+    assert (next_one is None) == bool(there), "another one gets it, too"
+    for each in (*there, next_one):
+        if each is not None:
+            each.close()
+    last = lock()
+    assert last is not None
+    last.close()
+    assert not registry.lock_of(PORT).exists()
+
+
+def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
+    def leftover() -> None:
+        registry.lock_of(PORT).write_bytes(b"")  # of a command that was killed
+
+    registry._make_folder()
+    for runs in ("claims", "tidies", "lets go"):
+        for happens in ("is claimed", "is let go", "is claimed and let go", "is tidied"):
+            if runs == "lets go" and happens == "is let go":
+                continue
+            owners: list[IO[bytes] | None] = []
+
+            def prepare(
+                runs: str = runs, happens: str = happens, owners: list[IO[bytes] | None] = owners
+            ) -> tuple[Callable[[], object], Callable[[], object]]:
+                owners.clear()
+                leftover()
+                owned = lock() if happens == "is let go" or runs == "lets go" else None
+                owners.append(owned)
+
+                def does() -> None:
+                    if happens == "is let go" and owned is not None:
+                        owned.close()
+                    elif happens == "is tidied":
+                        registry.tidy()
+                    elif happens != "is let go":
+                        owners.append(lock())
+                        if happens.endswith("let go") and owners[-1] is not None:
+                            owners[-1].close()
+
+                if runs == "claims":
+                    return does, lambda: owners.append(lock())
+                if runs == "tidies":
+                    return does, registry.tidy
+                assert owned is not None
+                return does, owned.close
+
+            for _ in each_line(prepare):
+                has_one_owner(owners)
+
+
+def test_who_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> None:
+    """Somebody has emptied the cache."""
+    first = lock()
+    registry.lock_of(PORT).unlink()
+    second = lock()
+    assert first is not None and second is not None
+    first.close()
+    has_one_owner([second])

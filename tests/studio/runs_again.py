@@ -1,0 +1,84 @@
+"""Random runs of the virtual robot, with tasks, ways, DEFs with values, keys, pushes of the button,
+and stops: played again, not one event differs. A program that is held at breakpoints may do what
+follows within a millisecond an eighth of one later, so none is held here.
+
+`python -m tests.studio.runs_again 1000` tries so many.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+
+from tests.oracle.task_programs import TaskAuthor
+from tiniscript import robots
+from tiniscript.bytecode.image import checksum
+from tiniscript.library.compiling import compile_source, for_robot
+from tiniscript.studio.playing import play, ready
+from tiniscript.studio.recordings import VIRTUAL, Row, head, read, written
+from tiniscript.studio.simulation import Simulation
+from tiniscript.virtual import worlds
+from tiniscript.virtual.robot import Settings
+
+ROBOTS = ("tinibot", "tinibot2", "tinibot32", "grabber")  # an Uno, discs, an ESP32, a Mega
+
+
+def recorded(number: int) -> tuple[bytes, list[Row]]:
+    """Return the file of a random run, and what happened in it, without what somebody did."""
+    rng = random.Random(number)
+    while True:
+        profile = robots.load(rng.choice(ROBOTS))
+        text = rng.choice(("", "SB|")) + TaskAuthor(rng, ways=rng.random() < 0.7).program()
+        found = compile_source(text.encode(), profile, "", is_strict=True, is_chosen=True)
+        found = for_robot(found, profile)
+        if found.image:
+            break
+    world = rng.choice(worlds.names())
+    told = {0: [rng.randrange(2, 100) * 1000, 1000]} if rng.random() < 0.3 else {}
+    if profile.kit.sensors[0].is_yes_no:
+        told = {}
+    settings = Settings(seed=number + 1, told=told)
+    run = Simulation(profile.name, worlds.load(world), found.image, settings=settings)
+    for _ in range(rng.randint(1, 25)):
+        _act(rng, run)
+    if rng.random() < 0.3:
+        run.stop()
+        if rng.random() < 0.5:
+            run.go(rng.randint(0, 30))
+    rows, end_ms = run.rows(), run.robot.now_ms
+    run.close()
+    first = head(VIRTUAL, text, profile, checksum(found.image), world=world, seed=number + 1,
+                 told=told)  # fmt: skip
+    happened = [row for row in rows if not row.is_input]
+    return written(first, rows, end_ms).encode(), happened
+
+
+def _act(rng: random.Random, run: Simulation) -> None:
+    if rng.random() < 0.4:
+        run.press(rng.randrange(64), rng.choice((0, -100, 40)), rng.choice((0, 7)))
+    if rng.random() < 0.15:
+        run.push()
+    run.go(rng.randint(0, 200))
+
+
+def differs(number: int) -> str | None:
+    """Return how a random run differs when it is played again, or None."""
+    data, happened = recorded(number)
+    played = play(ready(read(data)))
+    again = [row for row in played.rows() if not row.is_input]
+    parting = played.parting
+    played.close()
+    if parting is None or parting.what != "again" or parting.agreed != len(happened):
+        return f"{parting}\n{data.decode()}"
+    return None if again[: len(happened)] == happened else f"{again}\n{data.decode()}"
+
+
+if __name__ == "__main__":
+    count = int(sys.argv[1])
+    events = 0
+    for each in range(count):
+        wrong = differs(each)
+        if wrong is not None:
+            sys.exit(f"run {each}: {wrong}")
+        if each % 100 == 99:
+            print(f"{each + 1} runs", flush=True)

@@ -1,0 +1,324 @@
+"""A class is as the law says it is, whatever has happened in it before.
+
+Pupils come, tell of their work, want robots, fall silent, come back and are removed; robots are
+given and taken, meet nobody, or end; the teacher gives work and begins anew. After each step: all
+that was told is there, a crash loses none of what is kept, and who is next is whose turn it is. A
+class that was begun anew is as one that was just made.
+"""
+
+from __future__ import annotations
+
+import json
+from random import Random
+from typing import Any
+
+import pytest
+
+from tests.studio.test_classroom import FakeRobot, Room
+from tiniscript.studio import classroom
+from tiniscript.studio.class_keeping import MOST_PUPILS
+from tiniscript.studio.classroom import HERE_S, PLACE_S, QUEUE_S, REST_S
+from tiniscript.studio.robot_link import BadRequest
+
+Json = dict[str, Any]
+SEEDS = 20
+STEPS = 80
+ROBOTS = 2
+NAMES = ("Ana", "Luz", "Teo", "Eva", "Ivo")
+LESSONS = ("01_first_line", "02_there_and_back", "03_turns")
+
+
+@pytest.fixture(autouse=True)
+def without_ports(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(classroom, "listed", list)
+
+
+class Page:
+    """A pupil's page: what it has told, and the connection of its turn."""
+
+    def __init__(self, name: str, token: str) -> None:
+        self.name, self.token = name, token
+        self.text = ""
+        self.lessons: list[str] = []
+        self.robot: FakeRobot | None = None
+        self.heard_s = 0.0
+
+
+class History:
+    """Acts by chance, and looks at everything that can be seen after each act."""
+
+    def __init__(self, chance: Random) -> None:
+        self.chance = chance
+        self.room = Room(ROBOTS)
+        self.room.teaches("class_places", places=MOST_PUPILS)
+        self.pages: dict[str, Page] = {}
+        self.gone: dict[str, Page] = {}  # whose work is kept, by name
+        self.brought: set[str] = set()
+        self.texts = 0
+        self.failed_s: dict[str, float] = {}  # when a robot met nobody, by port
+        self.order: list[str] = []  # who waits, as it was seen last
+
+    def state(self) -> Json:
+        return self.room.teaches("class")
+
+    def answer(self, who: Page, do: str, **more: Any) -> Json | None:
+        """Ask as a page; None where it was taken out."""
+        try:
+            answer = self.room.made.answer(who.token, "192.0.2.9", {"do": do, **more})
+        except BadRequest:
+            self.leaves(who)
+            return None
+        who.heard_s = self.room.now_s
+        return answer
+
+    def leaves(self, page: Page) -> None:
+        self.pages.pop(page.name, None)
+        if page.text:
+            self.gone[page.name] = page
+
+    # -- what happens
+
+    def act(self) -> None:
+        ways = (self.comes, self.tells, self.tells, self.tells, self.wants, self.wants,
+                self.connects, self.connects, self.ends, self.passes, self.passes, self.removes,
+                self.gives, self.takes_robot, self.next_one, self.brings)  # fmt: skip
+        self.chance.choice(ways)()
+
+    def comes(self) -> None:
+        name = self.chance.choice(NAMES)
+        if name in self.pages:
+            return
+        before = self.gone.get(name)
+        request = {"do": "join", "code": self.room.made.code, "name": name}
+        if before is not None:
+            request["before"] = before.token
+        answer = self.room.made.answer("", "192.0.2.9", request)
+        page = self.gone.pop(name) if before is not None else Page(name, answer["token"])
+        assert answer == {"token": page.token, "name": name}
+        page.heard_s = self.room.now_s
+        self.pages[name] = page
+
+    def somebody(self) -> Page | None:
+        return self.chance.choice(list(self.pages.values())) if self.pages else None
+
+    def tells(self) -> None:
+        page = self.somebody()
+        if page is None:
+            return
+        self.texts += 1
+        text = f"W({self.texts})"
+        lessons = sorted({*page.lessons, self.chance.choice(LESSONS)})
+        told: Json = self.chance.choice(({"text": text}, {"lessons": lessons}, {}))
+        answer = self.answer(page, "here", **told)
+        if answer is None:
+            return
+        page.text = told.get("text", page.text)
+        page.lessons = told.get("lessons", page.lessons)
+        given = answer.get("given")
+        if given and self.chance.random() < 0.7:
+            took = {"key": given["key"], "text": given["text"]}
+            before = self.version(page)
+            if self.answer(page, "here", took=took) is not None:
+                page.text = given["text"]
+                page.lessons = sorted({*given["lessons"], *page.lessons})
+                assert self.version(page) > before  # else the teacher sees the program before
+                self.brought.discard(page.text)
+                for name in [name for name, one in self.gone.items() if one.text == page.text]:
+                    del self.gone[name]
+
+    def version(self, page: Page) -> int:
+        rows = self.state()["pupils"]
+        return next(int(row["version"]) for row in rows if row["name"] == page.name)
+
+    def wants(self) -> None:
+        page = self.somebody()
+        if page is not None:
+            self.answer(page, "here", wants=self.chance.random() < 0.8,
+                        hand=self.chance.choice((True, False)))  # fmt: skip
+
+    def connects(self) -> None:
+        page = self.somebody()
+        if page is None:
+            return
+        answer = self.answer(page, "connect", page="x", port="y")
+        if answer == {}:
+            page.robot = self.room.hosting.robots[self.room.hosting.asked[-1]["page"]]
+
+    def ends(self) -> None:
+        """A connection ends by itself: the robot has met its page, or nobody."""
+        driving = [page for page in self.pages.values() if page.robot and not page.robot.has_ended]
+        if not driving:
+            return
+        page = self.chance.choice(driving)
+        assert page.robot is not None
+        page.robot.has_ended = True
+        page.robot.was_left = self.chance.random() < 0.5
+        page.robot.name = self.chance.choice(("", "TINI"))
+        if not page.robot.name and not page.robot.was_left:
+            ports = [each["port"] for each in self.raw_robots() if each["pupil"] == page.name]
+            self.failed_s |= dict.fromkeys(ports, self.room.now_s)
+
+    def rows(self) -> list[Json]:
+        """The pupils as they are, without a look at the turns."""
+        return self.room.made._state()["pupils"]  # type: ignore[no-any-return]
+
+    def raw_robots(self) -> list[Json]:
+        return self.room.made._state()["robots"]  # type: ignore[no-any-return]
+
+    def passes(self) -> None:
+        for _ in range(self.chance.choice((1, 3, 8, 30))):
+            self.room.now_s += 1
+            for page in list(self.pages.values()):
+                if self.chance.random() < 0.8:
+                    self.answer(page, "here")
+
+    def removes(self) -> None:
+        page = self.somebody()
+        if page is None or self.chance.random() < 0.5:
+            return
+        driven = page.robot if self.has_turn(page) else None
+        self.room.teaches("class_remove", pupil=self.room.number(page.name))
+        assert driven is None or driven.has_ended
+        self.leaves(page)
+
+    def has_turn(self, page: Page) -> bool:
+        return any(row["name"] == page.name and row["robot"] for row in self.rows())
+
+    def gives(self) -> None:
+        kept, page = self.state()["kept"], self.somebody()
+        if kept and page is not None:
+            key = self.chance.choice(kept)["key"]
+            self.room.teaches("class_give_back", key=key, pupil=self.room.number(page.name))
+
+    def takes_robot(self) -> None:
+        port = f"port{self.chance.randrange(ROBOTS)}"
+        gives = self.chance.random() < 0.6
+        holder = next((each["pupil"] for each in self.raw_robots() if each["port"] == port), "")
+        self.room.teaches("class_robot", port=port, gives=gives)
+        if not gives:
+            self.failed_s.pop(port, None)
+        if not gives and holder in self.pages:
+            robot = self.pages[holder].robot
+            assert robot is None or robot.has_ended  # nobody drives what is not the class's
+
+    def next_one(self) -> None:
+        page = self.somebody()
+        if page is not None:
+            self.room.teaches("class_next", pupil=self.room.number(page.name))
+
+    def brings(self) -> None:
+        self.texts += 1
+        text = f"S({self.texts})"
+        self.room.teaches("class_bring", name="Old", text=text, robot="", lessons=[LESSONS[0]])
+        self.brought.add(text)
+
+    # -- what is always so
+
+    def look(self) -> None:
+        state = self.state()
+        self.all_is_there()
+        self.turns_follow(state)
+        self.crash_loses_nothing(state)
+
+    def all_is_there(self) -> None:
+        """Each page's newest program, and that of who has gone, as often as it was made."""
+        told = {page.text for page in (*self.pages.values(), *self.gone.values()) if page.text}
+        found = {each["text"] for each in self.room.teaches("class_work")["pupils"]}
+        here = {row["name"] for row in self.rows()}
+        assert told | self.brought <= found, (told | self.brought) - found
+        for page in self.pages.values():
+            if page.name in here and page.text:
+                number = self.room.number(page.name)
+                work = self.room.teaches("class_text", pupil=number)
+                assert (work["text"], sorted(work["lessons"])) == (page.text, page.lessons)
+
+    def turns_follow(self, state: Json) -> None:
+        now_s = self.room.now_s
+        heard_s = {page.name: page.heard_s for page in self.pages.values()}
+        waiting = sorted((row for row in state["pupils"] if row["place"]),
+                         key=lambda row: row["place"])  # fmt: skip
+        assert [row["place"] for row in waiting] == list(range(1, len(waiting) + 1))
+        for row in waiting:
+            assert not row["robot"], "who has a turn waits for another one"
+            assert row["silent_s"] <= QUEUE_S + 1, "who is silent keeps others waiting"
+        names = [row["name"] for row in waiting]
+        stayed = [name for name in self.order if name in names]
+        kept_order = [name for name in names if name in stayed]
+        assert kept_order == stayed or self.had_turn, (kept_order, stayed)
+        self.order = names
+        self.had_turn = any(row["robot"] for row in state["pupils"])
+        is_somebody_next = any(now_s - heard_s.get(name, 0) <= HERE_S for name in names)
+        for robot in state["robots"]:
+            rests = now_s < self.failed_s.get(robot["port"], float("-inf")) + REST_S
+            assert robot["pupil"] or rests or not is_somebody_next, "a robot stands idle"
+            assert not (robot["pupil"] and rests and robot["left_s"] == 60), "it rests"
+
+    had_turn = False
+
+    def crash_loses_nothing(self, state: Json) -> None:
+        """What goes on after a crash has the same pupils, work, robots and settings."""
+        kept = json.loads(json.dumps(self.room.made.state_to_keep()))
+        after = Room(0)
+        assert after.made.go_on(kept) == len(state["pupils"])
+        again = after.teaches("class")
+        for name in ("code", "turn_s", "places"):
+            assert again[name] == state[name], name
+        both = [
+            [(row["name"], *row["lessons"]) for row in each["pupils"]] for each in (again, state)
+        ]
+        assert both[0] == both[1]
+        assert [row["port"] for row in again["robots"]] == [row["port"] for row in state["robots"]]
+        works = [
+            sorted(map(str, each.teaches("class_work")["pupils"])) for each in (after, self.room)
+        ]
+        assert works[0] == works[1]
+        whom = [sorted((row["name"], numbers(each).get(row["given"], "")) for row in each["kept"])
+                for each in (again, state)]  # fmt: skip
+        assert whom[0] == whom[1], "what was given is given to nobody"
+
+
+def numbers(state: Json) -> dict[int, str]:
+    return {row["number"]: row["name"] for row in state["pupils"]}
+
+
+@pytest.mark.parametrize("part", range(4))
+def test_a_class_keeps_its_laws_whatever_has_happened(part: int) -> None:
+    for seed in range(part, SEEDS, 4):
+        history = History(Random(seed))
+        for _ in range(STEPS):
+            history.act()
+            history.look()
+
+
+def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
+    for seed in range(SEEDS):
+        history = History(Random(1000 + seed))
+        for _ in range(history.chance.randrange(STEPS)):
+            history.act()
+        old = list(history.pages.values())
+        driven = [page.robot for page in old if page.robot and history.has_turn(page)]
+        room = history.room
+        code, settings = room.made.code, {}
+        before = room.teaches("class")
+        anew = room.teaches("class_anew")
+        assert anew["code"] != code and all(robot.has_ended for robot in driven if robot)
+        fresh = Room(0).teaches("class")
+        settings = {"code": anew["code"], "turn_s": before["turn_s"], "places": before["places"]}
+        ports = [{**each, "pupil": "", "left_s": 0} for each in before["robots"]]
+        named = {each["port"]: each["name"] for each in anew["robots"]}
+        assert anew == fresh | settings | {
+            "robots": [{**each, "name": named[each["port"]]} for each in ports]
+        }
+        assert room.teaches("class_work")["pupils"] == []
+        for page in old:
+            with pytest.raises(BadRequest):
+                room.here(page.token)
+            with pytest.raises(BadRequest):
+                room.made.answer(page.token, "192.0.2.9", {"do": "connect"})
+        again = room.made.answer("", "192.0.2.9", {
+            "do": "join", "code": anew["code"], "name": "Ana",
+            "before": old[0].token if old else "",
+        })  # fmt: skip
+        assert again["name"] == "Ana" and again["token"] not in {page.token for page in old}
+        assert room.here(again["token"])["hand"] is False
+        room.now_s += PLACE_S

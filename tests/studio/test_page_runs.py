@@ -1,0 +1,205 @@
+"""The last runs in the page: one is seen again, saved as a file, and a file is played."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.runs_again import recorded
+from tests.studio.test_page_robot import running, value
+from tests.support.studio import in_phase, write
+from tiniscript import compile, robots
+from tiniscript.studio.playing import play, ready
+from tiniscript.studio.recordings import REAL, Row, head, read, written
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+KEYS = (
+    "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nIF(KEY_A);\nSHOW(RANDOM(1, 99));\nEND_IF;\n"
+    "W(0.05);\nEND_LOOP"
+)
+LOOKS = "SI|LOOP(2);\nW(0.2);\nSHOW(DISTANCE);\nEND_LOOP;\nSHOW(5)"
+
+
+@pytest.fixture(autouse=True)
+def at_rest(page: Page) -> None:
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.keyboard.press("Escape")
+    if page.locator("#runs").is_visible():
+        page.click("#runs_close")
+    page.click("#view_text")
+    page.select_option("#speed", "20")
+    page.select_option("#world", "obstacles")
+    page.click("#seen_arena")
+
+
+def ran(page: Page, text: str, shown: str) -> None:
+    write(page, text)
+    page.click("#run")
+    page.locator("#trace", has_text=shown).wait_for(state="attached")
+    in_phase(page, "ended")
+
+
+def kept(page: Page) -> list[str]:
+    """Open the window of the runs; return what each is called."""
+    page.click("#runs_open")
+    return page.locator("#runs_list button:first-child").all_inner_texts()
+
+
+def saved(page: Page, row: int) -> bytes:
+    with page.expect_download() as download:
+        page.locator("#runs_list li").nth(row).locator("button", has_text="Save it").click()
+    assert download.value.suggested_filename == "run.tsr"
+    return Path(download.value.path()).read_bytes()
+
+
+def doing(page: Page) -> str:
+    return page.locator("#doing").text_content() or ""
+
+
+def told(page: Page, said: str) -> None:
+    page.locator("#doing", has_text=said).wait_for()
+
+
+def real(*rows: tuple[int, str], text: str = LOOKS) -> str:
+    first = head(REAL, text, robots.load("tinibot"), compile(text).checksum)
+    return written(first, [Row(*row) for row in rows], rows[-1][0])
+
+
+def opened(page: Page, data: bytes | str, file: Path) -> None:
+    file.write_bytes(data.encode() if isinstance(data, str) else data)
+    page.click("#runs_open")
+    page.set_input_files("#run_file", file)
+
+
+def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> None:
+    ran(page, "SI|X = 7;\nF(0.5, 60);\nSHOW(X)", "SHOW 7")
+    pose = page.locator("#where").text_content()
+    ran(page, "SI|Y = 8;\nSHOW(Y)", "SHOW 8")
+    assert len(kept(page)) >= 2
+    page.locator("#runs_list li").nth(1).locator("button").first.click()
+    told(page, "Looking back: this was after ")  # its text is another one
+    assert page.locator("#where").text_content() == pose
+    assert value(page, "X") == "7"
+    page.focus("#time_at")
+    page.keyboard.press("Home")
+    assert page.locator("#doing").inner_text().startswith("Looking back: this was after 0.0 s.")
+    page.click("#step")
+    page.locator("#doing", has_not_text="Looking back").wait_for()
+    in_phase(page, "paused")
+
+
+def test_of_more_than_ten_runs_the_newest_ten_are_kept(page: Page) -> None:
+    for number in range(12):
+        ran(page, f"SI|SHOW({number})", f"SHOW {number}")
+    rows = kept(page)
+    assert len(rows) == 10
+    numbers = [int(row.split(":")[0].removeprefix("Run ")) for row in rows]
+    assert numbers == list(range(numbers[0], numbers[0] - 10, -1))
+    assert "SHOW(11)" in page.locator("#runs_list code").first.inner_text()
+    page.click("#runs_close")
+
+
+def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
+    page: Page, tmp_path: Path
+) -> None:
+    page.select_option("#speed", "1")
+    write(
+        page,
+        KEYS,
+    )
+    page.click("#run")
+    in_phase(page, "running")
+    page.focus("#arena")
+    page.locator("#pad_letters button").first.hover()
+    page.mouse.down()
+    page.locator("#trace", has_text="SHOW").wait_for(state="attached")
+    page.mouse.up()
+    page.click("#stop")
+    in_phase(page, "ended")
+    kept(page)
+    data = saved(page, 0)
+    recording = read(data)
+    assert any(row.pressed is not None and row.pressed.keys for row in recording.rows)
+    played = play(ready(recording)).parting
+    assert played is not None and (played.what, played.agreed) == (
+        "again", sum(not row.is_input for row in recording.rows))  # fmt: skip
+    page.click("#runs_close")
+    write(page, "SI|S")
+    opened(page, data, tmp_path / "run.tsr")
+    told(page, f"The virtual robot did all of it again. Rows: {played.agreed}.")
+    kept(page)
+    assert read(saved(page, 0)).rows == recording.rows
+    page.click("#runs_close")
+
+
+def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path) -> None:
+    data, rows = next(run for run in map(recorded, range(99)) if b'"tinibot32"' in run[0])
+    opened(page, data, tmp_path / "run.tsr")
+    told(page, f"The virtual robot did all of it again. Rows: {len(rows)}.")
+    first = json.loads(data.splitlines()[0])
+    assert (page.input_value("#robot"), page.input_value("#world")) == (
+        first["robot"], first["world"])  # fmt: skip
+    page.select_option("#robot", "tinibot")
+
+
+def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
+    page: Page, tmp_path: Path
+) -> None:
+    rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
+    opened(page, real(*rows), tmp_path / "run.tsr")
+    told(page, "Both did the same. Comparisons: 4.")
+    changed = (*rows[:2], (451, "SHOW 6"), (452, "DONE"))
+    opened(page, real(*changed), tmp_path / "run.tsr")
+    told(page, "Line 5: the robot says 6 after 0.5 s, the virtual one 5 after")
+    names = kept(page)
+    assert names[0].startswith("Run ") and "real robot" in names[0]
+    assert [row.event for row in read(saved(page, 0)).rows] == [event for _, event in changed]
+    page.click("#runs_close")
+    text = "SI|X = DISTANCE;\nSHOW(X)"
+    opened(page, real((20, "SHOW 3"), text=text), tmp_path / "run.tsr")
+    told(page, "Line 1: the program reads DISTANCE, and the recording does not have")
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"a letter", "It is damaged, or no run (line 1)."),
+        (real((1, "DONE")).encode()[:-10], "Its end is missing (after line 2)."),
+        (b'{"tiniscript_recording": 1}', "It is of an older version"),
+        (real((1, "DONE")).replace('run":1', 'run":9').encode(), "It comes from a newer version."),
+        (b" " * 1_100_000, "It is too long"),
+    ],
+    ids=["letter", "cut", "older", "newer", "huge"],
+)
+def test_a_file_that_is_no_run_says_why_and_nothing_is_lost(
+    page: Page, tmp_path: Path, data: bytes, said: str
+) -> None:
+    ran(page, "SI|SHOW(77)", "SHOW 77")
+    before = kept(page)
+    page.click("#runs_close")
+    opened(page, data, tmp_path / "run.tsr")
+    page.locator("#runs_said", has_text=said).wait_for()
+    page.click("#runs_close")
+    assert kept(page) == before
+    page.click("#runs_close")
+    assert doing(page) == "It has ended."
+    assert running(page) == ""
+
+
+def test_a_file_that_is_dropped_is_opened(page: Page) -> None:
+    rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
+    drop = """([name, data]) => {
+        const files = new DataTransfer();
+        files.items.add(new File([data], name));
+        const given = {dataTransfer: files, bubbles: true, cancelable: true};
+        document.body.dispatchEvent(new DragEvent('drop', given));
+    }"""
+    page.evaluate(drop, ["x.png", "no"])
+    page.locator("#note", has_text="x.png was not opened. The name of a run's file").wait_for()
+    page.evaluate(drop, ["mine.tsr", real(*rows)])
+    told(page, "Both did the same. Comparisons: 4.")

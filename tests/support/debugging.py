@@ -1,0 +1,96 @@
+"""A computer that halts, steps and inspects what runs on a robot of `host_firmware`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from struct import iter_unpack
+from typing import NamedTuple
+
+from tests.firmware.test_host_firmware import KIT, switched_on
+from tests.machines.host_firmware import HostFirmware
+from tests.support.images import image_of
+from tiniscript.bytecode.image import Image
+from tiniscript.link.messages import RESUME_GO, RESUME_STEP
+from tiniscript.link.outcomes import Event
+from tiniscript.link.payloads import HaltedEvent
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+
+class Halt(NamedTuple):
+    at: int
+    task: int
+
+
+class Debugged:
+    """A robot that holds a program, and its computer."""
+
+    def __init__(
+        self, image: Image | str, robot: HostFirmware | None = None, kit: int = KIT.fingerprint
+    ) -> None:  # fmt: skip
+        self.robot, self.session = robot or switched_on(), Session(1, 9600, kit)
+        self.image = image_of(image) if isinstance(image, str) else image
+        self.events: list[Event] = []
+        upload = self.session.upload(self.image, runs=False, saves=False)
+        assert self.robot.until(self.session, upload) == OK
+
+    def places(self, *places: int) -> int:
+        """Set places; return the status."""
+        return self.robot.until(self.session, self.session.break_at(places))
+
+    def start(self, is_detached: bool = False) -> None:
+        assert self.robot.until(self.session, self.session.start(is_detached)) == OK
+
+    def go(self, how: int = RESUME_GO) -> bool:
+        """Go on; return whether it was halted."""
+        reply = self.robot.done(self.session, self.session.resume(how))
+        return bool(reply.was_halted)
+
+    def step(self) -> bool:
+        return self.go(RESUME_STEP)
+
+    def talk(self, milliseconds: int) -> list[Event]:
+        self.robot.talk(self.session, milliseconds)
+        found = self.session.events()
+        self.events += found
+        return found
+
+    def halt(self, limit_ms: int = 5000) -> Halt | None:
+        """Wait for the next halt; None where the run ends before, or the time is over."""
+        found = self.until(
+            lambda event: event.name in ("HALTED", "DONE", "FAULT", "STOPPED"), limit_ms
+        )
+        return Halt(found.at, found.task) if isinstance(found, HaltedEvent) else None
+
+    def until(self, is_it: Callable[[Event], bool], limit_ms: int = 5000) -> Event | None:
+        end_ms = self.robot.now_ms + limit_ms
+        found: Event | None = None
+        while self.robot.now_ms < end_ms and found is None:
+            found = next(filter(is_it, self.talk(1)), None)
+        return found
+
+    def is_halted(self) -> bool:
+        return bool(self.robot.done(self.session, self.session.read_tasks()).is_halted)
+
+    def variables(self) -> list[int]:
+        found: list[int] = []
+        while len(found) < 32:
+            asked = self.session.read_variables(len(found))
+            piece = [v for (v,) in iter_unpack("<i", self.robot.done(self.session, asked).values)]
+            if not piece:
+                break
+            found += piece
+        return found
+
+    def tasks(self) -> list[tuple[int, int, int]]:
+        """Return state, place and remaining time of each task."""
+        reply = self.robot.done(self.session, self.session.read_tasks())
+        return list(iter_unpack("<BHI", reply.tasks))
+
+
+def debugged(text: str, *places: int, robot: HostFirmware | None = None) -> Debugged:
+    """Return a robot whose program has these places, and has been started."""
+    found = Debugged(text, robot)
+    assert found.places(*places) == OK
+    found.start()
+    return found

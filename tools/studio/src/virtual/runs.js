@@ -1,0 +1,144 @@
+// The runs that the page keeps while it is open: how each was, moment by moment, and what its file has.
+
+import { isSeen, Moments } from './moments.js';
+
+/** @typedef {import('../python.js').RobotState} RobotState */
+/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {[number, string] | [number, string, number]} Row when, what, and of a SHOW where */
+/**
+ * @typedef {object} Of whose run it is
+ * @property {'virtual' | 'real'} of
+ * @property {string} text of the program
+ * @property {string} robot
+ * @property {string} program the checksum of its image
+ * @property {unknown} [world] what the worker is asked for
+ * @property {boolean} [is_by_button] a real robot's, whose program waits for its button
+ */
+
+const MOST_RUNS = 10;
+const MOST = 2_000_000; // characters of all of them
+const MOST_OF_MOMENTS = 1_200_000; // of one
+const MOST_MARKS = 10_000;
+const WORDS = new Set(['BEEP', 'SHOW', 'FAULT']);
+
+export class Run {
+  /** @type {Of} */
+  of;
+  number = 0;
+  moments = new Moments(MOST_OF_MOMENTS);
+  /** @type {{at_ms: number, kind: string}[]} */
+  marks = [];
+  /** @type {Row[]} */
+  rows = [];
+  /** Where what is recorded ends, by the robot's clock. @type {number | null} */
+  end_ms = null;
+  /** What it says of the program. @type {Pick<Checked, 'places' | 'shows' | 'variables'>} */
+  program;
+  /** The world as it is drawn. @type {import('../world/parts.js').World | null} */
+  shapes;
+  /** It cannot be played again: somebody else has driven it. */
+  isJudged = false;
+  /** The file that it was opened from; nothing of one that was recorded here. */
+  file = '';
+  /** When it is now, for a run that is still recorded. @type {(() => number) | null} */
+  clock = null;
+  /** Where it and the recorded one part, once it was played again. @type {import('../python.js').Parting | null} */
+  parting = null;
+  #size = 0;
+  #bumps = 0;
+
+  /**
+   * @param {Of} of
+   * @param {Pick<Checked, 'places' | 'shows' | 'variables'>} program
+   * @param {import('../world/parts.js').World | null} shapes
+   */
+  constructor(of, program, shapes) {
+    this.of = of;
+    this.program = program;
+    this.shapes = shapes;
+  }
+
+  /** @returns {number} characters */
+  get size() {
+    return this.moments.size + this.#size + this.file.length;
+  }
+
+  /** @returns {number} seconds */
+  get seconds() {
+    if (this.moments.length) return (this.moments.last_ms - this.moments.first_ms) / 1000;
+    return ((this.rows.at(-1)?.[0] ?? 0) - (this.rows[0]?.[0] ?? 0)) / 1000;
+  }
+
+  /** @param {RobotState} state the next one of a virtual robot's run */
+  add(state) {
+    for (const [at_ms, what] of state.events.filter(isSeen)) {
+      const [word = ''] = what.split(' ');
+      this.mark(at_ms, WORDS.has(word) ? word : '');
+    }
+    if (state.bumps > this.#bumps) this.mark(state.now_ms, 'BUMP');
+    this.#bumps = state.bumps;
+    if (this.of.of === 'virtual' && !this.file) {
+      this.markKeys(state.rows ?? []);
+      for (const row of state.rows ?? []) this.put(row);
+    }
+    if (state.parting && !this.parting) {
+      this.parting = state.parting;
+      if (state.parting.at_ms !== null) this.mark(state.parting.at_ms, 'PART');
+    }
+    if (!state.is_full && this.of.of === 'virtual') this.end_ms = state.now_ms;
+    this.moments.add(state);
+  }
+
+  /** It is played: what is seen of it begins anew. */
+  again() {
+    this.moments.begin();
+    this.marks = [];
+    this.parting = null;
+    this.#bumps = 0;
+  }
+
+  /** @param {Row[]} rows in which somebody may have pressed keys */
+  markKeys(rows) {
+    for (const [at_ms, what] of rows) if (/^KEYS (?!0 0 0$)/.test(what)) this.mark(at_ms, 'KEYS');
+  }
+
+  /** @param {number} at_ms @param {string} kind */
+  mark(at_ms, kind) {
+    this.marks.push({ at_ms, kind });
+    if (this.marks.length > MOST_MARKS) this.marks.splice(0, MOST_MARKS / 2);
+  }
+
+  /** @param {Row} row */
+  put(row) {
+    this.rows.push(row);
+    this.#size += row[1].length + 12;
+  }
+}
+
+export class Runs {
+  /** The newest last. @type {Run[]} */
+  #runs = [];
+  #count = 0;
+
+  /** @returns {readonly Run[]} the newest first */
+  get all() {
+    return this.#runs.toReversed();
+  }
+
+  /** @returns {number} characters */
+  get size() {
+    return this.#runs.reduce((sum, run) => sum + run.size, 0);
+  }
+
+  /** @param {Run} run is the newest one from now on */
+  begin(run) {
+    run.number = this.#count += 1;
+    this.#runs = [...this.#runs.filter(({ rows, moments }) => rows.length || moments.length > 1), run];
+    this.trim();
+  }
+
+  /** Forgets the oldest ones, where there are too many or they are too large. */
+  trim() {
+    while (this.#runs.length > 1 && (this.#runs.length > MOST_RUNS || this.size > MOST)) this.#runs.shift();
+  }
+}

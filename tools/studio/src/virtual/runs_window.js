@@ -1,0 +1,122 @@
+// The window with the last runs: one is seen again, saved as a file, and a file is opened.
+
+import { element } from '../page/elements.js';
+import { bytesOf, download, whenChosen } from '../page/files.js';
+import { button, made } from '../page/made.js';
+import { pageState } from '../page/page_state.js';
+import { bugSaid } from '../page/faults.js';
+import { known, text } from '../page/texts.js';
+
+/** @typedef {import('./runs.js').Run} Run */
+/** @typedef {import('./runs.js').Row} Row */
+/** @typedef {{text: string, robot: string, of: 'virtual' | 'real', world: unknown, end_ms: number, shapes: import('../world/parts.js').World | null, rows: Row[], is_by_button: boolean, file: string}} Opened */
+
+const ENDING = '.tsr';
+
+export class RunsWindow {
+  #window = element('runs', HTMLDialogElement);
+  #page;
+
+  /**
+   * @param {object} page
+   * @param {import('../python.js').Python} page.python
+   * @param {import('./runs.js').Runs} page.runs
+   * @param {(run: Run) => void} page.see one of them
+   * @param {(opened: Opened, again: Run | null) => void} page.play the run of a file, which may be kept already
+   */
+  constructor(page) {
+    this.#page = page;
+    element('runs_open', HTMLButtonElement).addEventListener('click', () => {
+      this.#say('');
+      this.#show();
+      this.#window.showModal();
+    });
+    element('runs_close', HTMLButtonElement).addEventListener('click', () => this.#window.close());
+    element('run_open', HTMLButtonElement).addEventListener('click', () => element('run_file', HTMLInputElement).click());
+    whenChosen('run_file', (file) => this.open(file));
+    addEventListener('dragover', (event) => {
+      if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
+    });
+    addEventListener('drop', (event) => {
+      const file = event.dataTransfer?.files[0];
+      if (!file) return;
+      event.preventDefault(); // a browser would leave the page for it
+      if (isRun(file.name)) this.open(file);
+      else pageState.note.set(text('not_opened', { name: file.name, why: text('run_not') }));
+    });
+  }
+
+  /** @param {File} file of a run: it is played, or why it cannot be is told */
+  async open(file) {
+    try {
+      await this.openData(await bytesOf(file));
+    } catch {
+      this.#refuse(file.name, text('unreadable'));
+    }
+  }
+
+  /** @param {Uint8Array} data @param {string} [name] @param {Run | null} [again] that is kept already */
+  async openData(data, name = '', again = null) {
+    const answer = await this.#page.python.ask({ do: 'open_run' }, data);
+    if (answer.what) {
+      this.#refuse(name, text(known(`record_${answer.what}`), { line: answer.line }));
+      return;
+    }
+    this.#window.close();
+    this.#page.play({ ...answer, file: new TextDecoder().decode(data) }, again);
+  }
+
+  /** @param {Run} run @returns {Promise<string>} its file */
+  async fileOf(run) {
+    if (run.file) return run.file;
+    const { of, rows, end_ms } = run;
+    const answer = await this.#page.python.ask({ do: 'write_run', ...of, rows, end_ms: end_ms ?? run.clock?.() ?? rows.at(-1)?.[0] ?? 0 });
+    return answer.file;
+  }
+
+  /** @param {string} name @param {string} why */
+  #refuse(name, why) {
+    if (this.#window.open) this.#say(why);
+    else pageState.note.set(text('not_opened', { name, why }));
+  }
+
+  /** @param {string} said */
+  #say(said) {
+    element('runs_said', HTMLElement).textContent = said;
+  }
+
+  #show() {
+    const rows = this.#page.runs.all.map((run) => {
+      const what = text(run.of.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.seconds.toFixed(1) });
+      const see = button('', () => {
+        this.#window.close();
+        this.#page.see(run);
+      }, what);
+      const save = button('run_save', () => this.#save(run));
+      save.disabled = run.isJudged || !(run.file || run.rows.length);
+      return made('li', '', see, made('code', '', begun(run.of.text)), save);
+    });
+    element('runs_list', HTMLElement).replaceChildren(...rows);
+    if (!rows.length) this.#say(text('runs_none'));
+  }
+
+  /** @param {Run} run */
+  async #save(run) {
+    try {
+      download(`${text('run_name')}${ENDING}`, await this.fileOf(run));
+    } catch (why) {
+      this.#say(bugSaid(why));
+    }
+  }
+}
+
+/** @param {string} name of a file */
+export function isRun(name) {
+  return name.toLowerCase().endsWith(ENDING);
+}
+
+/** @param {string} program */
+function begun(program) {
+  const line = program.split('\n').map((each) => each.trim()).filter(Boolean).join(' ');
+  return line.length > 60 ? `${line.slice(0, 60)}…` : line;
+}

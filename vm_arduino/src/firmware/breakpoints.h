@@ -1,0 +1,79 @@
+// The places where a program halts, and the steps of one that has halted.
+//
+// There is a kTrap in the code only while the machine runs: it is put in before each tick and taken out
+// after it. So all that reads or keeps a program finds it as it was verified.
+//
+// A task halts once before a statement, however often it tries it: a reading that is late, a SHOW
+// without room, the check of an UNTIL or a WHEN. It is in that statement until it is found elsewhere:
+// at one of those that may be next, where there are traps, too, or after a tick.
+
+#pragma once
+
+#include <stdint.h>
+
+#include "../vm/machine.h"
+#include "statements.h"
+
+namespace tiniscript {
+
+constexpr uint8_t kMostPlaces = 4;
+
+class Breakpoints {
+ public:
+  // Sets all places of a program: offsets of 16 bits. False: one of them begins no statement, and
+  // nothing has changed.
+  bool set(const uint8_t* code, uint16_t length, const uint8_t* places, uint8_t count);
+  void forget_places() { count_ = 0; }
+  bool has_places() const { return count_ != 0; }
+
+  // A run begins, which has a code, or ends. Places that are not in that code are forgotten.
+  void begin(uint8_t* code, uint16_t length);
+  void end();
+
+  // Whether there is something to do before and after a tick.
+  bool are_on() const { return count_ != 0 || is_stepping_ || passed_ != kNoPlace || is_in_some_; }
+
+  // Whether traps are in the code.
+  bool are_in() const { return in_ != 0; }
+
+  void put_in();
+
+  // Takes them out after the tick. Returns whether the program halts; it does only where it may.
+  // Else a machine that has halted goes on.
+  bool take_out(Machine* machine, Status status, bool may_halt);
+
+  bool is_halted() const { return is_halted_; }
+
+  // Lets a program that is halted go on: to a place, or as a step to the next statement of its task.
+  // Its machine goes on with `resume`.
+  void go_on(const Machine& machine, bool is_step);
+
+ private:
+  static constexpr uint8_t kAllTasks = kTasks + 1;
+
+  struct Trap {
+    uint16_t place;
+    uint8_t byte;
+  };
+
+  void put(uint16_t place);
+  bool is_place(uint16_t at) const;
+  void enter(const Machine& machine);
+  void note_left(const Machine& machine);
+
+  uint8_t* code_;
+  uint16_t length_;
+  uint8_t count_;
+  uint16_t places_[kMostPlaces];
+  bool is_halted_;
+  bool is_stepping_;
+  uint8_t stepper_;    // the task that steps
+  uint16_t step_end_;  // where that ends, if the task is in no statement
+  uint16_t passed_;    // where there is no trap in the next tick
+  bool is_in_some_;    // a task is in a statement
+  Statement in_statement_[kAllTasks];  // where each task has halted; its begin may be kNoPlace
+  uint8_t in_;         // how many traps are in
+  Trap traps_[kMostPlaces + kMostNext * kAllTasks + 1];
+};
+
+}  // namespace tiniscript

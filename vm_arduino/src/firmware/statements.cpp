@@ -1,0 +1,82 @@
+#include "statements.h"
+
+#include "../vm/build.h"
+#include "../vm/decode_form.h"
+
+#ifdef tiniscript_has_breakpoints
+
+namespace tiniscript {
+
+namespace {
+
+bool jumps(ControlRole role) {
+  switch (role) {
+    case ControlRole::kIf:
+    case ControlRole::kElse:
+    case ControlRole::kWhile:
+    case ControlRole::kLoop:
+    case ControlRole::kAgain:
+    case ControlRole::kNext:
+    case ControlRole::kBreak:
+    case ControlRole::kDrop:
+    case ControlRole::kCall:
+    case ControlRole::kDef:
+    case ControlRole::kTask:
+    case ControlRole::kWhen:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// Where an instruction leads whose last operand, one byte or two, ends before `after`.
+uint16_t target_of(const uint8_t* code, uint16_t after, const DecodeForm& form) {
+  const uint8_t* last = code + after - 1;
+  uint16_t distance = *last;
+  if (form.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--last);
+  return static_cast<uint16_t>(form.jumps_back() ? after - distance : after + distance);
+}
+
+}  // namespace
+
+bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, Statement* found) {
+  *found = {place, length, {length, kNoPlace, kNoPlace}, false, false};
+  bool is_inside = false;      // from `place` on
+  bool is_check = false;       // of an UNTIL or a WHEN
+  uint8_t depth = 0;           // values on the stack
+  uint16_t joined = 0;         // where the last AND_THEN or OR_ELSE ends that is open
+  uint8_t count = 1;           // of `next`
+  for (uint16_t at = 0; at < length;) {
+    const bool is_begin = depth == 0 && at >= joined;
+    if (is_inside && is_begin && !is_check) {
+      found->end = found->next[0] = at;
+      return true;
+    }
+    if (at == place) {
+      if (!is_begin) return false;
+      is_inside = true;
+      found->is_in_check = is_check;
+    }
+    const DecodeForm form = decode_form_of(code[at]);  // a prefix has one byte, and no effect
+    const ControlRole role = form.role();
+    at = static_cast<uint16_t>(at + form.size());
+    if (code[at - form.size()] == static_cast<uint8_t>(Op::kEscape)) continue;
+    depth = static_cast<uint8_t>(depth - form.pops() + form.pushes());
+    if (role == ControlRole::kJoin) {
+      const uint16_t target = target_of(code, at, form);
+      if (target > joined) joined = target;
+    } else if (role == ControlRole::kWatch || role == ControlRole::kWhen) {
+      is_check = true;
+    } else if (role == ControlRole::kUntil || role == ControlRole::kLook) {
+      is_check = false;
+    }
+    if (!is_inside) continue;
+    if (jumps(role) && count < kMostNext) found->next[count++] = target_of(code, at, form);
+    if (role == ControlRole::kReturn) found->returns = true;
+  }
+  return is_inside;
+}
+
+}  // namespace tiniscript
+
+#endif

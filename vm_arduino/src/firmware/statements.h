@@ -1,0 +1,27 @@
+// The statements of verified code: where each begins, and where a program may be next after one.
+//
+// A statement begins where the stack is empty and no part of an expression is open. The check of an
+// UNTIL belongs to the move before it, and that of a WHEN to the WHEN; their own begins may be places
+// all the same, and are statements then that end with the check.
+
+#pragma once
+
+#include <stdint.h>
+
+namespace tiniscript {
+
+constexpr uint16_t kNoPlace = 0xffff;
+constexpr uint8_t kMostNext = 3;
+
+struct Statement {
+  uint16_t begin;
+  uint16_t end;  // where the next one begins that is no check, or the code's length
+  uint16_t next[kMostNext];  // where it goes on: at its end, or where it jumps to; or kNoPlace
+  bool returns;      // or after the call that has led here
+  bool is_in_check;  // it is part of one
+};
+
+// Finds the statement that begins at a place. False: none begins there.
+bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, Statement* found);
+
+}  // namespace tiniscript
