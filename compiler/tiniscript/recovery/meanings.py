@@ -33,7 +33,7 @@ ASKING = frozenset(("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL"))
 
 _TOKEN = re.compile(
     r"(\d+(?:\.\d+)?|(?<!\d)\.\d+)|([A-Za-zÀ-ÿ_][\wÀ-ÿ]*)"
-    r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|\+=|-=|\*=|\S\uFE0F?)"
+    r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|--(?=\s*(?:$|[;)]))|\+=|-=|\*=|\S\uFE0F?)"
 )
 _SIGNS = SIGNS | frozenset("(),;|")
 _LONGEST = 4  # words of a name
@@ -252,7 +252,7 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
             continue
         if depth > 0:
             found.in_brackets.add(token.text)
-        elif after.text in ("=", "++", "+=", "-=", ":=", "<-") and token.text not in WORDS:
+        elif after.text in ("=", "++", "--", "+=", "-=", ":=", "<-") and token.text not in WORDS:
             found.variables.add(token.text)
         is_def = "DEF" in (token.text, concept_of(token.text))
         is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not

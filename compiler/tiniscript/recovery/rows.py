@@ -325,7 +325,7 @@ o=(|AND|OR the? wall s=<|<=|>|>= n=@num CM?
 v=@name = a=@num|@val b=@start
     | $v = $a ; $b | 1 | TS013 | applied
     | X = DISTANCE F(1, 50) => X = DISTANCE;F(1, 50)
-v=@name ++ | $v = $v + 1 | 1 | TS050 | applied | v = 0⏎v++ => v = 0⏎v = v + 1
+v=@name ⟨++¦--⟩ | $v = $v ⟨+¦-⟩ 1 | 1 | TS050 | applied | v = 0⏎v⟨++¦--⟩ => v = 0⏎v = v ⟨+¦-⟩ 1
 ^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | X <- 5⏎F(X, 80) => X = 5⏎F(X, 80)
 ^ v=@name = + e=@num $ | $v = $v + $e | 1 | TS050 | offered | X = 1⏎X = +1 => X = 1⏎X = X + 1
 v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | X = 1⏎X += 2 => X = 1⏎X = X + 2
@@ -452,7 +452,7 @@ ELSE ( a=@noparen* s=<|<=|>|>=|=|<> b=@noparen+ )
 h=IF|WHILE|ELSEIF|WHEN < a=@val s=<|<=|>|>=|= b=@num|@val > do|:?
     | &h ( $a $s $b ) | 1 | TS010 | applied
     | si <DISTANCE < 15> entonces⏎S⏎fin => IF(DISTANCE < 15)⏎S⏎ENDIF
-<asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ )
+h=IF|WHILE|ELSEIF|WHEN|UNTIL ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ )
     | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied
     | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R >
     9));S;ENDIF

@@ -87,7 +87,7 @@ class ExpressionParser:
         elif kind == "(":
             read.wait(OPEN, "(", token, cursor.i)
             read.brackets += 1
-        else:
+        elif not self.needless_plus(token, read):
             self.no_value(token)
         cursor.i += 1
         return False
@@ -197,6 +197,26 @@ class ExpressionParser:
         self.reporter.fail(codes.ARGUMENT_COUNT, span, word=word.text, usage=word.usage,
                            example=example, wanted=str(len(word.arguments)),
                            found=str(count))  # fmt: skip
+
+    def needless_plus(self, token: Token, read: Postfix) -> bool:
+        """A plus before a value says nothing; return whether it is one.
+
+        Not that of `X = +1` where X had a value: `X += 1` may be meant.
+        """
+        tokens, i = self.cursor.tokens, self.cursor.i
+        if not (read.parts or read.waiting) and tokens[i - 1].kind == "=":
+            if any(each.text == tokens[i - 2].text for each in tokens[: i - 2]):
+                return False
+        after = tokens[min(i + 1, len(tokens) - 1)]
+        begins = after.kind in (NUMBER, "(", "-") or _is_name(after) or after.text in FUNCTIONS
+        if token.kind != "+" or not begins:
+            return False
+        repair = Repair((Edit(token.span, ""),), True)
+        values = {"plus": token.text}
+        self.reporter.diagnostics.append(
+            Diagnostic(codes.EXTRA_WORD, token.span, values, token.span, repair)
+        )
+        return True
 
     def no_value(self, token: Token) -> NoReturn:
         """A value is expected, and this token begins none."""

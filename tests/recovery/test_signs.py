@@ -1,0 +1,79 @@
+"""A plus that says nothing, and one more or one less: read alike wherever they stand."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tests.studio.programs import programs
+from tiniscript.base.source import Source, applied
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.diagnostics.rendering import message
+from tiniscript.syntax.lexer import NUMBER, scan
+
+RIGHT = [each.text for each in programs()
+         if each.robot == "tinibot" and "~" not in each.text and not check(each.text)]  # fmt: skip
+STEPS = ("{}++", "{}--", "{} ++", "{} --")
+FRAMES = (
+    "{}",
+    "SI|{}",
+    "LOOP(3);{};END_LOOP",
+    "IF(DISTANCE < 10);{};ENDIF",
+    "{};S",
+    "TASK;{};END_TASK",
+)
+
+
+def test_a_plus_before_a_number_goes_and_the_number_stays() -> None:
+    """Of every number of every program: but for that of `X = +1`, which may be `X += 1`."""
+    count = 0
+    for text in RIGHT:
+        tokens = scan(text).tokens
+        for k, token in enumerate(tokens):
+            names = [each.text for each in tokens[: max(0, k - 2)]]
+            if tokens[k - 1].kind == "-":  # the number would lose its sign: it is only shown
+                continue
+            if token.kind is not NUMBER or (
+                tokens[k - 1].kind == "=" and tokens[k - 2].text in names
+            ):
+                continue
+            wrong = f"{text[: token.start]}+{text[token.start :]}"
+            told = check(wrong)
+            assert [(each.code, each.span.start) for each in told] == [
+                (codes.EXTRA_WORD, token.start)
+            ], wrong
+            assert applied(wrong, edits_of(told[0]) or []) == fixed(wrong, check).text == text
+            count += 1
+    assert count > 300
+
+
+@pytest.mark.parametrize("text", ["X = 1;X = +5", "X = 1;W(X);X =+ 5"])
+def test_a_plus_after_the_sign_of_a_variable_that_has_a_value_is_only_shown(text: str) -> None:
+    told = check(f"{text};SHOW(X)")
+    assert "X = X + 5" in message(told[0], Source(text), "en").fix
+    assert fixed(f"{text};SHOW(X)", check).text == f"{text};SHOW(X)"
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize("step", STEPS)
+def test_one_more_or_less_is_read_everywhere(step: str, frame: str) -> None:
+    text = frame.format("SPEED = 60;" + step.format("SPEED") + ";F(1, SPEED)")
+    sign = step.strip("{} ")[0]
+    mended = fixed(text, check).text
+    assert f"SPEED = SPEED {sign}" in mended and mended.count("SPEED") == 4
+    assert not [each for each in check(mended) if each.code.is_mistake]
+
+
+@pytest.mark.parametrize("word", ["AND", "OR"])
+@pytest.mark.parametrize(
+    "frame", ["F(5, 60) UNTIL{}", "IF{};S;ENDIF", "WHILE{};F(1, 50);END_WHILE", "WHEN{};S;END_WHEN",
+              "IF(DISTANCE < 5);S;ELSEIF{};S;ENDIF", "W(5) UNTIL{}"],
+)  # fmt: skip
+def test_questions_in_brackets_of_their_own_are_one(frame: str, word: str) -> None:
+    text = frame.format(f"(DISTANCE < 10) {word} (LIGHT_L < 20)")
+    mended = fixed(text, check).text
+    assert not [each for each in check(mended) if each.code.is_mistake]
+    assert mended.replace(" ", "") == frame.format(
+        f"((DISTANCE < 10) {word}(LIGHT_L < 20))"
+    ).replace(" ", "")
