@@ -191,7 +191,7 @@ def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: servi
 # -- what a run needs
 
 # What the page says where something is held; the pictures and the style are the browser's to fetch.
-WORDS = "#coming, #status:has-text('not come'), #doing:has-text('not come')"
+WORDS = "#coming, #status:has-text('not arrive'), #doing:has-text('not arrive')"
 OF_THE_COMPILER = ("worker.js", "pyodide.asm.mjs", "pyodide.asm.wasm", "python.zip",
                    "tiniscript.zip", "messages.en.json")  # fmt: skip
 BEGINS = "html[data-screen=start] [data-begin=dance]"

@@ -325,7 +325,7 @@ o=(|AND|OR the? wall s=<|<=|>|>= n=@num CM?
 v=@name = a=@num|@val b=@start
     | $v = $a ; $b | 1 | TS013 | applied
     | X = DISTANCE F(1, 50) => X = DISTANCE;F(1, 50)
-v=@name ⟨++¦--⟩ | $v = $v ⟨+¦-⟩ 1 | 1 | TS050 | applied | v = 0⏎v⟨++¦--⟩ => v = 0⏎v = v ⟨+¦-⟩ 1
+v=@name ⟨++¦--⟩ | $v = $v ⟨+¦-⟩ 1 | 1 | TS050 | applied | v = 0⏎v⟨++¦--⟩ => v = 0⏎v = v ⟨+ ¦-⟩1
 ^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | X <- 5⏎F(X, 80) => X = 5⏎F(X, 80)
 ^ v=@name = + e=@num $ | $v = $v + $e | 1 | TS050 | offered | X = 1⏎X = +1 => X = 1⏎X = X + 1
 v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | X = 1⏎X += 2 => X = 1⏎X = X + 2

@@ -201,12 +201,11 @@ class ExpressionParser:
     def needless_plus(self, token: Token, read: Postfix) -> bool:
         """A plus before a value says nothing; return whether it is one.
 
-        Not that of `X = +1` where X had a value: `X += 1` may be meant.
+        Not that of `X = +1`: `X += 1` may be meant.
         """
         tokens, i = self.cursor.tokens, self.cursor.i
-        if not (read.parts or read.waiting) and tokens[i - 1].kind == "=":
-            if any(each.text == tokens[i - 2].text for each in tokens[: i - 2]):
-                return False
+        if tokens[i - 1].kind == "=" and not (read.parts or read.waiting):
+            return False
         after = tokens[min(i + 1, len(tokens) - 1)]
         begins = after.kind in (NUMBER, "(", "-") or _is_name(after) or after.text in FUNCTIONS
         if token.kind != "+" or not begins:
