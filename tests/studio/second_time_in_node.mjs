@@ -268,6 +268,7 @@ const PARTS = {
 
   // The panel of the virtual robot; its pictures and sounds are noted.
   async panel() {
+    globalThis.getComputedStyle = () => ({ getPropertyValue: (name) => name });
     let notes = [];
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], seconds: 0, name: 'w' };
     class Choice { shapes = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
