@@ -126,11 +126,11 @@ def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
         has_bracket = "(" in slips.before_it(slip) + slips.found_in(slip)
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
     values = told.values_as(code)
-    found, near = values.get("found", "").upper(), values.get("right", "")
-    is_near = nearest(found, [near]) or (near in WAYS and is_slip(found, near))
+    found, suggestion = values.get("found", "").upper(), values.get("right", "")
+    is_near = nearest(found, [suggestion]) or (suggestion in WAYS and is_slip(found, suggestion))
     if code is codes.OTHER_LANGUAGE and is_near:
         code = codes.UNKNOWN_WORD
-        values |= {"found": values["found"].upper(), "near": near}
+        values |= {"found": values["found"].upper(), "near": suggestion}
     return code, values
 
 

@@ -28,7 +28,7 @@ from tiniscript.recovery.findings import meant_in
 from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
-from tiniscript.recovery.leftovers import leftovers, of_its_frame
+from tiniscript.recovery.leftovers import leftovers, setup_and_end_leftovers
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
 from tiniscript.recovery.setup import SEAL, beginning, other_word
@@ -139,7 +139,7 @@ def _counters(wrong: Wrong) -> Findings:
 
 def _frame(wrong: Wrong) -> Findings:
     """Return what begins a program once more, or ends it, which needs no word (`leftovers`)."""
-    return _with_edits(of_its_frame(wrong.source, wrong.kit))
+    return _with_edits(setup_and_end_leftovers(wrong.source, wrong.kit))
 
 
 def _leftovers(wrong: Wrong) -> Findings:

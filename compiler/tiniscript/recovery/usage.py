@@ -506,10 +506,10 @@ class Found:
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
         is_taught = _TAUGHT.search(text[max(0, start - _LONG_HEAD) : start])
         right = in_place_of(text, word) if is_set or is_taught else ""
-        near = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
+        suggestion = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
         is_clock = bool(is_set and word == "TIME" and not is_set[1])
-        is_everywhere = bool(right) and (word in SINCE or not (near or is_clock))
-        return _OtherName(word, right, near, is_taught is not None, is_set, is_everywhere)
+        is_everywhere = bool(right) and (word in SINCE or not (suggestion or is_clock))
+        return _OtherName(word, right, suggestion, is_taught is not None, is_set, is_everywhere)
 
     def renamed(self) -> list[Span]:
         """Return each place where a word is meant as a name: S of `F(S, 80)`, not S alone."""
@@ -562,7 +562,7 @@ class _NoValue(NamedTuple):
 class _OtherName(NamedTuple):
     word: str
     right: str
-    near: str
+    suggestion: str
     is_def: bool
     is_set: re.Match[str] | None
     is_everywhere: bool
@@ -1048,7 +1048,7 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "since": _of(lambda it: SINCE.get(it.other_name.word)),
     "name_line": lambda gaps: "".join(_other_rows(gaps)[:1]),
     "name_lines": lambda gaps: _many(_other_rows(gaps)), "name_times": _times_in_line,
-    "name_right": _of(lambda it: it.other_name.near or it.other_name.right),
+    "name_right": _of(lambda it: it.other_name.suggestion or it.other_name.right),
     "time_right": _of(lambda it: it.other_name.right
                       if it.other_name.is_set and it.other_name.is_set[1] else ""),
     "clock": _of(lambda it: it.other_name.right

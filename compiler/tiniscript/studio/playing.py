@@ -163,11 +163,11 @@ class Played(Simulation):
         """Return what is to be seen, too: whether it is over, and where the two part."""
         parting = None
         if self.parting is not None:
-            robot, virtual = (
+            recorded_row, virtual_row = (
                 row and row._asdict() for row in (self.parting.robot, self.parting.virtual)
             )
             began_ms = (self.robot.started_ms or 0) if self.recording.is_virtual else 0
-            told = {"robot": robot, "virtual": virtual, "began_ms": began_ms}
+            told = {"robot": recorded_row, "virtual": virtual_row, "began_ms": began_ms}
             parting = {**self.parting._asdict(), **told}
         whole = {**super().state(), "is_held": False}  # nobody but this class holds it
         return {**whole, "is_over": self._is_over, "parting": parting}
@@ -233,12 +233,14 @@ class Played(Simulation):
         self._last_ms = rows[count].ms if count < len(rows) else self.recording.end_ms
         return tuple(row for row in rows[:count] if not row.is_input)
 
-    def _part(self, what: str, agreed: int, ours: Row | None, theirs: Row | None) -> None:
-        at_ms = min(row.ms for row in (ours, theirs) if row is not None)
-        at = theirs.at if theirs is not None and theirs.at >= 0 else self.robot.at
+    def _part(
+        self, what: str, agreed: int, recorded_row: Row | None, virtual_row: Row | None
+    ) -> None:
+        at_ms = min(row.ms for row in (recorded_row, virtual_row) if row is not None)
+        at = virtual_row.at if virtual_row is not None and virtual_row.at >= 0 else self.robot.at
         place = self.ready.places.at(at) if at is not None else None
         line = place.line if place is not None else 0
-        self.parting = Parting(what, agreed, line, ours, theirs, "", at_ms)
+        self.parting = Parting(what, agreed, line, recorded_row, virtual_row, "", at_ms)
 
     # -- a real robot's run, beside it ------------------------------------------------------------
 
@@ -341,26 +343,36 @@ class Played(Simulation):
         before = len(virtual)  # rows of the virtual robot before it read what nobody knows
         if self._unread is not None:
             before = self._virtual.index(self._unread[1])
-        for count, ours in enumerate(told):
+        for count, recorded_row in enumerate(told):
             line = self._places[count] if count < len(self._places) else 0
-            theirs = virtual[count] if count < len(virtual) else None
+            virtual_row = virtual[count] if count < len(virtual) else None
             if self._unread is not None and count >= before:
                 return self._unread_parting(count, began_ms)
-            if theirs is None:
-                return Parting("robot_more", count, line, ours, None, "", ours.ms + began_ms)
-            if ours.event != theirs.event:
-                return Parting("value", count, line, ours, theirs, "", theirs.ms + began_ms)
-            if abs(ours.ms - theirs.ms) > _off_ms(max(ours.ms, theirs.ms)):
-                return Parting("time", count, line, ours, theirs, "", theirs.ms + began_ms)
+            if virtual_row is None:
+                return Parting(
+                    "robot_more", count, line, recorded_row, None, "", recorded_row.ms + began_ms
+                )
+            if recorded_row.event != virtual_row.event:
+                return Parting(
+                    "value", count, line, recorded_row, virtual_row, "", virtual_row.ms + began_ms
+                )
+            if abs(recorded_row.ms - virtual_row.ms) > _off_ms(
+                max(recorded_row.ms, virtual_row.ms)
+            ):
+                return Parting(
+                    "time", count, line, recorded_row, virtual_row, "", virtual_row.ms + began_ms
+                )
         count = len(told)
         cut = rows[-1].event if rows[-1].event in CUT else ""
         if self._unread is not None:
             return self._unread_parting(count, began_ms)
         if cut in ("", "STOPPED") and len(virtual) > count:
-            theirs = virtual[count]  # the robot has not said that, and had the time for it
-            if theirs.ms + _off_ms(end_ms) < end_ms:
+            virtual_row = virtual[count]  # the robot has not said that, and had the time for it
+            if virtual_row.ms + _off_ms(end_ms) < end_ms:
                 line = self._places[count] if count < len(self._places) else 0
-                return Parting("virtual_more", count, line, None, theirs, "", theirs.ms + began_ms)
+                return Parting(
+                    "virtual_more", count, line, None, virtual_row, "", virtual_row.ms + began_ms
+                )
         return Parting("missed" if cut == "MISSED" else "same", count)
 
     def _unread_parting(self, agreed: int, began_ms: int) -> Parting:

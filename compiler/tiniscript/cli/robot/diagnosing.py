@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from tiniscript.cli import inputs
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, baud_of
-from tiniscript.cli.terminal.asking import agreed, can_ask
+from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
@@ -100,13 +100,13 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
     def open_wire(port: str, baud: int) -> Wire:
         return Wire(ports.opened(port, baud))
 
-    def agrees(port: str) -> bool:
+    def confirms_opening(port: str) -> bool:
         if options.yes or is_agreed:
             return True
         if options.json or not can_ask():
             return False
         doing.end()
-        return agreed(text("doctor_yes", language).format(port=shown(port)))
+        return confirm(text("doctor_yes", language).format(port=shown(port)))
 
     @contextmanager
     def share(port: str) -> Iterator[LinkConnection]:
@@ -116,6 +116,6 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
             yield connection.line
 
     return Doors(
-        System(), open_wire, lambda port: joined(port, "doctor"), agrees, ports.is_radio,
+        System(), open_wire, lambda port: joined(port, "doctor"), confirms_opening, ports.is_radio,
         share, lambda what: doing.tell(text(f"doing_{what}", language).format(n=pings)),
     )  # fmt: skip

@@ -34,13 +34,13 @@ TABLE = (
     # numbers that nobody means
     Row((codes.WILL_FAULT,), STATEMENT, numbers.will_fault),
     Row(
-        (codes.MOVE_OF_NO_TIME, codes.WILL_FAULT, codes.SWAPPED, codes.LONG_TIME,
+        (codes.ZERO_TIME_MOVE, codes.WILL_FAULT, codes.SWAPPED, codes.LONG_TIME,
          codes.LITTLE_POWER, codes.ZERO_BEFORE, codes.CUT_VALUE),
         ir.Move, numbers.of_move,
     ),
     Row((codes.SWAPPED,), ir.Move, numbers.swapped_names),
     Row((codes.SWAPPED,), PROGRAM, numbers.swapped_rounds),
-    Row((codes.MOVE_OF_NO_TIME, codes.LONG_TIME, codes.CUT_VALUE), ir.Beep, numbers.of_beep),
+    Row((codes.ZERO_TIME_MOVE, codes.LONG_TIME, codes.CUT_VALUE), ir.Beep, numbers.of_beep),
     Row((codes.NEVER_REPEATS, codes.ROUNDED_TIMES), ir.Loop, numbers.of_times),
     # conditions whose answer does not come
     Row((codes.FROZEN_UNTIL, codes.TURNED_ROUND, codes.EXACT, codes.KNOWN_ANSWER),

@@ -64,7 +64,7 @@ class _LateConditions:
             comes = comes_true(condition, statement.direction, self._kit)
             if sensor is not None and comes:
                 asked = self._look.condition(branch.arms[0].span, "IF")
-                self._late(statement, sensor, asked)
+                self._report_late_check(statement, sensor, asked)
                 late.add(place)
         return late
 
@@ -82,9 +82,9 @@ class _LateConditions:
             sign = OPPOSITES[SIGN_OF[condition[2].op]]
             device, number = self._kit.readings[sensor], condition[1].value
             if looks_ahead(device) and device.low < number <= device.high:
-                self._late(move, sensor, f"{device.name} {sign} {as_text(number)}")
+                self._report_late_check(move, sensor, f"{device.name} {sign} {as_text(number)}")
 
-    def _late(self, move: ir.Move, sensor: int, asked: str) -> None:
+    def _report_late_check(self, move: ir.Move, sensor: int, asked: str) -> None:
         name = self._kit.readings[sensor].name
         written = self._source[move.span]
         values = {

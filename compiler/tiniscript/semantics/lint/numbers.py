@@ -77,7 +77,7 @@ def _of_time(move: Move, look: Look) -> list[Diagnostic]:
     if time is None:
         return _of_power(move) if is_ended else _measured(move, kit, text)
     if time <= 0 and not is_ended:
-        return [Diagnostic(codes.MOVE_OF_NO_TIME, move.span, {"word": move.direction})]
+        return [Diagnostic(codes.ZERO_TIME_MOVE, move.span, {"word": move.direction})]
     if zero is not None:  # `L(039, 60)`
         fix = f"{text[: zero.start(1)]}0.{zero[1][1:]}{text[zero.end(1) :]}"
         is_sure = len(zero[1]) > 2 and not zero[1].startswith("00")
@@ -101,7 +101,7 @@ def _of_way(move: Move, kit: Kit) -> list[Diagnostic]:
     way = known_value(move.time)
     if way is not None and way <= 0:
         values = {"word": move.direction, "unit": move.unit}
-        return [Diagnostic(codes.MOVE_OF_NO_TIME, move.span, values)]
+        return [Diagnostic(codes.ZERO_TIME_MOVE, move.span, values)]
     try:
         way_ms(move, kit)
     except Fault as fault:
@@ -196,7 +196,7 @@ def of_beep(beep: Beep, around: Around, look: Look) -> None:
     time, hertz = known_value(beep.time), known_value(beep.hertz)
     look.found += _cut(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:
-        look.report(codes.MOVE_OF_NO_TIME, beep.span, word="BEEP")
+        look.report(codes.ZERO_TIME_MOVE, beep.span, word="BEEP")
     if time is None or hertz is None or time < LONG_BEEP:
         return
     # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
