@@ -70,7 +70,7 @@ class Doors(NamedTuple):
     may_open: Callable[[str], bool]
     is_radio: Callable[[str], bool]
     share: Callable[[str], AbstractContextManager[LinkConnection]]
-    tell: Callable[[str], None] = lambda what: None
+    on_step: Callable[[str], None] = lambda what: None
 
 
 class Question(NamedTuple):
@@ -98,7 +98,7 @@ class Diagnosis(NamedTuple):
 
 
 def diagnosed(doors: Doors, question: Question) -> Diagnosis:
-    doors.tell("computer")
+    doors.on_step("computer")
     computer = looked(doors.system)
     port = question.port or question.last or _only(computer, question.virtual)
     if port is None:
@@ -140,7 +140,7 @@ def _opened(
         expected.hear(each)
 
     try:
-        findings = line.looked(wire, asked, expected._replace(hear=hear), doors.tell)
+        findings = line.looked(wire, asked, expected._replace(hear=hear), doors.on_step)
     except OSError:
         cause = "other_host" if is_address(port) else "port_gone"
         findings = [Finding(cause, not is_address(port))]
@@ -189,12 +189,12 @@ def _absent(computer: Computer) -> Finding:
 
 def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[Finding, ...]:
     robot = SharedRobot(client)
-    doors.tell("hello")
+    doors.on_step("hello")
     try:
         reply = robot.hello()
         if reply is None:
             return (probably("falls_silent"),)
-        return tuple(examined(robot, reply, question.expected, question.watch_ms, doors.tell))
+        return tuple(examined(robot, reply, question.expected, question.watch_ms, doors.on_step))
     except ConnectionLost:
         return (sure("port_gone"),)
 

@@ -81,7 +81,7 @@ class Restart(NamedTuple):
 
 def examined(
     robot: Robot, first: Reply[SentReply], expected: Expected, watch_ms: int = 0,
-    tell: Callable[[str], None] = lambda what: None,
+    on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
     """Return what is wrong with a robot whose answer to HELLO is `first`.
 
@@ -104,10 +104,10 @@ def examined(
     restarts: list[Restart] = []
     if before is not None:
         findings += _told(before)
-        lost, trips_ms = _hearing(robot, before, expected, tell)
+        lost, trips_ms = _hearing(robot, before, expected, on_step)
         findings += lost
         expected.hear(Heard(hello, before, _trim(robot, hello), trips_ms))
-        tell("watch")
+        on_step("watch")
         restarts = _watched(robot, hello, watch_ms)
     after = robot.status() if before is not None else None
     if restarts:
@@ -196,10 +196,10 @@ def _told(status: StatusReply) -> list[Finding]:
 
 
 def _hearing(
-    robot: Robot, before: StatusReply, expected: Expected, tell: Callable[[str], None]
+    robot: Robot, before: StatusReply, expected: Expected, on_step: Callable[[str], None]
 ) -> tuple[list[Finding], tuple[float, ...]]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
-    tell("pings")
+    on_step("pings")
     trips_ms = trips_of(robot, expected.pings, lambda: robot.pause(PAUSE_MS))
     missed = expected.pings - len(trips_ms)
     after = robot.status()

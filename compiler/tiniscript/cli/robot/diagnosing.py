@@ -71,7 +71,7 @@ def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expect
 
 def examination_of(
     connection: Connection, expected: Expected,
-    tell: Callable[[str], None] = lambda what: None,
+    on_step: Callable[[str], None] = lambda what: None,
 ) -> tuple[list[Finding], Heard | None]:  # fmt: skip
     """Let the doctor examine a robot that has answered; return what it found and heard."""
     robot = SharedRobot(connection.line, connection.wait)
@@ -79,7 +79,7 @@ def examination_of(
     if reply is None:
         raise connection.failure(Reply(LOST))
     heard: list[Heard] = []
-    findings = examined(robot, reply, expected._replace(hear=heard.append), tell=tell)
+    findings = examined(robot, reply, expected._replace(hear=heard.append), on_step=on_step)
     return findings, heard[-1] if heard else None
 
 

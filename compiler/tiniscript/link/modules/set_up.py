@@ -79,7 +79,7 @@ def steps(wanted: Wanted, dialect: Dialect) -> list[Step]:
 
 
 def done(
-    wire: Wire, module: Module, plan: list[Step], tell: Callable[[Outcome], None]
+    wire: Wire, module: Module, plan: list[Step], on_outcome: Callable[[Outcome], None]
 ) -> list[Outcome]:
     """Do the steps, and stop at the first that goes wrong. `tell` gets each outcome at once."""
     outcomes: list[Outcome] = []
@@ -88,7 +88,7 @@ def done(
         if step.what == BAUD and outcome.how != REFUSED:
             outcome = _at_its_speed(wire, module, outcome)
         outcomes.append(outcome)
-        tell(outcome)
+        on_outcome(outcome)
         if outcome.how not in GOOD:
             return outcomes
     return outcomes
