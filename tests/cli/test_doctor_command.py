@@ -104,7 +104,7 @@ def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
 def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> None:
     on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
     command = Command("doctor", "--port", pty_robot.port, "--watch", "60")
-    pty_robot.until(lambda: registry.found(pty_robot.port) is not None, "it is watched")
+    pty_robot.until(lambda: registry.find_registration(pty_robot.port) is not None, "it is watched")
     assert pty_robot.moves
     assert process("stop", "--port", pty_robot.port).code == 0  # its time is also the doctor's
     assert not pty_robot.moves

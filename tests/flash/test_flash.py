@@ -277,15 +277,15 @@ def test_the_avrdude_of_another_program_is_found(
 ) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
-    assert avrdude.found() is None
+    assert avrdude.find_avrdude() is None
     program = tmp_path / place
     program.parent.mkdir(parents=True)
     program.touch(mode=0o755)
-    assert avrdude.found() is None  # without its settings it does nothing
+    assert avrdude.find_avrdude() is None  # without its settings it does nothing
     inside = program.parent.parent / "etc" if program.parent.name == "bin" else program.parent
     inside.mkdir(exist_ok=True)
     (inside / "avrdude.conf").touch()
-    assert avrdude.found() == [str(program), "-C", str(inside / "avrdude.conf")]
+    assert avrdude.find_avrdude() == [str(program), "-C", str(inside / "avrdude.conf")]
 
 
 @pytest.mark.parametrize(("how", "said"), [

@@ -79,7 +79,7 @@ class Restart(NamedTuple):
     cause: str
 
 
-def examined(
+def examine(
     robot: Robot, first: Reply[SentReply], expected: Expected, watch_ms: int = 0,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from tiniscript.doctor.examination import Expected, examined
+from tiniscript.doctor.examination import Expected, examine
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
 from tiniscript.flash.bootloaders import MEGA, NANO_OLD, UNO, Bootloader
@@ -67,7 +67,7 @@ class Line(NamedTuple):
     nonce: int
 
 
-def looked(
+def diagnose_line(
     wire: Wire, line: Line, expected: Expected,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
@@ -78,7 +78,7 @@ def looked(
     on_step("hello")
     reply = robot.hello(HELLOS)
     if reply is not None:
-        return examined(robot, reply, expected, on_step=on_step)
+        return examine(robot, reply, expected, on_step=on_step)
     heard = before + robot.heard
     if _is_echo(heard, robot.spoken):
         return [sure("echo")]
@@ -141,13 +141,13 @@ def _by_cable(
         reply = robot.hello(1)
         if reply is not None:
             finding = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
-            rest = examined(robot, reply, expected, on_step=on_step)
+            rest = examine(robot, reply, expected, on_step=on_step)
             return [finding, *(finding for finding in rest if finding.cause != "fine")]
         if readable(more):
             return [sure("other_sketch", said=readable(more))]
         garbage = max(garbage, len(more))
     on_step("module")
-    module = talk.found(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))), wakes=False)
+    module = talk.find_module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))), wakes=False)
     if module is not None:
         cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
         return [sure(cause, baud=str(module.baud), module=module.dialect.name)]

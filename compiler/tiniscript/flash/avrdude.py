@@ -57,7 +57,7 @@ class Seen(NamedTuple):
     percent: int
 
 
-def found() -> list[str] | None:
+def find_avrdude() -> list[str] | None:
     """Return the command that runs avrdude: from PATH, or where other programs have put it."""
     on_path = shutil.which("avrdude")
     if on_path:

@@ -634,7 +634,7 @@ def _usage(word: str) -> str:
 
 def _named_by(gaps: Gaps) -> str:
     """The word that means what is written in its place."""
-    return _found(gaps).named(_right(gaps), _found(gaps).meant)
+    return _usage_at(gaps).named(_right(gaps), _usage_at(gaps).meant)
 
 
 def _right(gaps: Gaps) -> str:
@@ -644,7 +644,7 @@ def _right(gaps: Gaps) -> str:
 
 def _block(gaps: Gaps) -> str:
     """The block that words say."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     below = found.text[found.piece.end :].lstrip("; \t\r\n").upper()
     is_open = bool(re.match(r"SI ?NO\b|ELSE", below))
     return block(found.row, found.names, is_open)
@@ -652,39 +652,39 @@ def _block(gaps: Gaps) -> str:
 
 def _order(gaps: Gaps) -> str:
     """The one order that words say."""
-    said = _found(gaps).orders
+    said = _usage_at(gaps).orders
     return said[0].text if len(said) == 1 and not said[0].is_side_free else ""
 
 
 def _several(gaps: Gaps, is_sided: bool) -> str:
     """The orders that words say; `is_sided`: of one nobody says which way it turns."""
-    said = _found(gaps).orders
+    said = _usage_at(gaps).orders
     is_free = any(each.is_side_free for each in said)
     return written(said) if len(said) > 1 and is_free is is_sided else ""
 
 
 def _other_orders(gaps: Gaps) -> set[str]:
     """Orders beside a turn, which it alone would lose."""
-    said = _found(gaps).ordered.items()
+    said = _usage_at(gaps).ordered.items()
     return {its for word, its in said if not said_of(word, "right")} - {"L", "R", "B", "S"}
 
 
 def _endless(gaps: Gaps) -> str:
     """The word for FOREVER, where words say no order."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     endless = (each for each in found.words if found.names.meant(each) == "FOREVER")
     return "" if found.meant else next(endless, "")
 
 
 def _word_said(gaps: Gaps) -> str:
     """The word of another language that begins an instruction, or says one."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     return next(filter(found.names.meant, (*found.words[:1], found.meant)), "")
 
 
 def _concept(gaps: Gaps) -> str:
     """The word of the language that it means."""
-    found, word = _found(gaps), _word_said(gaps)
+    found, word = _usage_at(gaps), _word_said(gaps)
     concept = found.names.meant(word)
     is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
     is_among = concept == "S" and {*found.ordered.values()} != {"S"}  # `ve para adelante`
@@ -693,7 +693,7 @@ def _concept(gaps: Gaps) -> str:
 
 def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
     """The same of one without values, alone or with a number, which it would lose."""
-    concept, row = _concept(gaps), _found(gaps).row
+    concept, row = _concept(gaps), _usage_at(gaps).row
     if not concept or WORDS[concept].arguments:
         return ""
     has_number = any(each.kind is NUMBER for each in row)
@@ -705,38 +705,38 @@ def _asking(word: str) -> str:
 
 
 def _variable(gaps: Gaps) -> str:
-    found = _found(gaps)
+    found = _usage_at(gaps)
     return next((each for each in found.words if each in found.names.variables), "")
 
 
 def _own_example(gaps: Gaps) -> str:
     """The instruction with its unit where that goes, if that makes it right."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     example = own_example(found.source[found.piece])
     return example if lines.is_right(lexemes(example.split("; ")[-1]), found.names) else ""
 
 
 def _often(gaps: Gaps) -> str:
     """The loop of a word that stands several times."""
-    own = _found(gaps).own
+    own = _usage_at(gaps).own
     return f"LOOP({own.times});{own.name};END_LOOP" if own.times > 1 else ""
 
 
 def _own_name(gaps: Gaps) -> str:
-    own = _found(gaps).own
+    own = _usage_at(gaps).own
     return "" if own.is_taught or said_of(own.name, *_NO_NAMES) else own.name
 
 
 def _end(gaps: Gaps) -> str:
     """The end that words say, or that of the block which is open."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     named = (BLOCK_ENDS.get(found.names.meant(word), "") for word in found.words[1:])
     return next(named, "") or found.around.end_at(found.piece.start)
 
 
 def _done(gaps: Gaps) -> str:
     """What a part of a thing does, if that is a call: WRITE of `servo.write`."""
-    thing, _, done = plain(gaps.place.text[slice(*_member(_found(gaps)))]).rpartition(".")
+    thing, _, done = plain(gaps.place.text[slice(*_member(_usage_at(gaps)))]).rpartition(".")
     right = "" if said_of(thing, "device") else gaps.place.names.meant(done)
     return right if gaps.place.names.takes(right) else ""
 
@@ -748,7 +748,7 @@ def _member(found: Found) -> Span:
 
 def _unit_behind(gaps: Gaps) -> str:
     """A unit behind a calculation: `F(RANDOM(1, 3) sec, 50)`."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     here = found.source[found.found.span]
     end = _end_of_value(found)
     return here if said_of(plain(here), "unit") and found.text[end - 1] == ")" else ""
@@ -760,7 +760,7 @@ def _end_of_value(found: Found) -> int:
 
 def _without_seconds(gaps: Gaps) -> str:
     """The instruction without a word for seconds."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     span, piece, source = found.found.span, found.piece, found.source
     if said_of(plain(source[span]), "unit") != ("s", "1000"):
         return ""
@@ -768,7 +768,7 @@ def _without_seconds(gaps: Gaps) -> str:
 
 
 def _no_value(gaps: Gaps, is_unit: bool) -> _NoValue | None:
-    found = _found(gaps).no_value
+    found = _usage_at(gaps).no_value
     return found if found and bool(found.unit) is is_unit else None
 
 
@@ -776,7 +776,7 @@ def _number_said(gaps: Gaps) -> str:
     """A number with a unit that values have, or with that of a way."""
     said = _no_value(gaps, is_unit=True)
     is_own = said is not None and (said.unit == said.argument.unit or bool(said.right))
-    here = _found(gaps).source[_found(gaps).found.span]
+    here = _usage_at(gaps).source[_usage_at(gaps).found.span]
     return f"{said.number} {here}" if said and is_own else ""
 
 
@@ -787,7 +787,7 @@ def _way_said(gaps: Gaps) -> str:
 
 def _foreign(gaps: Gaps) -> str:
     """A word with values that this robot does not have: whoever writes it wants the word."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     word = "".join(found.words[:1])
     is_other = found.names.meant(word) or found.names.is_name(word)
     return "" if found.signs[:2] != [word, "("] or is_other else word
@@ -795,14 +795,14 @@ def _foreign(gaps: Gaps) -> str:
 
 def _in_words(gaps: Gaps) -> str:
     """The header with a question in words in its brackets."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     own = {*WORDS, *found.names.known.values} - {"SI"}
     return "" if {*found.words} <= own else found.header()
 
 
 def _in_dark(gaps: Gaps) -> str:
     """The header of a name that asks something in words: DARK of `X > 5 OR DARK`."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     name = plain(found.source[found.found.span])
     is_asked = bool(said_of(name, "light", "ahead"))
     return found.header() if is_asked and found.before()[-1].text not in COMPARISONS else ""
@@ -810,7 +810,7 @@ def _in_dark(gaps: Gaps) -> str:
 
 def _endless_move(gaps: Gaps) -> str:
     """A move with FOREVER as its time, and an UNTIL."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     is_endless = found.names.meant(plain(found.source[found.found.span])) == "FOREVER"
     if not is_endless or not found.signs or found.signs[0] not in MOVES:
         return ""
@@ -821,7 +821,7 @@ def _endless_move(gaps: Gaps) -> str:
 
 def _forever_first(gaps: Gaps) -> str:
     """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
-    match = _FOREVER_BEHIND.fullmatch(_found(gaps).source[_found(gaps).piece])
+    match = _FOREVER_BEHIND.fullmatch(_usage_at(gaps).source[_usage_at(gaps).piece])
     if match is None:
         return ""
     until = match[3] or f" UNTIL({WORDS['UNTIL'].arguments[0].sample})"
@@ -830,21 +830,21 @@ def _forever_first(gaps: Gaps) -> str:
 
 def _asked_behind(gaps: Gaps) -> str:
     """An UNTIL with the move that it lacks."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     asked = re.match(r"\s*(\([^()\n]+\))", found.text[found.found.span.start + 5 :])
     return f"F(2, 80) UNTIL{asked[1]}" if asked else ""
 
 
 def _arm(gaps: Gaps) -> str:
     """`si no`, alone."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     arm = found.names.meant("_".join(found.words[:2]))
     return arm if arm == "ELSE" and len(found.row) == 2 else ""
 
 
 def _begun_again(gaps: Gaps) -> str:
     """A beginning in the midst of a program, with its bar."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     is_bar = found.behind_it.lstrip()[:1] == "|"
     return found.source[found.found.span].upper() + "|" * is_bar
 
@@ -856,13 +856,13 @@ def _question_begun(gaps: Gaps) -> str:
 
 def _saying_button(gaps: Gaps) -> str:
     """A word before the bar that says the button, or looks like it."""
-    word = _found(gaps).found.values["found"]
+    word = _usage_at(gaps).found.values["found"]
     return word if word == "S8" or concept_of(word) == "BUTTON" else ""
 
 
 def _skipped(gaps: Gaps) -> str:
     """An IF that leaves out what follows its BREAK, which no loop is around."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     match = found.matched(_BREAK)
     rest = _row(found.text[match.end() :]) if match else []
     return ";".join((match[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"])) if match and rest else ""
@@ -870,7 +870,7 @@ def _skipped(gaps: Gaps) -> str:
 
 def _part_of_when(gaps: Gaps) -> str:
     """An ELSE in a WHEN."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     before = found.text[: found.found.span.start]
     is_open = re.search(r"(?is)\bWHEN\b(?!.*\bEND_?WHEN\b)", before)
     return found.found.values["found"] if is_open else ""
@@ -878,8 +878,8 @@ def _part_of_when(gaps: Gaps) -> str:
 
 def _two_digits(gaps: Gaps) -> str:
     """A colon between digits, and these."""
-    start, end = _found(gaps).found.span
-    around = _found(gaps).text[max(0, start - 1) : end + 1]
+    start, end = _usage_at(gaps).found.span
+    around = _usage_at(gaps).text[max(0, start - 1) : end + 1]
     return around if re.fullmatch("[0-9]:[0-9]", around) else ""
 
 
@@ -897,7 +897,7 @@ def _dotted(found: Found) -> Span:
 
 def _rows_of_name(gaps: Gaps) -> list[str]:
     """The lines in which a word is meant as a name."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     return [str(found.source.position(each.start)[0]) for each in found.renamed()]
 
 
@@ -907,7 +907,7 @@ def _other_rows(gaps: Gaps) -> list[str]:
 
 def _later_rows(gaps: Gaps) -> list[str]:
     """The lines in which TIME stands behind the first place."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", found.text)][1:]
     return [str(found.source.position(place)[0]) for place in places]
 
@@ -927,7 +927,7 @@ def _times_in_line(gaps: Gaps) -> str:
 
 def _words_behind(gaps: Gaps) -> str:
     """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
-    found = _found(gaps)
+    found = _usage_at(gaps)
     said = found.source[_behind(found)]
     right = lines.right(lexemes(said), found.names)
     return shortened(said) if isinstance(right, Failure) and right.at == 0 else ""
@@ -939,25 +939,25 @@ def _behind(found: Found) -> Span:
 
 def _plain_letters(gaps: Gaps) -> str:
     """A name in the letters that a name has, which the language knows."""
-    right, concept = _found(gaps).letters
-    return right if concept in WORDS or _found(gaps).names.has(concept) else ""
+    right, concept = _usage_at(gaps).letters
+    return right if concept in WORDS or _usage_at(gaps).names.has(concept) else ""
 
 
 def _called_here(gaps: Gaps) -> str:
-    found = _found(gaps)
+    found = _usage_at(gaps)
     is_call = found.behind_it.lstrip(" ").startswith("(")
     return found.source[found.found.span].upper() if is_call else ""
 
 
 def _said_first(gaps: Gaps) -> str:
     """A word that says nothing, or the button, and begins an instruction."""
-    found, right = _found(gaps), _found(gaps).letters[0]
+    found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     is_said = said_of(right, "filler") or found.is_button(right)
     return right if found.is_first and is_said else ""
 
 
 def _cased(gaps: Gaps) -> str:
-    found, right = _found(gaps), _found(gaps).letters[0]
+    found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     return right if found.source[found.found.span].isupper() else right.capitalize()
 
 
@@ -966,13 +966,13 @@ def _amount_place(found: Found) -> Span:
     return Span(start, start + len(found.amount["amount"]))
 
 
-def _found(gaps: Gaps) -> Found:
+def _usage_at(gaps: Gaps) -> Found:
     assert isinstance(gaps.place, Found)
     return gaps.place
 
 
 def _of(get: Callable[[Found], str | None]) -> Callable[[Gaps], str]:
-    return lambda gaps: get(_found(gaps)) or ""
+    return lambda gaps: get(_usage_at(gaps)) or ""
 
 
 # Where a row tells what it says, but where it was found.
@@ -997,9 +997,9 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "found": _of(lambda it: it.found.values["found"]),
     "word": _of(lambda it: it.found.values["word"]),
     "right": _right, "named": _named_by,
-    "named_first": lambda gaps: _found(gaps).named(_right(gaps), _found(gaps).signs[0]),
+    "named_first": lambda gaps: _usage_at(gaps).named(_right(gaps), _usage_at(gaps).signs[0]),
     "usage": lambda gaps: _usage(_right(gaps)),
-    "takes": lambda gaps: _usage(_right(gaps)) if _found(gaps).orders[0].samples else "",
+    "takes": lambda gaps: _usage(_right(gaps)) if _usage_at(gaps).orders[0].samples else "",
     "block": _block, "order": _order, "sided": lambda gaps: _several(gaps, is_sided=True),
     "several": lambda gaps: _several(gaps, is_sided=False),
     "made_up": _of(lambda it: made_up(it.orders)), "endless": _endless,
@@ -1010,7 +1010,7 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "word_said": _word_said, "concept": _concept, "asking": lambda gaps: _asking(_concept(gaps)),
     "concept_alone": lambda gaps: _concept_alone(gaps, is_numbered=False),
     "concept_numbered": lambda gaps: _concept_alone(gaps, is_numbered=True),
-    "concept_usage": lambda gaps: _found(gaps).usage(_concept(gaps)), "variable": _variable,
+    "concept_usage": lambda gaps: _usage_at(gaps).usage(_concept(gaps)), "variable": _variable,
     "often_taught": _of(lambda it: "LOOP" * it.own.is_often),
     "taught": _of(lambda it: it.own.taught),
     "untaught": _of(lambda it: it.own.name * it.own.is_taught), "often": _often,
@@ -1018,7 +1018,7 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "plus": _of(lambda it: "-" if f"-{it.number}" in "".join(it.signs) else "+"),
     "own_example": _own_example,
     "own": _own_name, "end": _end, "done": _done,
-    "done_usage": lambda gaps: _found(gaps).usage(_done(gaps)),
+    "done_usage": lambda gaps: _usage_at(gaps).usage(_done(gaps)),
     "member": _of(lambda it: it.text[slice(*_member(it))]),
     "bare_asking": _of(lambda it: _asking(it.found.values["word"])),
     "bare_example": _of(lambda it: WORDS[it.meant].example
@@ -1038,8 +1038,8 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "amount": _of(lambda it: it.amount.get("amount")),
     "endless_move": _endless_move, "forever_first": _forever_first, "asked_behind": _asked_behind,
     "arm": _arm, "begun_again": _begun_again, "question_begun": _question_begun,
-    "twice": lambda gaps: _begun_again(gaps) if _found(gaps).around.begun == "SB" else "",
-    "named_endless": lambda gaps: _found(gaps).named("LOOP", _endless(gaps)),
+    "twice": lambda gaps: _begun_again(gaps) if _usage_at(gaps).around.begun == "SB" else "",
+    "named_endless": lambda gaps: _usage_at(gaps).named("LOOP", _endless(gaps)),
     "instead": _of(lambda it: it.around.begun), "saying_button": _saying_button,
     "skipped": _skipped, "part": _part_of_when, "two_digits": _two_digits,
     "sign_means": _of(lambda it: concept_of(it.source[it.found.span])),

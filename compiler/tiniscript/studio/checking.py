@@ -72,7 +72,7 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     """Compile a program's text for a shipped robot, or for the one that it names, as `tsc upload`
     does."""
     profile = profile_for(data, robot)
-    found = _found(data, robot)
+    found = _compiled(data, robot)
     findings = _findings(found, language)
     names_robot = name_in(data) is not None
     if not found.is_right or found.program is None:
@@ -101,7 +101,7 @@ def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
 
     `which` counts the findings of this text from 0.
     """
-    found = _found(data, robot)
+    found = _compiled(data, robot)
 
     def check(text: str) -> list[Diagnostic]:
         changed = text.encode()
@@ -146,7 +146,7 @@ def profile_for(data: bytes, robot: str) -> Robot:
 
 
 @lru_cache(maxsize=1)  # whose buttons are asked for, one after the other
-def _found(data: bytes, robot: str) -> Compiled:
+def _compiled(data: bytes, robot: str) -> Compiled:
     profile = profile_for(data, robot)
     return for_robot(compile_source(data, profile, "", is_strict=True), profile)
 

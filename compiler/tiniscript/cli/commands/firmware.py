@@ -41,7 +41,7 @@ def run(options: Namespace, language: str) -> int:
             firmware_build.row(robot, firmware_build.firmware(robot, options, language), language)
         )
         return 0
-    command = avrdude.found()
+    command = avrdude.find_avrdude()
     if command is None:
         raise CommandError(2, "flash_no_avrdude", how=INSTALLS.get(sys.platform, INSTALLS["linux"]))
     port = _port(options)

@@ -16,8 +16,8 @@ from tiniscript.cli.robot.connect import Connection, baud_of
 from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
-from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
-from tiniscript.doctor.examination import PINGS, Expected, Heard, examined
+from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
+from tiniscript.doctor.examination import PINGS, Expected, Heard, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
@@ -57,7 +57,7 @@ def diagnosis_of(
     )
     doing = Doing(not options.json)
     try:
-        return diagnosed(_doors(options, language, doing, expected.pings, may_open), question)
+        return diagnose(_doors(options, language, doing, expected.pings, may_open), question)
     finally:
         doing.end()
 
@@ -79,7 +79,7 @@ def examination_of(
     if reply is None:
         raise connection.failure(Reply(LOST))
     heard: list[Heard] = []
-    findings = examined(robot, reply, expected._replace(hear=heard.append), on_step=on_step)
+    findings = examine(robot, reply, expected._replace(hear=heard.append), on_step=on_step)
     return findings, heard[-1] if heard else None
 
 

@@ -40,7 +40,7 @@ class InReach(NamedTuple):
     notes: list[str]
 
 
-def found(known: list[str], language: str) -> InReach:
+def find_robots(known: list[str], language: str) -> InReach:
     """Search for some seconds. A robot that is known by a port of `known` keeps it."""
     whole = InReach({}, [], [], [])
     reasons = set()  # where both packages are missing, one note says it

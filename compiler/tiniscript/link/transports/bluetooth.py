@@ -70,7 +70,7 @@ def resolved(port: str) -> str:
     Raises PortError, at the latest after search.SEARCH_S.
     """
     loop = shared()
-    device = _run(loop, search.found(name_in(port)), search.SEARCH_S + search.LEAVE_S * 2)
+    device = _run(loop, search.find_device(name_in(port)), search.SEARCH_S + search.LEAVE_S * 2)
     address = canonical(device.address)
     _found[address] = device
     return BLE + address
