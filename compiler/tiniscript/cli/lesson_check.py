@@ -79,7 +79,7 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
     if _is_folder(options):
         if options.plot is not None:
             raise CommandError(2, "lesson_one_picture", file=inputs.shown(options.program))
-        marks = [marker.of_file(found, name) for name, found in _programs(options)]
+        marks = [marker.mark_file(found, name) for name, found in _programs(options)]
         _name_notes(marks, options, language)
     else:
         if options.plot is not None:
@@ -111,7 +111,7 @@ class _Marker:
         self.seeds = seeds
         self.language = language
 
-    def of_file(self, found: Found, name: str) -> Mark:
+    def mark_file(self, found: Found, name: str) -> Mark:
         """Mark a file of a folder; one that cannot be read, and notes, get a row, too."""
         if _is_note(found):
             return Mark(name, NO_PROGRAM, 0, ())

@@ -123,7 +123,7 @@ def alive() -> list[Registration]:
         return list(compress(registrations, pool.map(is_alive, registrations)))
 
 
-def to_stop(is_virtual: bool = False) -> list[str]:
+def ports_to_stop(is_virtual: bool = False) -> list[str]:
     """Return the ports for `tsc stop` without `--port`.
 
     They include that of the last used robot, which may drive on without any command.

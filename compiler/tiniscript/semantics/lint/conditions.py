@@ -42,22 +42,22 @@ def _is_endless(loop: ir.Loop | ir.While) -> bool:
     return not isinstance(loop, ir.Loop) or loop.times is None
 
 
-def of_until(move: ir.Move, around: Around, look: Look) -> None:
+def check_until(move: ir.Move, around: Around, look: Look) -> None:
     if move.until is not None and not look.program.tasks:
         _Conditions(look).until(move, move.until.condition, around)
 
 
-def of_while(loop: ir.While, around: Around, look: Look) -> None:
+def check_while(loop: ir.While, around: Around, look: Look) -> None:
     if not look.program.tasks:
         _Conditions(look).while_(loop)
 
 
-def of_if(statement: ir.If, around: Around, look: Look) -> None:
+def check_if(statement: ir.If, around: Around, look: Look) -> None:
     if not look.program.tasks:
         _Conditions(look).if_(statement, around.outermost)
 
 
-def of_show(show: ir.Show, around: Around, look: Look) -> None:
+def check_show(show: ir.Show, around: Around, look: Look) -> None:
     if around.outermost is not None and not look.program.tasks:
         _Conditions(look).frozen_show(show, around.outermost)
 

@@ -46,7 +46,7 @@ def never_reached(body: ir.Body, around: Around, look: Look) -> None:
             return
 
 
-def in_notes(look: Look) -> None:
+def report_instructions_in_notes(look: Look) -> None:
     """`F(2, 80)//R(1, 60)`: instructions that stand in a note.
 
     Only a note that is a row of calls with numbers, or that has such a call after a `;`, is taken
