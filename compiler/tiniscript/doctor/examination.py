@@ -85,7 +85,8 @@ def examine(
 ) -> list[Finding]:  # fmt: skip
     """Return what is wrong with a robot whose answer to HELLO is `first`.
 
-    Where nothing is, the only finding that is no note is `fine`. `tell` gets `pings` and `watch`.
+    Where nothing is, the only finding that is no note is `fine`. `on_step` gets `pings` and
+    `watch`.
     """
     hello = values_of(first)
     if first.status == OTHER_ROBOT:  # the tsc that has the port does not believe it

@@ -71,7 +71,7 @@ def diagnose_line(
     wire: Wire, line: Line, expected: Expected,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
-    """Return what is at the other end. `tell` gets what is done next, a short name."""
+    """Return what is at the other end. `on_step` gets what is done next, a short name."""
     on_step("listen")
     before = wire.heard(LISTEN_MS if line.is_radio else BOOT_MS)
     robot = _robot(wire, line, expected)

@@ -81,7 +81,7 @@ def steps(wanted: Wanted, dialect: Dialect) -> list[Step]:
 def done(
     wire: Wire, module: Module, plan: list[Step], on_outcome: Callable[[Outcome], None]
 ) -> list[Outcome]:
-    """Do the steps, and stop at the first that goes wrong. `tell` gets each outcome at once."""
+    """Do the steps, and stop at the first that goes wrong. `on_outcome` gets each at once."""
     outcomes: list[Outcome] = []
     for step in plan:
         outcome = _set(wire, module.dialect, step)

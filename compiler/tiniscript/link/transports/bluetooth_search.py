@@ -118,7 +118,7 @@ def _scan() -> _Scan:
     return _Scan()
 
 
-async def found(name: str) -> BLEDevice:
+async def find_device(name: str) -> BLEDevice:
     """Return the device with a name or an address. Raises PortError: none, or several."""
     is_address = is_device_address(name)
     loop = asyncio.get_running_loop()

@@ -43,7 +43,7 @@ _OF_ROUND = 4  # tokens after its word, up to the second value
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
-def will_fault(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
+def report_will_fault(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
     for expression in ir.expressions(statement):
         fault = sure_fault(fold(expression))
         if fault:
@@ -213,7 +213,7 @@ def check_beep(beep: Beep, around: Around, look: Look) -> None:
     look.report(codes.LONG_TIME, beep.span, time=as_text(time), **gaps)
 
 
-def swapped_rounds(look: Look) -> None:
+def report_swapped_rounds(look: Look) -> None:
     """`ROUND(1, DISTANCE)`: a whole number is rounded, to as many decimals as something else."""
     tokens = [token for token in look.scan.tokens if token.kind is not NEWLINE]
     for k, token in enumerate(tokens[:-_OF_ROUND]):
@@ -234,7 +234,7 @@ def swapped_rounds(look: Look) -> None:
             look.report(codes.SWAPPED, span, number=number.text, value=value, fix=fix)
 
 
-def swapped_names(move: Move, around: Around, look: Look) -> None:
+def report_swapped_names(move: Move, around: Around, look: Look) -> None:
     """`F(SPEED, TIME_S)`: variables that are set once, in the wrong order by name and number."""
     if move.until is not None or move.time is None or move.power is None or move.unit:
         return
