@@ -28,7 +28,7 @@ from tiniscript.cli.commands import firmware as firmware_command
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import has_text
 from tiniscript.flash import avrdude, ready
-from tiniscript.flash.avrdude import Seen
+from tiniscript.flash.avrdude import StepProgress
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tiniscript.flash.ready import Ready
 from tiniscript.robots.profile import answered
@@ -246,8 +246,9 @@ def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
     """And nothing of that before: the board has what it had."""
 
     def write(*words: object) -> None:
-        look = cast("Callable[[Seen | None], None]", words[-1])
-        for progress in [None, None, *(Seen(avrdude.WRITING, 9 * k) for k in range(count)), None]:
+        look = cast("Callable[[StepProgress | None], None]", words[-1])
+        steps = (StepProgress(avrdude.WRITING, 9 * k) for k in range(count))
+        for progress in [None, None, *steps, None]:
             look(progress)
         raise KeyboardInterrupt
 

@@ -199,7 +199,7 @@ def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[F
         return (sure("port_gone"),)
 
 
-def _held(system: System, found: Computer, port: str) -> Finding | None:
+def _held(system: System, computer: Computer, port: str) -> Finding | None:
     """Return why this user cannot have the port now, as far as it is known without opening it."""
     who = access(system, same_for_all(port))
     if not who.may_use and who.is_joined:

@@ -72,19 +72,23 @@ def ready(recording: Recording) -> Ready:
     """Raises BadRecording where the program is another one for this version of tsc."""
     profile = load(recording.robot)
     data = recording.text.encode("utf-8", "replace")
-    found: Compiled = compile_source(data, profile, "", is_strict=True, is_chosen=True)
-    found = for_robot(found, profile)
-    if found.program is None or not found.image or checksum(found.image) != recording.program:
+    compiled: Compiled = compile_source(data, profile, "", is_strict=True, is_chosen=True)
+    compiled = for_robot(compiled, profile)
+    if (
+        compiled.program is None
+        or not compiled.image
+        or checksum(compiled.image) != recording.program
+    ):
         raise BadRecording("other_program")
-    sensors = _shown_sensors(found.program)
-    places = made(found.source, found.places)
+    sensors = _shown_sensors(compiled.program)
+    places = made(compiled.source, compiled.places)
     shows = {place.offset: sensors[its.span.start] for its, place in
-             zip(found.places, places.places, strict=True)
+             zip(compiled.places, places.places, strict=True)
              if its.span.start in sensors}  # fmt: skip
     names = {device.name for device in profile.kit.readings}
-    lines = found.source.text.split("\n")
+    lines = compiled.source.text.split("\n")
     reads = tuple(each.offset for each in places.places if names & _words(lines, each))
-    return Ready(recording, found.image, places, shows, reads)
+    return Ready(recording, compiled.image, places, shows, reads)
 
 
 def _words(lines: list[str], place: MapLocation) -> set[str]:

@@ -76,7 +76,7 @@ def resolved(port: str) -> str:
     return BLE + address
 
 
-def listed() -> list[search.Seen]:
+def listed() -> list[search.SeenDevice]:
     """Return the robots in reach. Raises PortError."""
     limit_s = search.LISTED_S + search.LEAVE_S * 2
     found = _run(shared(), search.robots(), limit_s)
