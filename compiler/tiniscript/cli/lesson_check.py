@@ -211,10 +211,10 @@ def _is_note(file: ProgramFile) -> bool:
         return False
 
     try:
-        note = decode(file.data)
+        text = decode(file.data)
     except Unreadable:
         return False
-    return bool(note.strip()) and not any(map(LIKE_A_PROGRAM.match, note.splitlines()))
+    return bool(text.strip()) and not any(map(LIKE_A_PROGRAM.match, text.splitlines()))
 
 
 def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: str) -> None:

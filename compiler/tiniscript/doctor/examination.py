@@ -204,14 +204,14 @@ def _hearing(
     trips_ms = trips_of(robot, expected.pings, lambda: robot.pause(PAUSE_MS))
     missed = expected.pings - len(trips_ms)
     after = robot.status()
-    damaged = 0
+    damaged_count = 0
     if after is not None:
         pairs = zip(_four(before), _four(after), strict=True)
-        damaged = sum((now - then) & 0xFF for then, now in pairs)
-    values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged)}
+        damaged_count = sum((now - then) & 0xFF for then, now in pairs)
+    values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged_count)}
     expected.note({"good": str(len(trips_ms)), **values})
     lost = []
-    if max(missed, damaged) * PINGS >= LOSSY * expected.pings:
+    if max(missed, damaged_count) * PINGS >= LOSSY * expected.pings:
         lost = [sure("lossy", **values)] if after is not None else []
     elif after is not None and lost_packets(before) >= 10 * LOSSY:
         lost = [probably("lossy", **{**values, "damaged": str(lost_packets(before))})]
