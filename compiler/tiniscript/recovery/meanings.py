@@ -171,7 +171,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         and (bare := [part for part in parts if not said_of(part, "sensing")]) != parts
     ):
         return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
-    if found := _of_stem(parts):
+    if found := _sensor_with_side(parts):
         return (Meaning(found, KNOWN),)
     alike, near = _speller().alike(word), _speller().near(word)
     guesses = (
@@ -183,7 +183,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
     return next(((Meaning(each, cost),) for each, cost in guesses if each), ())
 
 
-def _of_stem(parts: Sequence[str]) -> str:
+def _sensor_with_side(parts: Sequence[str]) -> str:
     """Return the sensor that two words say, one of them its side: `LEFT_LIGHT`, `luzDer`."""
     glued = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
     pairs = [tuple(parts)] if len(parts) == 2 else glued if len(parts) == 1 else []
@@ -256,12 +256,12 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
             found.variables.add(token.text)
         is_def = "DEF" in (token.text, concept_of(token.text))
         is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not
-        is_def = is_def or (token.text == "TO" and at == 2 and bool(_of_logo(line[at:])))
+        is_def = is_def or (token.text == "TO" and at == 2 and bool(_logo_names(line[at:])))
         if is_def and after.kind is WORD and after.text not in WORDS:
             if not said_of(after.text, "main") and concept_of(after.text) != "START":
                 found.defs.add(after.text)
                 end = closed(line, at)
-                given = texts(line[at + 1 : end - 1 : 2]) if end else _of_logo(line[at:])
+                given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
                 if all(each.isidentifier() and each not in WORDS for each in given):
                     found.parameters[after.text] = given
     if len(head) > 2 and "DEF" in (head[0].text, concept_of(head[0].text)):
@@ -276,7 +276,7 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
     return found
 
 
-def _of_logo(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
+def _logo_names(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
     """Return the names of `:SIZE :SPEED`, none where anything else is there."""
     signs, names = texts(tokens[::2]), texts(tokens[1::2])
     return names if {*signs} == {":"} and len(signs) == len(names) else ()

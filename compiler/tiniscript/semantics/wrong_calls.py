@@ -67,14 +67,14 @@ class WrongCalls:
         self.scope.report(codes.CALL_VALUES, node.span, name=node.word, usage=usage,
                           wanted=str(len(names)), found=str(len(node.arguments or ())))  # fmt: skip
 
-    def too_many_copies(self, program: ir.Program, found: Excess) -> None:
+    def too_many_copies(self, program: ir.Program, excess: Excess) -> None:
         """A DEF with values is compiled once for each task that reaches it."""
-        procedure = program.procedures[found.procedure]
+        procedure = program.procedures[excess.procedure]
         span = Span(procedure.span.start, procedure.span.start + len("DEF"))
         values = {
-            "count": str(found.tasks),
-            found.what: str(found.total),
-            "limit": str(found.limit),
+            "count": str(excess.tasks),
+            excess.what: str(excess.total),
+            "limit": str(excess.limit),
         }
         self.scope.report(codes.TOO_MANY_COPIES, span, None, name=procedure.name, **values)
 
