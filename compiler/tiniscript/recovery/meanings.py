@@ -229,7 +229,7 @@ class _OfLine(NamedTuple):
     in_brackets: set[str]
     rows: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
-    pairs: set[tuple[str, str]]  # the name of a DEF, or one and that of a value
+    pairs: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
     begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
     called: set[str]  # words that are an instruction alone
     compared: set[str]  # words beside a sign that compares them with a number
@@ -260,20 +260,27 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         if is_def and after.kind is WORD and after.text not in WORDS:
             if not said_of(after.text, "main") and concept_of(after.text) != "START":
                 found.defs.add(after.text)
+                if bare := _bare_values(line[at:]):
+                    found.pairs.add((after.text, *bare))
                 end = closed(line, at)
                 given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
                 if all(each.isidentifier() and each not in WORDS for each in given):
                     found.parameters[after.text] = given
     if len(head) > 2 and "DEF" in (head[0].text, concept_of(head[0].text)):
         row, names = _name_in_words(head[1:], ";"), found.defs
-        if len(row) == 2:
-            found.pairs.add((row[0], row[1]))
     else:
         row, names = _name_in_words(head, "="), found.variables
     if row:
         found.rows.add(row)
         names.add(joined(row))
     return found
+
+
+def _bare_values(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
+    """Return the names of `X, Y` or `X Y`, which lack their brackets, none beside other things."""
+    row = " ".join(texts(tokens)).partition(";")[0]
+    names = tuple(row.replace(",", " ").split())
+    return names if all(each.isidentifier() and each not in WORDS for each in names) else ()
 
 
 def _logo_names(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
@@ -339,10 +346,10 @@ class Names:
         self.in_brackets = {name for line in of_lines for name in line.in_brackets}
         self.rows = {row for line in of_lines for row in line.rows}
         self.parameters = {k: its for line in of_lines for k, its in line.parameters.items()}
-        for name, value in {pair for line in of_lines for pair in line.pairs}:
-            if value in self.in_brackets:  # `DEF LADO X`, and `F(X, 50)` below
-                self.parameters[name] = (value,)
-                self.rows.discard((name, value))
+        for pair in {pair for line in of_lines for pair in line.pairs}:
+            if self.in_brackets.issuperset(pair[1:]):  # `DEF LADO X`, and `F(X, 50)` below
+                self.parameters[pair[0]] = pair[1:]
+                self.rows.discard(pair)
         self.begun = {word: block for line in of_lines for word, block in line.begun.items()}
         if sum(line.left for line in of_lines) < 0:
             self.begun |= {word: "LOOP" for line in of_lines for word in line.counted}
