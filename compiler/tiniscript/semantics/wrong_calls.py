@@ -71,11 +71,15 @@ class WrongCalls:
         """A DEF with values is compiled once for each task that reaches it."""
         procedure = program.procedures[excess.procedure]
         span = Span(procedure.span.start, procedure.span.start + len("DEF"))
+        begin = [program.body[0].span, *(task.span for task in program.tasks)]
+        lines = [self.scope.source.position(begin[k].start)[0] for k in excess.tasks]
         values = {
-            "count": str(excess.tasks),
+            "count": str(len(lines)),
             excess.what: str(excess.total),
             "limit": str(excess.limit),
         }
+        if len({*lines}) > 1:
+            values["lines"] = ", ".join(map(str, sorted({*lines})))
         self.scope.report(codes.TOO_MANY_COPIES, span, None, name=procedure.name, **values)
 
     def until_not_here(self, node: ast.Command, until: ast.Argument, word: Word | None) -> None:
