@@ -277,7 +277,7 @@ def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None
 def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
     """All of them wait for the wire, which takes 18 ms for each value."""
     found = compile_text(SHOWS, KIT)
-    places, wired = source_map.made(found.source, found.places), computer(uno)
+    places, wired = source_map.made(found), computer(uno)
     finder = Finder({checksum(found.image): places})
     assert wired.until(wired.session.upload(unpack(found.image))) == OK
     events: list[Event] = []

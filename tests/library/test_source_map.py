@@ -28,7 +28,7 @@ def compiled(text: str) -> Compiled:
 
 
 def mapped(found: Compiled) -> Map:
-    return source_map.made(found.source, found.places)
+    return source_map.made(found)
 
 
 def located(text: str) -> list[tuple[str, str]]:

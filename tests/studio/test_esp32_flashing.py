@@ -8,7 +8,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import subprocess
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,13 +19,12 @@ import pytest
 
 from tests.support import studio
 from tests.support.needs import need
+from tests.support.node import in_node
 from tests.support.studio import axe, enter
 from tests.support.waiting import until
 from tiniscript.flash import ready
 from tiniscript.studio import serving
-from tiniscript.studio.building import MODULES, SOURCES
-from tools import CannotMake
-from tools.builds.studio import found_tools
+from tiniscript.studio.building import MODULES
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -46,18 +44,10 @@ def image(board: str, size: int = 70_001) -> bytes:
 
 
 def flashed(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
-    try:
-        node = found_tools().node
-    except CannotMake as why:
-        need(str(why))
     need("" if (MODULES / "esptool-js").is_dir() else "esptool-js is not fetched")
     case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **how}
-    words = [*node, str(HERE / "flash_esp32_in_node.mjs"), str(SOURCES / "src"), str(ROM)]
-    completed = subprocess.run(
-        words, input=json.dumps(case), capture_output=True, text=True, timeout=120, check=False
-    )
-    assert completed.returncode == 0, completed.stderr
-    found: dict[str, Any] = json.loads(completed.stdout.strip().splitlines()[-1])
+    lines = in_node(HERE / "flash_esp32_in_node.mjs", str(ROM), given=json.dumps(case))
+    found: dict[str, Any] = json.loads(lines[-1])
     assert found["sums"]
     assert not found["is_open"]  # the next one can have the port
     return found

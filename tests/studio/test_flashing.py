@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import pty
-import subprocess
 import threading
 import tty
 from collections.abc import Callable, Iterator
@@ -17,11 +16,8 @@ import pytest
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
 from tests.support.command import process
-from tests.support.needs import need
+from tests.support.node import in_node
 from tests.support.platformio import firmware, shared
-from tiniscript.studio.building import SOURCES
-from tools import CannotMake
-from tools.builds.studio import found_tools
 
 SCRIPT = Path(__file__).with_name("flash_in_node.mjs")
 PAGE = 128
@@ -31,14 +27,7 @@ UNO = b"\x1e\x95\x0f"
 
 def flashed(port: str, board: str, file: Path, *cancelled: str) -> str:
     """Return how the page's code has ended; `cancelled`: at which part of the work."""
-    try:
-        node = found_tools().node
-    except CannotMake as why:
-        need(str(why))
-    words = [*node, str(SCRIPT), str(SOURCES / "src"), port, board, str(file), *cancelled]
-    completed = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
-    assert completed.returncode == 0, completed.stderr
-    return completed.stdout.strip()
+    return "\n".join(in_node(SCRIPT, port, board, str(file), *cancelled))
 
 
 def hex_file(folder: Path, data: bytes) -> Path:
@@ -61,14 +50,7 @@ TRIES, SYNC_MS, ANSWER_MS = 8, 250, 1000  # as the page's code has them
 
 def test_what_goes_on_is_written_and_what_does_not_ends_soon() -> None:
     """A board is found that answers one of eight times; then each answer may take its second."""
-    try:
-        node = found_tools().node
-    except CannotMake as why:
-        need(str(why))
-    words = [*node, str(SLOW_SCRIPT), str(SOURCES / "src"), "120"]
-    completed = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
-    assert completed.returncode == 0, completed.stderr
-    rows = [json.loads(line) for line in completed.stdout.splitlines()]
+    rows = [json.loads(line) for line in in_node(SLOW_SCRIPT, "120")]
     assert len(rows) == 120
     ends = {row["ended"] for row in rows if row["slow_ms"] < SYNC_MS}
     assert ends == {"done", "flash_broken_off", "flash_nobody"}

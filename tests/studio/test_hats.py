@@ -7,27 +7,16 @@ before its calls.
 from __future__ import annotations
 
 import json
-import subprocess
 from pathlib import Path
 
-from tests.support.needs import need
-from tiniscript.studio.building import SOURCES
-from tools import CannotMake
-from tools.builds.studio import found_tools
+from tests.support.node import in_node
 
 SCRIPT = Path(__file__).with_name("hats_in_node.mjs")
 SEEDS = 3000
 
 
 def test_hats_are_written_where_they_stand_and_before_their_calls() -> None:
-    try:
-        node = found_tools().node
-    except CannotMake as why:
-        need(str(why))
-    words = [*node, str(SCRIPT), str(SOURCES / "src"), str(SEEDS)]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
-    assert done.returncode == 0, done.stderr
-    rows = [json.loads(row) for row in done.stdout.splitlines()]
+    rows = [json.loads(row) for row in in_node(SCRIPT, str(SEEDS))]
     assert len(rows) == SEEDS
     for seed, row in enumerate(rows, 1):
         assert not row["wrong"], f"seed {seed}: {row}"

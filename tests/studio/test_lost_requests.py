@@ -7,7 +7,6 @@ page asks for later is not undone. Robots are counted stops, their threads the t
 from __future__ import annotations
 
 import json
-import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from random import Random
@@ -16,19 +15,16 @@ from typing import Any, ClassVar, cast
 import pytest
 
 from tests.support.command import FOREVER
-from tests.support.needs import need
+from tests.support.node import in_node
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import until
 from tiniscript import compile, robots
 from tiniscript.studio import classroom
 from tiniscript.studio import hosting as hosting_of
 from tiniscript.studio.attending import Attending
-from tiniscript.studio.building import SOURCES
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 from tiniscript.studio.robot_link import RobotLink
-from tools import CannotMake
-from tools.builds.studio import found_tools
 
 Json = dict[str, Any]
 BEAT_MS = 100
@@ -236,14 +232,7 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
     """Nothing comes after its end. Where a few in a row are lost, all is done, and once; and the
     page's next connection is as the first one of a fresh page.
     """
-    try:
-        node = found_tools().node
-    except CannotMake as why:
-        need(str(why))
-    words = [*node, str(PAGE_SCRIPT), str(SOURCES / "src"), "400"]
-    completed = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
-    assert completed.returncode == 0, completed.stderr
-    rows = [json.loads(line) for line in completed.stdout.splitlines()]
+    rows = [json.loads(line) for line in in_node(PAGE_SCRIPT, "400")]
     assert len(rows) == 400
     wild = [row["first"]["isThere"] for row in rows if row["isWild"]]
     assert sum(wild) < 0.8 * len(wild)  # so some are lost

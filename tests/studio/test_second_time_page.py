@@ -7,20 +7,16 @@ fails, a STOP, a refusal, a fault, a class that is gone), nothing of it is seen 
 from __future__ import annotations
 
 import json
-import subprocess
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.support.needs import need
+from tests.support.node import in_node
 from tiniscript.base.languages import SOURCE, about, languages
 from tiniscript.studio import block_kinds
-from tiniscript.studio.building import SOURCES
 from tiniscript.studio.description import description
-from tools import CannotMake
 from tools.builds.page_texts import page_texts
-from tools.builds.studio import found_tools
 
 SCRIPT = Path(__file__).with_name("second_time_in_node.mjs")
 SEEDS = 80
@@ -70,14 +66,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("part", ENDS)
 def test_it_is_as_on_a_page_that_was_just_loaded(made: Path, part: str) -> None:
-    try:
-        node = found_tools().node
-    except CannotMake as why:
-        need(str(why))
-    words = [*node, str(SCRIPT), str(SOURCES / "src"), str(made), part, str(SEEDS)]
-    completed = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
-    assert completed.returncode == 0, completed.stderr
-    rows: list[dict[str, Any]] = [json.loads(line) for line in completed.stdout.splitlines()]
+    lines = in_node(SCRIPT, str(made), part, str(SEEDS))
+    rows: list[dict[str, Any]] = [json.loads(line) for line in lines]
     assert len(rows) == SEEDS
     assert ENDS[part] <= {end for row in rows for end in row["ends"]}
     for row in rows:

@@ -58,7 +58,7 @@ def ready(
     if not compiled.is_right:
         return None
     image = image_of(compiled, robot)
-    places = source_map.made(compiled.source, compiled.places, compiled.variables, compiled.yes_no)
+    places = source_map.made(compiled)
     return Ready(image, len(compiled.image), places)
 
 

@@ -229,7 +229,7 @@ def _program(
         error = ProgramError("mistakes", language, said="\n".join(said))
         error.diagnostics = diagnostics
         raise error
-    places = source_map.made(found.source, found.places, found.variables, found.yes_no)
+    places = source_map.made(found)
     return Program(text, found.image, image_of(found, profile), profile, places, diagnostics)
 
 

@@ -7,18 +7,18 @@ fault can name its line and a disassembly can show it. Losing a map loses nothin
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
 from contextlib import suppress
 from itertools import takewhile
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.base import files
 from tiniscript.base.files import contents
-from tiniscript.base.source import Source
 from tiniscript.base.words import TASKS
 from tiniscript.bytecode import image as images
-from tiniscript.codegen.lower import SourceLocation
+
+if TYPE_CHECKING:
+    from tiniscript.library.compiling import Compiled
 
 VERSION = 1
 FILE_BYTES = 32_000_000
@@ -77,20 +77,18 @@ class Map(NamedTuple):
         return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""
 
 
-def made(
-    source: Source, places: Iterable[SourceLocation], variables: tuple[str, ...] = (),
-    yes_no: tuple[bool, ...] = (),
-) -> Map:  # fmt: skip
+def made(compiled: Compiled) -> Map:
     """Return the map of a program that has just been compiled."""
+    source = compiled.source
     map_locations = tuple(
         MapLocation(
             place.offset, *source.position(place.span.start), *source.position(place.span.end)
         )
-        for place in places
+        for place in compiled.places
     )
     last = source.position(len(source.text))[0]
     lines = tuple(source.line_text(number) for number in range(1, last + 1))
-    return Map(source.name, lines, map_locations, variables, yes_no)
+    return Map(source.name, lines, map_locations, compiled.variables, compiled.yes_no)
 
 
 def as_json(places: Map) -> str:

@@ -78,7 +78,7 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     if not found.is_right or found.program is None:
         return Checked(b"", 0, findings, (), (), (), "", profile.name, names_robot)
     variables = tuple(map(Variable, found.program.variables, found.yes_no))
-    places = source_map.made(found.source, found.places)
+    places = source_map.made(found)
     return Checked(found.image, len(found.code), findings, places.places, _shows(places), variables,
                    found.program.start, profile.name, names_robot,
                    _remote(found, profile.kit))  # fmt: skip

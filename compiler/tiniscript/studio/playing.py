@@ -77,7 +77,7 @@ def ready(recording: Recording) -> Ready:
     if found.program is None or not found.image or checksum(found.image) != recording.program:
         raise BadRecording("other_program")
     sensors = _shown_sensors(found.program)
-    places = made(found.source, found.places)
+    places = made(found)
     shows = {place.offset: sensors[its.span.start] for its, place in
              zip(found.places, places.places, strict=True)
              if its.span.start in sensors}  # fmt: skip

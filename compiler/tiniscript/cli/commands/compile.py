@@ -33,7 +33,7 @@ def run(options: Namespace, language: str) -> int:
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
-    places = source_map.made(compiled.source, compiled.places, compiled.variables, compiled.yes_no)
+    places = source_map.made(compiled)
     outputs.put(target, compiled.image)
     if options.map is not None:
         data = (source_map.as_json(places) + "\n").encode(errors="backslashreplace")

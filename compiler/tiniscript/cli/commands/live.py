@@ -153,9 +153,7 @@ class Repl:
 
     def _run(self, found: Line, is_last: bool) -> int:
         compiled = found.compiled
-        places = source_map.made(
-            compiled.source, compiled.places, compiled.variables, compiled.yes_no
-        )
+        places = source_map.made(compiled)
         source_map.remember(compiled.image, places)  # tsc doctor names a fault's line later
         kit = kit_of(found.compiled, self.connection.profile)
         reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))

@@ -53,7 +53,7 @@ def _first(place: MapLocation, statements: Sequence[int]) -> int:
     return next((at for at in statements if at >= place.offset), statements[-1])
 
 
-def require(connection: Connection) -> None:
+def require_breakpoints(connection: Connection) -> None:
     """Raise CommandError where the robot halts nothing."""
     if not connection.device_info.values.features & BREAKPOINTS:
         raise connection.failure(Reply(STATUSES["NO_BREAKPOINTS"]))

@@ -134,11 +134,11 @@ def _assigned(compiled: Compiled, start: int) -> tuple[str, ...]:
 def _map_of(compiled: Compiled, end: int) -> Map:
     """Return the map of the text up to `end`; what is after it comes from nowhere."""
     nowhere = Span(end, end)
-    places = (
+    places = tuple(
         place if place.span.end <= end else place._replace(span=nowhere)
         for place in compiled.places
     )
-    return source_map.made(compiled.source, places)
+    return source_map.made(compiled._replace(places=places))
 
 
 def _behind(compiled: Compiled, start: int, end: int | None = None) -> Compiled:

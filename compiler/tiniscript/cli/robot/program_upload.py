@@ -14,6 +14,7 @@ from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.debugger import Debugger, places_of, require_breakpoints
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, ended
 from tiniscript.cli.terminal.keys import Keys, is_in_front
@@ -33,10 +34,8 @@ def send_program(
     have arrived. Raises CommandError."""
     places: tuple[int, ...] = ()
     if options.breaks:
-        from tiniscript.cli.robot import debugger
-
-        places = debugger.places_of(options.breaks, ready, connection.language)
-        debugger.require(connection)
+        places = places_of(options.breaks, ready, connection.language)
+        require_breakpoints(connection)
     runs = not options.no_run and not places
     reply = connection.send_program(ready.image, runs, not options.no_save, options.detach, draw)
     if reply.status:
@@ -75,8 +74,6 @@ def _follow_halts(
     connection: Connection, ready: images.Ready, saving: Saving, printer: EventPrinter
 ) -> int:
     """The same for a program with breakpoints."""
-    from tiniscript.cli.robot.debugger import Debugger
-
     with Debugger(connection, printer, ready) as debugger:
 
         def look() -> None:
