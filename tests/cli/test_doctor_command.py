@@ -21,7 +21,7 @@ from tests.support.simulated_ends import Firmware
 from tiniscript.doctor import report
 from tiniscript.doctor.computer import ON, Adapter, Computer
 from tiniscript.doctor.findings import sure
-from tiniscript.link.ports import Found, opened
+from tiniscript.link.ports import ListedPort, opened
 from tiniscript.link.sharing import registry
 
 
@@ -104,7 +104,7 @@ def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
 def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> None:
     on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
     command = Command("doctor", "--port", pty_robot.port, "--watch", "60")
-    pty_robot.until(lambda: registry.found(pty_robot.port) is not None, "it is watched")
+    pty_robot.until(lambda: registry.find_registration(pty_robot.port) is not None, "it is watched")
     assert pty_robot.moves
     assert process("stop", "--port", pty_robot.port).code == 0  # its time is also the doctor's
     assert not pty_robot.moves
@@ -241,7 +241,7 @@ def test_values_of_others_stay_out_of_a_report() -> None:
     finding = sure("port_missing", ports="COM3, /dev/cu.usbserial-A50285BI")
     assert report.values_of(finding) == {"ports": "COM3, /dev/cu.usbserial…"}
     computer = Computer(
-        "darwin", (Found("/dev/cu.usbserial-A50285BI", "FT232 of ANA"),),
+        "darwin", (ListedPort("/dev/cu.usbserial-A50285BI", "FT232 of ANA"),),
         (Adapter("FT232", "", "", True),), ON, ("Telephone of ANA", "HC-05"),
     )  # fmt: skip
     rows = dict(report.facts(computer))

@@ -178,10 +178,10 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
     known_ports.remember(str(usb), "TINI")
     here = [Running("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
     monkeypatch.setattr(directory, "running", lambda: here)
-    assert in_reach.to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
+    assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
     usb.touch()
-    assert in_reach.to_stop() == ["socket://127.0.0.1:5", str(usb)]
-    assert in_reach.to_stop(is_virtual=True) == ["socket://127.0.0.1:5"]
+    assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5", str(usb)]
+    assert in_reach.ports_to_stop(is_virtual=True) == ["socket://127.0.0.1:5"]
 
 
 def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -194,7 +194,7 @@ def test_files_of_the_cache_may_be_anything(kind: str) -> None:
             path.symlink_to("/dev/zero" if kind == "device" else path)
     assert known_ports.known() == known_ports.Known(None, {})
     assert directory.running() == []
-    assert registry.found(port) is None
+    assert registry.find_registration(port) is None
     assert registry.all_found() == []
     assert source_map.recall(5) is None
 

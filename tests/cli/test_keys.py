@@ -62,14 +62,14 @@ def test_a_file_that_is_none_is_left_as_it_is(key_file: KeyFile, data: bytes) ->
 def test_what_is_known_of_a_robots_seals_outlives_a_list_that_does_not_say_it(
     key_file: KeyFile,
 ) -> None:
-    key_file.settle(ONE._replace(seals=True))
+    key_file.settle(ONE._replace(uses_seals=True))
     key_file.settle(ONE._replace(id=7))
-    assert [key.seals for key in key_file.of_robot(None)] == [True, False]
+    assert [key.uses_seals for key in key_file.of_robot(None)] == [True, False]
     key_file.add([ONE, ONE._replace(id=7)])
-    assert [key.seals for key in key_file.of_robot(ONE.id)] == [True]
+    assert [key.uses_seals for key in key_file.of_robot(ONE.id)] == [True]
     assert KeyFile(key_file.path, is_for_virtual=True).of_robot(ONE.id) == [ONE]
     key_file.add([ONE._replace(key=b"\2" * 16)])  # another one: nothing is known of it
-    assert [key.seals for key in key_file.of_robot(ONE.id)] == [False]
+    assert [key.uses_seals for key in key_file.of_robot(ONE.id)] == [False]
 
 
 def test_the_keys_of_one_robot_are_forgotten(tsc: Tsc) -> None:

@@ -222,7 +222,7 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
 
     ends = [end for _ in range(2) for end in pty.openpty()]
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
-    monkeypatch.setattr(ports, "listed", lambda: [ports.Found(port, "")])
+    monkeypatch.setattr(ports, "listed", lambda: [ports.ListedPort(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_S", 1.0)
     done = inside("doctor", "--identify", "--all").gives(0)
     assert len(done.out.splitlines()) == 4

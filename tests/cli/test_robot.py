@@ -154,7 +154,10 @@ def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, pty_robot: PtyRobot, hasty
 def test_a_person_without_a_port_is_asked_for_one(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = [ports.Found("/dev/ttyS77", "a modem"), ports.Found(pty_robot.port, "a robot")]
+    found = [
+        ports.ListedPort("/dev/ttyS77", "a modem"),
+        ports.ListedPort(pty_robot.port, "a robot"),
+    ]
     monkeypatch.setattr(ports, "listed", lambda: found)
     answers = iter(["7\n", "what?\n", "2\n"])
     monkeypatch.setattr("sys.stdin.isatty", lambda: True)

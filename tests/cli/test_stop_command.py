@@ -146,7 +146,7 @@ def test_a_stop_gets_through_beside_a_suspended_tsc(
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     pty_robot.heard = b""
     holder = Command(*verb.split(), "--port", pty_robot.port, code=code)
-    until(lambda: registry.found(pty_robot.port) is not None, "it shares its port")
+    until(lambda: registry.find_registration(pty_robot.port) is not None, "it shares its port")
     pty_robot.until(lambda: b"\x04" in pty_robot.heard, "it talks to the robot")
     suspended(holder)
     assert pty_robot.moves
@@ -212,7 +212,7 @@ def test_the_suspended_holder_of_an_address_is_woken(pty_robot: PtyRobot) -> Non
     assert bridge.process.stdout
     address = f"socket://127.0.0.1:{int(bridge.process.stdout.readline())}"
     holder = Command("monitor", "--port", address)
-    until(lambda: registry.found(address) is not None, "it shares the address")
+    until(lambda: registry.find_registration(address) is not None, "it shares the address")
     suspended(holder)
     process("stop", "--port", address).gives(0, "", out="has confirmed it")
     assert not pty_robot.moves

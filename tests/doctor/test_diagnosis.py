@@ -16,7 +16,7 @@ from tests.support.fake_computer import FakeComputer
 from tests.support.simulated_ends import KIT, Firmware, Nobody
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
 from tiniscript.cli.texts.causes import said
-from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
+from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
 from tiniscript.doctor.robot import SILENT
@@ -130,7 +130,7 @@ class Case:
 
         doors = Doors(self.system, open_wire, join, may_open, lambda name: "rfcomm" in name, share)
         question = Question(port, self.last, 9600, self.expected, 7, self.watch_ms, self.virtual)
-        return diagnosed(doors, question)
+        return diagnose(doors, question)
 
     def cause(self, port: str | None = CABLE) -> tuple[str, bool]:
         (finding,) = self.diagnosis(port).findings

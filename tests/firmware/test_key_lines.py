@@ -5,6 +5,8 @@ An Uno has no room for them: it reads them as any other line.
 
 from __future__ import annotations
 
+from itertools import product
+
 import pytest
 
 from tests.firmware.test_button_states import SmallRobot
@@ -50,6 +52,17 @@ def test_a_line_holds_what_it_says_for_half_a_second(
     assert robot.remote() == readings(held)
     robot.wait(40)
     assert robot.remote() == NONE and robot.did == []
+
+
+@pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
+def test_every_blank_of_the_reader_is_one_of_a_line_of_keys(kind: type[HostFirmware]) -> None:
+    for line, held in WORDS:
+        for begin, between, end in product((" ", "\t", ""), (" ", "\t", "\t "), (" ", "\t", " \t")):
+            robot = booted(kind)
+            typed(robot, "KEY_LEFT\n")  # after which nothing is said of keys
+            words = line.strip(" ;").split()
+            assert typed(robot, f"{begin}{between.join(words)}{end}\n", 20) == []
+            assert robot.remote() == readings(held), (line, begin, between, end)
 
 
 @pytest.mark.parametrize("line", [

@@ -28,7 +28,7 @@ from tiniscript.cli.commands import firmware as firmware_command
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import has_text
 from tiniscript.flash import avrdude, ready
-from tiniscript.flash.avrdude import Seen
+from tiniscript.flash.avrdude import StepProgress
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tiniscript.flash.ready import Ready
 from tiniscript.robots.profile import answered
@@ -246,8 +246,9 @@ def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
     """And nothing of that before: the board has what it had."""
 
     def write(*words: object) -> None:
-        look = cast("Callable[[Seen | None], None]", words[-1])
-        for progress in [None, None, *(Seen(avrdude.WRITING, 9 * k) for k in range(count)), None]:
+        look = cast("Callable[[StepProgress | None], None]", words[-1])
+        steps = (StepProgress(avrdude.WRITING, 9 * k) for k in range(count))
+        for progress in [None, None, *steps, None]:
             look(progress)
         raise KeyboardInterrupt
 
@@ -277,15 +278,15 @@ def test_the_avrdude_of_another_program_is_found(
 ) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
-    assert avrdude.found() is None
+    assert avrdude.find_avrdude() is None
     program = tmp_path / place
     program.parent.mkdir(parents=True)
     program.touch(mode=0o755)
-    assert avrdude.found() is None  # without its settings it does nothing
+    assert avrdude.find_avrdude() is None  # without its settings it does nothing
     inside = program.parent.parent / "etc" if program.parent.name == "bin" else program.parent
     inside.mkdir(exist_ok=True)
     (inside / "avrdude.conf").touch()
-    assert avrdude.found() == [str(program), "-C", str(inside / "avrdude.conf")]
+    assert avrdude.find_avrdude() == [str(program), "-C", str(inside / "avrdude.conf")]
 
 
 @pytest.mark.parametrize(("how", "said"), [

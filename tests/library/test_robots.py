@@ -464,7 +464,7 @@ def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch
     """Its sentence says which ones there are; its reason is the one that the documents name."""
     from tiniscript.link import ports
 
-    for listed in ([], [ports.Found("/dev/other", "")]):
+    for listed in ([], [ports.ListedPort("/dev/other", "")]):
         monkeypatch.setattr(ports, "listed", lambda listed=listed: listed)
         with fails(tiniscript.RobotError, "port_missing") as raised:
             tiniscript.connect("/dev/none-here")

@@ -307,12 +307,12 @@ def test_a_folder_that_others_can_read_is_closed_and_what_was_in_it_is_not_belie
     registration = Registration("/dev/x", 1, "a" * 32, "b" * 32, "link", 9600, os.getpid())
     registry.write(registration)
     folder = files.cache_folder() / "held"
-    assert registry.found("/dev/x") == registration
+    assert registry.find_registration("/dev/x") == registration
     folder.chmod(0o750)
-    assert registry.found("/dev/x") is None
+    assert registry.find_registration("/dev/x") is None
     registry.write(registration)
     assert folder.stat().st_mode & 0o777 == 0o700
-    assert registry.found("/dev/x") == registration
+    assert registry.find_registration("/dev/x") == registration
 
 
 def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
@@ -335,4 +335,4 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
         patch.setattr(registry, "_read", read)
         registry.remove(before)
     assert len(paths) == 2
-    assert registry.found("/dev/x") == now
+    assert registry.find_registration("/dev/x") == now

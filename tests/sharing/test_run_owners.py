@@ -111,7 +111,7 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
         assert [
             registration for registration in registry.all_found() if registration.token == own.token
         ] == [own]
-        other = registry.found(line.address)
+        other = registry.find_registration(line.address)
         assert other is not None and other.token == own.token
 
 

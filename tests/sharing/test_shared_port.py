@@ -251,7 +251,7 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     done = first.ended().gives(3, "another program", "holds the port until that has ended")
     assert done.err.index("holds the port") < done.err.index("another program")
     assert hellos(pty_robot) == 1
-    assert registry.found(pty_robot.port) is None
+    assert registry.find_registration(pty_robot.port) is None
 
 
 def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRobot) -> None:
@@ -289,7 +289,7 @@ def test_a_server_that_leaves_stops_the_run_of_its_client(
     assert link.ended().code == 0
     assert not pty_robot.moves
     command.ended().gives(3, "has ended (tsc monitor --hold)")
-    assert registry.found(pty_robot.port) is None
+    assert registry.find_registration(pty_robot.port) is None
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert hellos(pty_robot) == 2
 
@@ -299,11 +299,11 @@ def test_a_server_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Comman
     link.process.kill()
     command.ended().gives(3, "has ended (tsc monitor --hold)")
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
-    assert registry.found(pty_robot.port) is not None
+    assert registry.find_registration(pty_robot.port) is not None
     rows = json.loads(process("doctor", "--ports", "--json").out)
     assert pty_robot.port not in [row["port"] for row in rows if row["held_by"]]
     on(pty_robot, "doctor").gives(0, "", out="LINK_LOST")
-    assert registry.found(pty_robot.port) is None
+    assert registry.find_registration(pty_robot.port) is None
 
 
 def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:

@@ -244,7 +244,7 @@ def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
     assert chosen(floor) == "Flag 1"
     floor.check("#world_rests")
     flag = saved(floor).flags[0]
-    assert (round(flag.place.x), round(flag.place.y), flag.reach_cm, flag.rests) == (
+    assert (round(flag.place.x), round(flag.place.y), flag.reach_cm, flag.needs_rest) == (
         150, 100, 12, True,
     )  # fmt: skip
     floor.select_option("#world_part", label="Floor")

@@ -24,13 +24,13 @@ FLAGS = (*USUAL, "-flto", "-mrelax", "-mcall-prologues")  # the first ones of pl
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
 MARK = b"TiniScript: here is the request"
 REQUEST_BYTES = 8192
-PACKAGES = "apt-get install gcc-avr avr-libc binutils-avr simavr"
+INSTALL_COMMAND = "apt-get install gcc-avr avr-libc binutils-avr simavr"
 
 
 def missing() -> str:
     """Return why there is no simulated chip, or nothing."""
     names = [name for name in ("avr-g++", "simavr") if not shutil.which(name)]
-    return f"no {' and no '.join(names)} ({PACKAGES})" if names else ""
+    return f"no {' and no '.join(names)} ({INSTALL_COMMAND})" if names else ""
 
 
 # What a program needs besides the machine.

@@ -45,7 +45,7 @@ def environments() -> list[str]:
             and config.get(f"env:{name}", "platform").split()[0] == PLATFORM]  # fmt: skip
 
 
-def measured(name: str, project: Path = PROJECT) -> Sketch:
+def measure(name: str, project: Path = PROJECT) -> Sketch:
     """Build one environment and return its sizes. Raises RuntimeError with the log."""
     command = [sys.executable, "-m", "tools.builds.platformio_offline", "--project", str(project)]
     completed = subprocess.run(
@@ -67,7 +67,7 @@ def measured(name: str, project: Path = PROJECT) -> Sketch:
 
 def main() -> int:
     try:
-        sketches = [measured(name) for name in environments()]
+        sketches = [measure(name) for name in environments()]
     except RuntimeError as why:
         print(why, file=sys.stderr)
         return 2
@@ -78,9 +78,7 @@ def main() -> int:
         is_enough &= sketch.flash <= sketch.holds
         free = "-"
         if not uno.missing():
-            stack = firmware_stack.measured(
-                sketch.firmware, robots.load(sketch.robot), sketch.board
-            )
+            stack = firmware_stack.measure(sketch.firmware, robots.load(sketch.robot), sketch.board)
             is_enough &= stack.least_free >= firmware_stack.LEAST_FREE
             free = f"{stack.least_free:,}"
         sizes = f"{sketch.flash:,} | {sketch.holds:,} | {sketch.ram:,}"

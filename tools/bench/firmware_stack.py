@@ -48,7 +48,7 @@ SEEN_BITS = 9.5625  # from the start bit of a byte until the chip has it
 DIVIDES_BY_ZERO = "X = 0; X = 5 / X"
 
 
-def measured(firmware: Path, robot: Robot, board: str) -> Stack:
+def measure(firmware: Path, robot: Robot, board: str) -> Stack:
     """Run a firmware through everything that goes deep. Raises RuntimeError where it does not.
 
     `board` is that of the firmware: it may be another one than that of the robot's profile.

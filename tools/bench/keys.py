@@ -102,7 +102,7 @@ class Hand:
         return (found[-1].cycle - begun) / CYCLES_PER_MS
 
 
-def measured(firmware: Path, baud: int) -> list[list[float]]:
+def measure(firmware: Path, baud: int) -> list[list[float]]:
     """Return the ms of each try, by row."""
     with Hand(firmware, baud, AT_ONCE) as hand:
         changes = [(hand.change(AHEAD), hand.change(NOTHING)) for _ in range(TRIES)]
@@ -113,10 +113,10 @@ def measured(firmware: Path, baud: int) -> list[list[float]]:
 
 
 def main() -> int:
-    return on_each_baud(measured, shown)
+    return on_each_baud(measure, print_figures)
 
 
-def shown(found: dict[int, list[list[float]]], _: Path) -> bool:
+def print_figures(found: dict[int, list[list[float]]], _: Path) -> bool:
     """Print the figures, half and the slowest of each; return whether they are kept."""
     by_row = zip(*found.values(), strict=True)
     page.show("keys", [

@@ -74,7 +74,7 @@ def built(baud: int, folder: Path) -> Path:
     if not count:
         raise RuntimeError("tinibot.h says nothing of a baud")
     (kits / "own.h").write_text(own, encoding="utf-8")
-    firmware_size.measured("uno", project)
+    firmware_size.measure("uno", project)
     return project / ".pio" / "build" / "uno" / "firmware.elf"
 
 
@@ -89,7 +89,7 @@ def first_move(board: Uno, since: int) -> int:
     return max(changes)
 
 
-def measured(firmware: Path, baud: int) -> Figures:
+def measure(firmware: Path, baud: int) -> Figures:
     with Uno(firmware, baud=baud) as board:
         wired = connected(board, robots.load(ROBOT), baud)
         must(wired, wired.session.hello())
@@ -144,10 +144,10 @@ def on_each_baud(
 
 
 def main() -> int:
-    return on_each_baud(measured, shown)
+    return on_each_baud(measure, print_figures)
 
 
-def shown(found: dict[int, Figures], folder: Path) -> bool:
+def print_figures(found: dict[int, Figures], folder: Path) -> bool:
     """Print the figures, and those of the other sketches; return whether all are kept."""
     figures = [*found.values()]
     page.show("link", [
@@ -173,7 +173,7 @@ def others_stopped(folder: Path) -> dict[str, stops.Slowest]:
     project = copied(folder / "vm_arduino")
     found = {}
     for name in (*OTHERS, *UNSHOWN):
-        sketch = firmware_size.measured(name, project)
+        sketch = firmware_size.measure(name, project)
         robot = robots.load(sketch.robot)
         found[name] = stops.slowest(sketch.firmware, robot, sketch.board, robot.board.baud)
     return found

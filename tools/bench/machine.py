@@ -55,7 +55,7 @@ def cycles() -> None:
     if not avr_bench.missing():
         alone = [f"{per_iteration(work):,.0f}" for work in workloads.WORKS]
     if not uno.missing():
-        firmware = firmware_size.measured("uno").firmware
+        firmware = firmware_size.measure("uno").firmware
         found = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
         sketch = [f"{each:,.0f}" for each in found]
     rows = zip(ROWS, (alone, sketch), strict=True)

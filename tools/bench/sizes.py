@@ -217,7 +217,7 @@ def missing(chip: str) -> str:
     """Return why a chip cannot be measured here, or nothing."""
     if chip != AVR:
         return chips.missing(EMULATED[chip])
-    return "" if shutil.which("avr-g++") else f"no avr-g++ ({avr_bench.PACKAGES}): no {AVR}"
+    return "" if shutil.which("avr-g++") else f"no avr-g++ ({avr_bench.INSTALL_COMMAND}): no {AVR}"
 
 
 def size(name: str, chip: str = AVR) -> Size:

@@ -56,8 +56,8 @@ def main() -> int:
         print(why, file=sys.stderr)
         return 2
     try:
-        firmware = firmware_size.measured("uno").firmware
-        without = firmware_size.measured(building.SMALLER["uno"][0]).firmware
+        firmware = firmware_size.measure("uno").firmware
+        without = firmware_size.measure(building.SMALLER["uno"][0]).firmware
     except RuntimeError as failed:
         print(failed, file=sys.stderr)
         return 2

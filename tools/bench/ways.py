@@ -29,7 +29,7 @@ from tiniscript.link.trim import Pace, Trim
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.wheels import Roughness
 from tools.bench import page
-from tools.bench.firmware_size import PROJECT, measured
+from tools.bench.firmware_size import PROJECT, measure
 
 SEEDS = 100
 WANTED = 95  # of them
@@ -132,12 +132,12 @@ def flash() -> int:
             text, found = re.subn(pattern, none, text)
             assert found == 1, pattern
         header.write_text(text, encoding="utf-8")
-        return measured("uno").flash - measured("uno", project).flash
+        return measure("uno").flash - measure("uno", project).flash
 
 
 def main(seeds: int = SEEDS, is_uno: bool = False) -> int:
     if is_uno:
-        firmware = measured(ENVIRONMENT).firmware
+        firmware = measure(ENVIRONMENT).firmware
         found = Off.of("discs", [off_uno(firmware, seed, SLIPS[0]) for seed in range(1, seeds + 1)])
         along, aside, turn = found.cells()
         print(f"With discs and 0.5 % of slip {along} along, {aside} aside and {turn}, "

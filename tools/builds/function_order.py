@@ -138,7 +138,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         linked = Path(folder) / "map"
         os.environ["PLATFORMIO_BUILD_FLAGS"] = f"-Wl,-Map={linked}"
-        sketch = firmware_size.measured(BOARD)
+        sketch = firmware_size.measure(BOARD)
         del os.environ["PLATFORMIO_BUILD_FLAGS"]
         among, sections = pieces(linked.read_text(encoding="utf-8"))
     command = ["avr-objdump", "-d", str(sketch.firmware)]
@@ -152,7 +152,7 @@ def main() -> int:
     before, after = text.index(BEGIN) + len(BEGIN), text.index(END)
     rows = "".join(f"    *({among[number].pattern})\n" for number in order)
     SCRIPT.write_text(text[:before] + rows + text[after:], encoding="utf-8")
-    print(f"{firmware_size.measured(BOARD).flash:,} bytes with the new order")
+    print(f"{firmware_size.measure(BOARD).flash:,} bytes with the new order")
     return 0
 
 

@@ -117,7 +117,7 @@ def _length_row(request: Message | None) -> str:
 def _length_range(fields: tuple[Field, ...]) -> str:
     """Return the least and the most of a payload; what fills a frame depends on the robot."""
     least, most = messages.sizes(fields)
-    is_filling = any(field.fills for field in fields)
+    is_filling = any(field.fills_frame for field in fields)
     return f"{least}, {'kPayloadBytes' if is_filling else most}"
 
 
@@ -162,7 +162,7 @@ def message_rows() -> Rows:
 def _shown(fields: Sequence[Field]) -> str:
     """Return the fields of a payload as the document names them."""
     words = [
-        f"{field.name}:{field.low}..{'' if field.fills else field.high}"
+        f"{field.name}:{field.low}..{'' if field.fills_frame else field.high}"
         if field.kind == "rest"
         else f"{field.name}:{field.kind}"
         for field in fields

@@ -367,10 +367,11 @@ def instruction_text(op: Op, operands: tuple[int, ...], next_offset: int) -> str
     return " ".join(words)
 
 
-_LETTERS = {(1, False): "B", (1, True): "b", (2, False): "H", (2, True): "h", (4, True): "i"}
+_FORMAT_CHARS = {(1, False): "B", (1, True): "b", (2, False): "H", (2, True): "h", (4, True): "i"}
 _LAYOUTS = {
     op.code: Struct(
-        "<" + "".join(_LETTERS[operand.kind.size, operand.kind.signed] for operand in op.operands)
+        "<"
+        + "".join(_FORMAT_CHARS[operand.kind.size, operand.kind.signed] for operand in op.operands)
     )
     for op in OPS
 }

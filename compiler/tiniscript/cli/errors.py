@@ -21,10 +21,12 @@ class CommandError(Exception):
     def sentence(self, language: str) -> str:
         said = text(self.key, language).format(**self.values)
         if self.values.get("near"):
-            near = text("did_you_mean", language).format(near=self.values["near"])
+            suggestion = text("did_you_mean", language).format(near=self.values["near"])
             try_it = f" {languages.text('messages', 'label/try', language)}  "
             what, advice, example = said.rpartition(try_it)  # what was typed may have it, too
-            return Said(f"{what} {near}{advice}{example}" if advice else f"{said} {near}")
+            return Said(
+                f"{what} {suggestion}{advice}{example}" if advice else f"{said} {suggestion}"
+            )
         return said
 
     def plain(self, language: str) -> str:

@@ -19,7 +19,7 @@ from typing import NamedTuple
 from tiniscript.base import files
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.terminal.asking import agreed, can_ask
+from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts import text
 from tiniscript.flash import children
@@ -85,7 +85,7 @@ def agree(
     if not options.yes and not can_ask():
         raise CommandError(2, "fetch_unasked", said=said)
     print(said, file=sys.stderr, flush=True)
-    if not options.yes and not agreed(text("fetch_asks", language)):
+    if not options.yes and not confirm(text("fetch_asks", language)):
         raise CommandError(2, "fetch_declined")
 
 

@@ -108,8 +108,8 @@ def usage(command: str, language: str) -> list[str]:
     for option in shown_of(command):
         if option.is_argument:
             label = option.shown_value(language) + (" ..." if option.repeats else "")
-            is_there = option.kind == PROGRAM  # in whose place -e may stand
-            words.append(label if is_there else f"[{label}]")
+            is_required = option.kind == PROGRAM  # in whose place -e may stand
+            words.append(label if is_required else f"[{label}]")
     return [" ".join([*words, said("usage", language)])]
 
 

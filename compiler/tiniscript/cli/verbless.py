@@ -49,8 +49,8 @@ def _now(command: str, words: list[str], language: str) -> str:
 def meant(name: str) -> str:
     """Return the command that somebody means with a word that is no verb, or nothing."""
     called = (each for each in (*COMMANDS, "--version") if _plain(name) in _elsewhere(each).split())
-    near = next(called, None) or nearest(name, (*VERBS, *WAS)) or ""
-    return typed(WAS.get(near, near))
+    suggestion = next(called, None) or nearest(name, (*VERBS, *WAS)) or ""
+    return typed(WAS.get(suggestion, suggestion))
 
 
 def is_help(name: str) -> bool:

@@ -18,7 +18,7 @@ NEGATED = {"EQ": "NE", "NE": "EQ", "LT": "GE", "GE": "LT", "LE": "GT", "GT": "LE
 _SWAPPED = {"EQ": "EQ", "NE": "NE", "LT": "GT", "GT": "LT", "LE": "GE", "GE": "LE"}
 _SHORT = ("PUSH_VAR", "PUSH_SENSOR", "PUSH_READ", "READ", "SET_VAR", "SET")
 _LEFTS, _JOINS = ("AND_LEFT", "OR_LEFT"), ("AND", "OR")
-_SHORT_SIDE = 6  # terms up to which evaluating a needless side costs less than a jump
+_MAX_EAGER_TERMS = 6  # terms up to which evaluating a needless side costs less than a jump
 
 
 class Item(NamedTuple):
@@ -158,7 +158,7 @@ def add_value(out: Emitter, expression: Expression) -> None:
         if term.op in _LEFTS:
             end = _other_half(expression, range(k + 1, len(expression)), _LEFTS, _JOINS)
             right = expression[k + 1 : end]
-            if not out.plain and is_safe(right) and len(right) <= _SHORT_SIDE:
+            if not out.plain and is_safe(right) and len(right) <= _MAX_EAGER_TERMS:
                 joins.append(None)
             else:
                 joins.append(out.new_label())

@@ -198,7 +198,7 @@ NO_REMOTE = _mistake("TS319")
 # what a teacher would say
 ROUNDED = _warning("TS801")
 NEVER_REACHED = _warning("TS802")
-MOVE_OF_NO_TIME = _warning("TS803")
+ZERO_TIME_MOVE = _warning("TS803")
 BUSY_LOOP = _warning("TS804")
 LATE_CHECK = _warning("TS805")
 UNUSED_VARIABLE = _warning("TS806")

@@ -22,7 +22,7 @@ from tiniscript.doctor.computer import (
     looks_wireless,
     without_driver,
 )
-from tiniscript.doctor.examination import Expected, Heard, examined
+from tiniscript.doctor.examination import Expected, Heard, examine
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.line import Line
 from tiniscript.doctor.robot import SharedRobot
@@ -37,11 +37,11 @@ from tiniscript.link.sharing.shared_connection import OtherVersion
 from tiniscript.link.wire import Wire
 
 
-def looked(system: System) -> Computer:
+def inspect_computer(system: System) -> Computer:
     """Look at a computer. Opens no port."""
     if system.platform == "win32":
-        return windows.looked(system)
-    look = macos.looked if system.platform == "darwin" else linux.looked
+        return windows.inspect_windows(system)
+    look = macos.inspect_macos if system.platform == "darwin" else linux.inspect_linux
     return look(system)
 
 
@@ -70,7 +70,7 @@ class Doors(NamedTuple):
     may_open: Callable[[str], bool]
     is_radio: Callable[[str], bool]
     share: Callable[[str], AbstractContextManager[LinkConnection]]
-    tell: Callable[[str], None] = lambda what: None
+    on_step: Callable[[str], None] = lambda what: None
 
 
 class Question(NamedTuple):
@@ -97,9 +97,9 @@ class Diagnosis(NamedTuple):
     is_opened: bool
 
 
-def diagnosed(doors: Doors, question: Question) -> Diagnosis:
-    doors.tell("computer")
-    computer = looked(doors.system)
+def diagnose(doors: Doors, question: Question) -> Diagnosis:
+    doors.on_step("computer")
+    computer = inspect_computer(doors.system)
     port = question.port or question.last or _only(computer, question.virtual)
     if port is None:
         return Diagnosis(None, _without_port(computer, question.virtual), computer, False)
@@ -140,7 +140,7 @@ def _opened(
         expected.hear(each)
 
     try:
-        findings = line.looked(wire, asked, expected._replace(hear=hear), doors.tell)
+        findings = line.diagnose_line(wire, asked, expected._replace(hear=hear), doors.on_step)
     except OSError:
         cause = "other_host" if is_address(port) else "port_gone"
         findings = [Finding(cause, not is_address(port))]
@@ -189,17 +189,17 @@ def _absent(computer: Computer) -> Finding:
 
 def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[Finding, ...]:
     robot = SharedRobot(client)
-    doors.tell("hello")
+    doors.on_step("hello")
     try:
         reply = robot.hello()
         if reply is None:
             return (probably("falls_silent"),)
-        return tuple(examined(robot, reply, question.expected, question.watch_ms, doors.tell))
+        return tuple(examine(robot, reply, question.expected, question.watch_ms, doors.on_step))
     except ConnectionLost:
         return (sure("port_gone"),)
 
 
-def _held(system: System, found: Computer, port: str) -> Finding | None:
+def _held(system: System, computer: Computer, port: str) -> Finding | None:
     """Return why this user cannot have the port now, as far as it is known without opening it."""
     who = access(system, same_for_all(port))
     if not who.may_use and who.is_joined:
@@ -221,7 +221,7 @@ def _is_listed(system: System, computer: Computer, port: str) -> bool:
 
 def unopened(system: System, port: str, failure: PortError) -> Finding:
     """Return why a port that somebody has tried to open did not open."""
-    computer = looked(system)
+    computer = inspect_computer(system)
     return _held(system, computer, port) or _unopened(failure, computer, port, system)
 
 

@@ -79,13 +79,14 @@ class Restart(NamedTuple):
     cause: str
 
 
-def examined(
+def examine(
     robot: Robot, first: Reply[SentReply], expected: Expected, watch_ms: int = 0,
-    tell: Callable[[str], None] = lambda what: None,
+    on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
     """Return what is wrong with a robot whose answer to HELLO is `first`.
 
-    Where nothing is, the only finding that is no note is `fine`. `tell` gets `pings` and `watch`.
+    Where nothing is, the only finding that is no note is `fine`. `on_step` gets `pings` and
+    `watch`.
     """
     hello = values_of(first)
     if first.status == OTHER_ROBOT:  # the tsc that has the port does not believe it
@@ -104,10 +105,10 @@ def examined(
     restarts: list[Restart] = []
     if before is not None:
         findings += _told(before)
-        lost, trips_ms = _hearing(robot, before, expected, tell)
+        lost, trips_ms = _hearing(robot, before, expected, on_step)
         findings += lost
         expected.hear(Heard(hello, before, _trim(robot, hello), trips_ms))
-        tell("watch")
+        on_step("watch")
         restarts = _watched(robot, hello, watch_ms)
     after = robot.status() if before is not None else None
     if restarts:
@@ -196,21 +197,21 @@ def _told(status: StatusReply) -> list[Finding]:
 
 
 def _hearing(
-    robot: Robot, before: StatusReply, expected: Expected, tell: Callable[[str], None]
+    robot: Robot, before: StatusReply, expected: Expected, on_step: Callable[[str], None]
 ) -> tuple[list[Finding], tuple[float, ...]]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
-    tell("pings")
+    on_step("pings")
     trips_ms = trips_of(robot, expected.pings, lambda: robot.pause(PAUSE_MS))
     missed = expected.pings - len(trips_ms)
     after = robot.status()
-    damaged = 0
+    damaged_count = 0
     if after is not None:
         pairs = zip(_four(before), _four(after), strict=True)
-        damaged = sum((now - then) & 0xFF for then, now in pairs)
-    values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged)}
+        damaged_count = sum((now - then) & 0xFF for then, now in pairs)
+    values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged_count)}
     expected.note({"good": str(len(trips_ms)), **values})
     lost = []
-    if max(missed, damaged) * PINGS >= LOSSY * expected.pings:
+    if max(missed, damaged_count) * PINGS >= LOSSY * expected.pings:
         lost = [sure("lossy", **values)] if after is not None else []
     elif after is not None and lost_packets(before) >= 10 * LOSSY:
         lost = [probably("lossy", **{**values, "damaged": str(lost_packets(before))})]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 OK, OPEN, WRONG = "ok", "open", "wrong"  # OPEN: nothing is wrong for sure, and a person may look
 
 
-class Cause(NamedTuple):
+class FindingKind(NamedTuple):
     """What a finding means. `part`: what of a robot it is about, where one is looked at whole.
 
     `then` names the sentence with the next step, if that is not of this cause alone.
@@ -22,8 +22,8 @@ class Cause(NamedTuple):
     then: str = ""
 
 
-def _all(verdict: str, part: str, causes: str, then: str = "") -> Iterable[tuple[str, Cause]]:
-    return ((word, Cause(verdict, part, then)) for word in causes.split())
+def _all(verdict: str, part: str, causes: str, then: str = "") -> Iterable[tuple[str, FindingKind]]:
+    return ((word, FindingKind(verdict, part, then)) for word in causes.split())
 
 
 CAUSES = dict((

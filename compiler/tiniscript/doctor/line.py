@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from tiniscript.doctor.examination import Expected, examined
+from tiniscript.doctor.examination import Expected, examine
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
 from tiniscript.flash.bootloaders import MEGA, NANO_OLD, UNO, Bootloader
@@ -67,18 +67,18 @@ class Line(NamedTuple):
     nonce: int
 
 
-def looked(
+def diagnose_line(
     wire: Wire, line: Line, expected: Expected,
-    tell: Callable[[str], None] = lambda what: None,
+    on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
-    """Return what is at the other end. `tell` gets what is done next, a short name."""
-    tell("listen")
+    """Return what is at the other end. `on_step` gets what is done next, a short name."""
+    on_step("listen")
     before = wire.heard(LISTEN_MS if line.is_radio else BOOT_MS)
     robot = _robot(wire, line, expected)
-    tell("hello")
+    on_step("hello")
     reply = robot.hello(HELLOS)
     if reply is not None:
-        return examined(robot, reply, expected, tell=tell)
+        return examine(robot, reply, expected, on_step=on_step)
     heard = before + robot.heard
     if _is_echo(heard, robot.spoken):
         return [sure("echo")]
@@ -86,7 +86,7 @@ def looked(
         return [sure("module_set_up", baud=str(line.baud))]
     if line.is_radio:
         return [_by_radio(heard)]
-    return _by_cable(wire, line, expected, heard, tell)
+    return _by_cable(wire, line, expected, heard, on_step)
 
 
 def _robot(wire: Wire, line: Line, expected: Expected) -> WireRobot:
@@ -126,7 +126,7 @@ def _by_radio(heard: bytes) -> Finding:
 
 def _by_cable(
     wire: Wire, line: Line, expected: Expected, heard: bytes,
-    tell: Callable[[str], None],
+    on_step: Callable[[str], None],
 ) -> list[Finding]:  # fmt: skip
     if readable(heard):
         return [sure("other_sketch", said=readable(heard))]
@@ -134,24 +134,24 @@ def _by_cable(
     for baud in BAUDS:
         if baud == line.baud:
             continue
-        tell("bauds")
+        on_step("bauds")
         wire.set_baud(baud)
         more = wire.heard(LISTEN_MS)
         robot = _robot(wire, line, expected)
         reply = robot.hello(1)
         if reply is not None:
             finding = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
-            rest = examined(robot, reply, expected, tell=tell)
+            rest = examine(robot, reply, expected, on_step=on_step)
             return [finding, *(finding for finding in rest if finding.cause != "fine")]
         if readable(more):
             return [sure("other_sketch", said=readable(more))]
         garbage = max(garbage, len(more))
-    tell("module")
-    module = talk.found(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))), wakes=False)
+    on_step("module")
+    module = talk.find_module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))), wakes=False)
     if module is not None:
         cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
         return [sure(cause, baud=str(module.baud), module=module.dialect.name)]
-    tell("bootloader")
+    on_step("bootloader")
     found_bootloader = answers(wire)
     if found_bootloader is not None:
         board, is_alone = found_bootloader

@@ -10,7 +10,7 @@ LOCKS = "/run/lock", "/var/lock"
 OF_INTEREST = {"brltty", "ModemManager"}
 
 
-def looked(system: System) -> Computer:
+def inspect_linux(system: System) -> Computer:
     bluetooth = _bluetooth(system)
     return Computer(
         system.platform,

@@ -10,16 +10,16 @@ from tiniscript.doctor.computer import NONE, OFF, ON, UNKNOWN, Access, Adapter, 
 from tiniscript.doctor.system import Owner, System
 
 
-def looked(system: System) -> Computer:
+def inspect_macos(system: System) -> Computer:
     ports = system.ports()
-    usb = _asked(system, "SPUSBDataType")
+    usb = _query(system, "SPUSBDataType")
     has_port = any("usb" in port.port.lower() for port in ports)
     adapters = None if usb is None else tuple(_adapters(usb, has_port))
-    bluetooth, paired = _bluetooth(_asked(system, "SPBluetoothDataType"))
+    bluetooth, paired = _bluetooth(_query(system, "SPBluetoothDataType"))
     return Computer(system.platform, tuple(ports), adapters, bluetooth, paired)
 
 
-def _asked(system: System, what: str) -> list[dict[str, Any]] | None:
+def _query(system: System, what: str) -> list[dict[str, Any]] | None:
     said = system.output("system_profiler", what, "-json")
     try:
         found = json.loads(said or "")[what]

@@ -195,9 +195,13 @@ def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]])
     kind = KINDS.get(name or "")
     if name is None or kind is None:
         if name is not None:
-            near = nearest(name, list(KINDS)) or ""
+            suggestion = nearest(name, list(KINDS)) or ""
             table.complain(
-                "unknown_criterion", "kind", found=shown(name), near=near, known=", ".join(KINDS)
+                "unknown_criterion",
+                "kind",
+                found=shown(name),
+                near=suggestion,
+                known=", ".join(KINDS),
             )
         return Criterion("", {}, (), (), NO_LABELS)
     has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
@@ -250,8 +254,8 @@ def _words(table: Table, known: tuple[str, ...]) -> tuple[str, ...]:
         return ()
     for each in found:
         if each not in known:
-            near = nearest(each, known) or ""
-            table.complain("unknown_word", "words", found=shown(each), near=near)
+            suggestion = nearest(each, known) or ""
+            table.complain("unknown_word", "words", found=shown(each), near=suggestion)
     return tuple(found)
 
 

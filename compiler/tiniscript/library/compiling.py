@@ -58,17 +58,17 @@ class Compiled(NamedTuple):
 
 def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
-    found = analyzed(text, kit, name)
-    return found if found.is_right else _with_findings(found, kit)
+    compiled = analyzed(text, kit, name)
+    return compiled if compiled.is_right else _with_findings(compiled, kit)
 
 
-def _with_findings(found: Compiled, kit: Kit) -> Compiled:
+def _with_findings(compiled: Compiled, kit: Kit) -> Compiled:
     """Return a wrong program with what is told of it."""
     from tiniscript.recovery.told import told_of
 
     read = cache(lambda text: analyzed(text, kit).diagnostics)  # a repair is asked for again
-    its = _kit_in(found.source.text, kit)
-    return found._replace(diagnostics=told_of(found.source, found.diagnostics, read, its))
+    its = _kit_in(compiled.source.text, kit)
+    return compiled._replace(diagnostics=told_of(compiled.source, compiled.diagnostics, read, its))
 
 
 def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:

@@ -73,7 +73,7 @@ def unknown_robot(text: str) -> Diagnostic | None:
         return None
     from tiniscript.base.spelling import nearest
 
-    near = nearest(found.name.lower(), robots.names()) or ""
-    values = {"found": found.name, "near": near, "known": ", ".join(robots.names())}
-    repair = Repair((Edit(found.span, near),) if near else (), False)
+    suggestion = nearest(found.name.lower(), robots.names()) or ""
+    values = {"found": found.name, "near": suggestion, "known": ", ".join(robots.names())}
+    repair = Repair((Edit(found.span, suggestion),) if suggestion else (), False)
     return Diagnostic(NO_SUCH_ROBOT, found.span, values, repair=repair)

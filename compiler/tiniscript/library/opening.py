@@ -85,7 +85,7 @@ def connection_to(
 
 def _is_suspended(address: str) -> bool:
     """Whether the command that shares a port is suspended: it does not answer."""
-    registration = registry.found(address)
+    registration = registry.find_registration(address)
     return registration is not None and holders.is_suspended(registration.pid)
 
 
@@ -97,7 +97,7 @@ def _past_holder(
     A holder that cannot be passed is woken. One that goes on may be writing firmware: it is left
     alone. Raises RobotError in the end.
     """
-    registration = registry.found(address)
+    registration = registry.find_registration(address)
     path = str(registry.lock_of(address)) if is_address(address) else address
     holder = holders.holder(path, None if registration is None else registration.pid)
     if holder is not None and holder.is_suspended:

@@ -97,7 +97,7 @@ class VirtualRobotConnection(RobotConnection):
             self._simulated.close()
 
 
-class Seen(NamedTuple):
+class DriveState(NamedTuple):
     pose: Pose
     driven_cm: float
     bumps: int
@@ -112,7 +112,7 @@ class Simulated(SimulatorThread):
     def took_turn(self) -> None:
         self.robot.take_events()  # discarded: nothing draws them
         driving = self.robot.driving
-        self.seen = Seen(self.robot.pose, driving.driven_cm, driving.bumps)
+        self.seen = DriveState(self.robot.pose, driving.driven_cm, driving.bumps)
 
 
 def _made(profile: Robot, world: str, settings: Settings, language: Language) -> VirtualRobot:

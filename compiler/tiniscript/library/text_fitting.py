@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
+from tiniscript.base.words import WORDS
 from tiniscript.codegen.text.line import PlainCode, plain_code, spelled_out
 from tiniscript.codegen.text.memory import MOST_BRACKETS, Reader
 from tiniscript.diagnostics import codes
@@ -23,10 +24,12 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
     """Return what a robot of this level lacks for a checked program."""
     parsed = parse(source)
     tokens = list(spelled_out(parsed.scan.tokens))
+    ends = ("end", "alias")  # what begins their block says it
+    lacked = {word for word in level.lacks if WORDS[word].role.name not in ends}
     diagnostics = [
         Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})
         for token in tokens
-        if token.kind is WORD and (token.text in level.lacks or len(token.text) > LONGEST_WORD)
+        if token.kind is WORD and (token.text in lacked or len(token.text) > LONGEST_WORD)
     ]
     if "DEF" not in level.lacks and any(procedure.values for procedure in program.procedures):
         diagnostics += _values(program, kit, level)

@@ -26,7 +26,8 @@ NAME_CHARACTERS = 16
 MOST = 2000  # keys in a file
 MODE = 0o600  # only this person reads it
 _LOCK = Lock()  # the robots of a fleet have threads of their own
-_MARKS = ("is_pending", "is_stale", "seals")
+# What a file calls a field of a key.
+_MARKS = {"is_pending": "is_pending", "is_stale": "is_stale", "seals": "uses_seals"}
 _KINDS = tuple(name.lower() for name, _ in KEYS)
 
 
@@ -98,7 +99,7 @@ class KeyFile(KeyRing):
         with suppress(BadKeys):
             robot_keys = self.all()
             return (
-                [key._replace(seals=False) for key in robot_keys]
+                [key._replace(uses_seals=False) for key in robot_keys]
                 if self._is_for_virtual
                 else robot_keys
             )
@@ -155,8 +156,8 @@ class KeyFile(KeyRing):
 
 def known_seals(given: Iterable[RobotKey], before: Iterable[RobotKey]) -> list[RobotKey]:
     """Return keys with what was known before: that their robots seal."""
-    found = {key.key for key in before if key.seals}
-    return [key._replace(seals=key.seals or key.key in found) for key in given]
+    found = {key.key for key in before if key.uses_seals}
+    return [key._replace(uses_seals=key.uses_seals or key.key in found) for key in given]
 
 
 def is_shared(path: Path) -> bool:
@@ -177,7 +178,7 @@ def written(keys: Iterable[RobotKey]) -> bytes:
             "name": key.name,
             "kind": _KINDS[key.which],
             "key": key.key.hex(),
-            **{name: True for name in _MARKS if getattr(key, name)},
+            **{mark: True for mark, field in _MARKS.items() if getattr(key, field)},
         }
         for key in keys
     ]
@@ -208,5 +209,5 @@ def _key(row: dict[str, object]) -> RobotKey:
     ):
         raise ValueError
     name = printable(str(row.get("name", "")), NAME_CHARACTERS)
-    marks = {name: row.get(name) is True for name in _MARKS}
+    marks = {field: row.get(mark) is True for mark, field in _MARKS.items()}
     return RobotKey(int(robot, 16), _KINDS.index(kind), data, name, **marks)

@@ -425,8 +425,8 @@ class Session(Requester):
             self._end_exchange(pending, over.value, now_ms)
             return
         message = BY_NAME[request.name]
-        acts = message.number >= FIRST_ACTING and request.name not in UNSEALED
-        if pending.is_void and acts:
+        is_action = message.number >= FIRST_ACTING and request.name not in UNSEALED
+        if pending.is_void and is_action:
             pending.exchange.close()
             self._end_exchange(pending, Reply(_STALE), now_ms)
             return

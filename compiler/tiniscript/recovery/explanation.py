@@ -123,10 +123,10 @@ class Explanation:
         return self.about.values(code) | {"whole": self.whole, "ends": self.ends}
 
 
-def explained(program: str, found: Candidate) -> list[Explanation]:
+def explained(program: str, candidate: Candidate) -> list[Explanation]:
     """Return what is wrong with each line that a candidate changes, in the order of the text."""
-    explainer = _Explainer(program, found)
-    for k, change in enumerate(found.changes):
+    explainer = _Explainer(program, candidate)
+    for k, change in enumerate(candidate.changes):
         explainer.tell(k, change)
     for each in explainer.out:
         explainer.complete(each)
@@ -147,10 +147,10 @@ class _Block:
 
 
 class _Explainer:
-    def __init__(self, program: str, found: Candidate) -> None:
+    def __init__(self, program: str, candidate: Candidate) -> None:
         self.program = program
-        self.found = found
-        self.changes = found.changes
+        self.candidate = candidate
+        self.changes = candidate.changes
         self.lines = program.split("\n")
         self.starts = [0, *accumulate(len(line) + 1 for line in self.lines)]
         self.out: list[Explanation] = []
@@ -158,7 +158,7 @@ class _Explainer:
 
     def complete(self, told: Explanation) -> None:
         if told.code is not codes.NEVER_ENDS:
-            is_shown = self.found.is_whole and told.last > (told.first, 1)
+            is_shown = self.candidate.is_whole and told.last > (told.first, 1)
             told.whole = self.whole(told.first, told.last) if is_shown else ""
         start, end = self.words(told.edits[0].span)
         while start < end and self.program[start] in "\r\n":
@@ -176,7 +176,7 @@ class _Explainer:
         touched += [self.changes[k] for k in (told.first, *told.opened)]
         text = " ".join(f"{each.text} {self.lines[each.first]}" for each in touched)
         has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & OF_BLOCKS)
-        is_block_sure = self.found.has_sure_blocks or not has_blocks
+        is_block_sure = self.candidate.has_sure_blocks or not has_blocks
         return is_block_sure and all(each.is_sure for each in touched)
 
     def words(self, span: Span) -> Span:
@@ -260,7 +260,8 @@ class _Explainer:
                 found.append(Change(place, edit, steps.get(n, []), part, meant))
                 if not steps.get(n) and text.isascii():
                     return []
-        is_alone = not self.found.is_whole and all(it.after for it in found)  # others are not read
+        has_all = all(it.after for it in found)
+        is_alone = not self.candidate.is_whole and has_all  # others are not read
         return found if len(found) > 1 or (len(was) > 1 and is_alone) else []
 
     def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
@@ -374,7 +375,7 @@ class _Explainer:
         header, end = (self.changes[k].text.split("\n")[0] for k in (block.first, last))
         is_deeper = end[:1].isspace() > header[:1].isspace()
         is_endless = {*texts(lexemes(header))} & {"FOREVER", "TRUE"}
-        if len(inside) < 2 or self.found.has_sure_blocks or is_deeper or is_endless:
+        if len(inside) < 2 or self.candidate.has_sure_blocks or is_deeper or is_endless:
             return False
         is_sign = inside[-1] in _SIGNS and inside[-1] not in inside[:-1]
         return is_sign or block.word not in ("LOOP", "DEF")

@@ -29,7 +29,7 @@ _VALUE = re.compile(r"(\w+)[ \t]+(\w+)(?=[ \t]*[,)])")
 
 
 def meant_in(
-    source: Source, found: Sequence[Diagnostic], recovery: Recovery, is_sure: bool
+    source: Source, diagnostics: Sequence[Diagnostic], recovery: Recovery, is_sure: bool
 ) -> list[Diagnostic]:
     """Return what is wrong with a text where it is known what is meant by it.
 
@@ -42,12 +42,12 @@ def meant_in(
     written = source.text
     told = explained(written, meant)
     if not told and meant.is_whole:
-        misplaced = [each for each in found if each.code in rows.MISPLACED]
-        said_of_it = misplaced or [each for each in found if each.is_mistake]
+        misplaced = [each for each in diagnostics if each.code in rows.MISPLACED]
+        said_of_it = misplaced or [each for each in diagnostics if each.is_mistake]
         return [_moved(each, written, meant, recovery.kit) for each in said_of_it][:1]
     if not told:
         return []
-    told_of = [(each, _diagnostic(each, meant, found)) for each in told]
+    told_of = [(each, _diagnostic(each, meant, diagnostics)) for each in told]
     is_part = is_sure or not meant.is_whole  # what is read of a part gives up nothing
     if is_part and difference(text, meant.text, recovery.kit).lost:
         kept = [] if is_sure else keeps_all([own for _, own in told_of], source.text, recovery.kit)
@@ -56,37 +56,41 @@ def meant_in(
     return [_either(_carried(own, source.text), each, others) for each, own in told_of]
 
 
-def _carried(found: Diagnostic, text: str) -> Diagnostic:
+def _carried(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a mistake of a unit in a variable; moves that take the value get it: `carried`."""
-    set_to = _SET.fullmatch(found.values.get("fix", "")) if found.code is codes.UNIT else None
-    unit = _UNIT.search(found.values.get("found", ""))
+    set_to = (
+        _SET.fullmatch(diagnostic.values.get("fix", "")) if diagnostic.code is codes.UNIT else None
+    )
+    unit = _UNIT.search(diagnostic.values.get("found", ""))
     way = _way(unit[0]) if unit else ""
     uses = [*_uses(set_to[1], way).finditer(text)] if set_to and way else []
     uses = uses or [
         use
         for head, use, _ in _in_bodies(text, text)
-        if found.code is codes.UNIT and found.span.start < head.end and found.span.end > head.start
+        if diagnostic.code is codes.UNIT
+        and diagnostic.span.start < head.end
+        and diagnostic.span.end > head.start
     ]
-    if not uses or not found.repair:
-        return found
+    if not uses or not diagnostic.repair:
+        return diagnostic
     edits = (Edit(Span(*each.span("unit")), f" {way}") for each in uses)
     start, end = uses[0].span()
     place = uses[0].start("unit")
     carried = laid_out(lexemes(f"{text[start:place]} {way}{text[place:end]}"))
-    repair = found.repair._replace(edits=(*found.repair.edits, *edits))
-    return found._replace(values={**found.values, "carried": carried}, repair=repair)
+    repair = diagnostic.repair._replace(edits=(*diagnostic.repair.edits, *edits))
+    return diagnostic._replace(values={**diagnostic.values, "carried": carried}, repair=repair)
 
 
-def _either(found: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
+def _either(diagnostic: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
     fixes = (each.fix for each in others if each.place == told.place)
     other = next((fix for fix in fixes if fix and fix != told.fix), "")
     if not other:
-        return found
-    values = {**found.values, "rival": other}
-    if found.code is codes.MISSING_CLOSE:
+        return diagnostic
+    values = {**diagnostic.values, "rival": other}
+    if diagnostic.code is codes.MISSING_CLOSE:
         values |= dict(zip(("one", "another"), _in_brackets(told.fix, other), strict=True))
-    return found._replace(values=values)
+    return diagnostic._replace(values=values)
 
 
 def _in_brackets(one: str, other: str) -> tuple[str, str]:
@@ -100,7 +104,9 @@ def _in_brackets(one: str, other: str) -> tuple[str, str]:
     return inside[0][0] if inside[0] else "", inside[1][0] if inside[1] else ""
 
 
-def _diagnostic(told: Explanation, meant: Candidate, found: Sequence[Diagnostic]) -> Diagnostic:
+def _diagnostic(
+    told: Explanation, meant: Candidate, diagnostics: Sequence[Diagnostic]
+) -> Diagnostic:
     """Return an explanation as a diagnostic; as the checker has it where that counts the values."""
     is_said = told.code is not codes.ASKED_AFTER or "BREAK" in meant.text.upper()  # how often
     is_sure = meant.is_applied or (meant.is_whole and told.is_sure)
@@ -109,7 +115,7 @@ def _diagnostic(told: Explanation, meant: Candidate, found: Sequence[Diagnostic]
         told.whole = ""  # where it ends is a guess
     code, values = _in_words(told)
     asked = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
-    counted = (each for each in found if each.code is asked)
+    counted = (each for each in diagnostics if each.code is asked)
     for each in counted if asked in _AS_CHECKED else ():
         if told.place.start <= each.span.start < told.place.end:
             values = {**each.values, "fix": told.fix}
@@ -126,32 +132,32 @@ def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
         has_bracket = "(" in slips.before_it(slip) + slips.found_in(slip)
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
     values = told.values_as(code)
-    found, near = values.get("found", "").upper(), values.get("right", "")
-    is_near = nearest(found, [near]) or (near in WAYS and is_slip(found, near))
+    found, suggestion = values.get("found", "").upper(), values.get("right", "")
+    is_near = nearest(found, [suggestion]) or (suggestion in WAYS and is_slip(found, suggestion))
     if code is codes.OTHER_LANGUAGE and is_near:
         code = codes.UNKNOWN_WORD
-        values |= {"found": values["found"].upper(), "near": near}
+        values |= {"found": values["found"].upper(), "near": suggestion}
     return code, values
 
 
-def _moved(found: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnostic:
+def _moved(diagnostic: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
     made = _with_units(text, meant.text)
     lost = [each for each in difference(text, made, kit).lost
             if (unit := _UNIT.search(each)) and _way(unit[0])]  # fmt: skip
-    values = {**found.values, "whole": in_one_line(made), "lost": ", ".join(lost)}
-    if found.code is codes.WRONG_END:
-        values |= {"swapped": found.values["right"], "apart": ""}
+    values = {**diagnostic.values, "whole": in_one_line(made), "lost": ", ".join(lost)}
+    if diagnostic.code is codes.WRONG_END:
+        values |= {"swapped": diagnostic.values["right"], "apart": ""}
     elif (move := meant.move) is not None:
         values |= {"name": move.name, "line": str(move.before), "last": str(move.last)}
-        if found.code is codes.UNKNOWN_WORD:  # `CALL SALTO`, before its DEF
-            found = found._replace(code=codes.CALL_BEFORE_DEF)
+        if diagnostic.code is codes.UNKNOWN_WORD:  # `CALL SALTO`, before its DEF
+            diagnostic = diagnostic._replace(code=codes.CALL_BEFORE_DEF)
         is_one_line = move.first == move.last and not move.is_end
         values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first)}
         if move.is_end and move.last > len(text.splitlines()):
             values |= {"open": move.name}  # its end is in no line
     repair = Repair((trimmed(0, text, made),), meant.is_applied and not lost)
-    return found._replace(values=values, repair=repair)
+    return diagnostic._replace(values=values, repair=repair)
 
 
 # -- units that stand in a variable, or in the brackets of a DEF -----------------------------------

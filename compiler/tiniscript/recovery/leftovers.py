@@ -46,7 +46,7 @@ def leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
     return told
 
 
-def of_its_frame(source: Source, kit: Kit) -> list[Diagnostic]:
+def setup_and_end_leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is told of each `SI|` after an instruction, and of a word for the end of all."""
     rows = [without_note(line)[0] for line in source.text.split("\n")]
     starts = [0, *accumulate(len(line) + 1 for line in source.text.split("\n"))]

@@ -267,8 +267,8 @@ class _Search:
                 continue
             is_function = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
             is_misspelt = is_function and not concept_of(token.text)
-            near = nearest(token.text, FUNCTIONS) if is_misspelt else None
-            guess = (Meaning(near, KNOWN),) if near else ()
+            suggestion = nearest(token.text, FUNCTIONS) if is_misspelt else None
+            guess = (Meaning(suggestion, KNOWN),) if suggestion else ()
             meanings = guess or self.names.meanings(token.text)
             if _is_long(tokens, k, meanings[0].concept if meanings else ""):
                 continue

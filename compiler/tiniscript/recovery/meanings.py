@@ -171,7 +171,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         and (bare := [part for part in parts if not said_of(part, "sensing")]) != parts
     ):
         return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
-    if found := _of_stem(parts):
+    if found := _sensor_with_side(parts):
         return (Meaning(found, KNOWN),)
     alike, near = _speller().alike(word), _speller().near(word)
     guesses = (
@@ -183,7 +183,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
     return next(((Meaning(each, cost),) for each, cost in guesses if each), ())
 
 
-def _of_stem(parts: Sequence[str]) -> str:
+def _sensor_with_side(parts: Sequence[str]) -> str:
     """Return the sensor that two words say, one of them its side: `LEFT_LIGHT`, `luzDer`."""
     glued = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
     pairs = [tuple(parts)] if len(parts) == 2 else glued if len(parts) == 1 else []
@@ -229,7 +229,7 @@ class _OfLine(NamedTuple):
     in_brackets: set[str]
     rows: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
-    pairs: set[tuple[str, str]]  # the name of a DEF, or one and that of a value
+    pairs: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
     begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
     called: set[str]  # words that are an instruction alone
     compared: set[str]  # words beside a sign that compares them with a number
@@ -256,18 +256,18 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
             found.variables.add(token.text)
         is_def = "DEF" in (token.text, concept_of(token.text))
         is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not
-        is_def = is_def or (token.text == "TO" and at == 2 and bool(_of_logo(line[at:])))
+        is_def = is_def or (token.text == "TO" and at == 2 and bool(_logo_names(line[at:])))
         if is_def and after.kind is WORD and after.text not in WORDS:
             if not said_of(after.text, "main") and concept_of(after.text) != "START":
                 found.defs.add(after.text)
+                if bare := _bare_values(line[at:]):
+                    found.pairs.add((after.text, *bare))
                 end = closed(line, at)
-                given = texts(line[at + 1 : end - 1 : 2]) if end else _of_logo(line[at:])
+                given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
                 if all(each.isidentifier() and each not in WORDS for each in given):
                     found.parameters[after.text] = given
     if len(head) > 2 and "DEF" in (head[0].text, concept_of(head[0].text)):
         row, names = _name_in_words(head[1:], ";"), found.defs
-        if len(row) == 2:
-            found.pairs.add((row[0], row[1]))
     else:
         row, names = _name_in_words(head, "="), found.variables
     if row:
@@ -276,7 +276,14 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
     return found
 
 
-def _of_logo(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
+def _bare_values(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
+    """Return the names of `X, Y` or `X Y`, which lack their brackets, none beside other things."""
+    row = " ".join(texts(tokens)).partition(";")[0]
+    names = tuple(row.replace(",", " ").split())
+    return names if all(each.isidentifier() and each not in WORDS for each in names) else ()
+
+
+def _logo_names(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
     """Return the names of `:SIZE :SPEED`, none where anything else is there."""
     signs, names = texts(tokens[::2]), texts(tokens[1::2])
     return names if {*signs} == {":"} and len(signs) == len(names) else ()
@@ -339,10 +346,10 @@ class Names:
         self.in_brackets = {name for line in of_lines for name in line.in_brackets}
         self.rows = {row for line in of_lines for row in line.rows}
         self.parameters = {k: its for line in of_lines for k, its in line.parameters.items()}
-        for name, value in {pair for line in of_lines for pair in line.pairs}:
-            if value in self.in_brackets:  # `DEF LADO X`, and `F(X, 50)` below
-                self.parameters[name] = (value,)
-                self.rows.discard((name, value))
+        for pair in {pair for line in of_lines for pair in line.pairs}:
+            if self.in_brackets.issuperset(pair[1:]):  # `DEF LADO X`, and `F(X, 50)` below
+                self.parameters[pair[0]] = pair[1:]
+                self.rows.discard(pair)
         self.begun = {word: block for line in of_lines for word, block in line.begun.items()}
         if sum(line.left for line in of_lines) < 0:
             self.begun |= {word: "LOOP" for line in of_lines for word in line.counted}

@@ -664,14 +664,25 @@ d=@device ( ⟨lit¦dark¦most¦least⟩ )
 ^ n=@defw = a=@num|@val , b=@num|@val $
     | $n ( $a , $b ) | 1 | TS015 | offered
     | DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO = 3, 60 => DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO(3, 60)
-^ TO n=@word ':' v=@name ⟨¦':' u=@name⟩ $
-    | DEF $n ( $v ⟨¦, $u⟩ ) | 1 | TS102 | applied
-    | TO SQUARE :SIZE⟨¦ :SPEED⟩⏎F(SIZE, ⟨50¦SPEED⟩)⏎END⏎SQUARE(⟨3¦3, 60⟩) =>
-    DEF SQUARE(SIZE⟨¦, SPEED⟩)⏎F(SIZE, ⟨50¦SPEED⟩)⏎END_DEF⏎SQUARE(⟨3¦3, 60⟩)
-n=@defw a=@num|@val ⟨¦,? b=@num|@val⟩ e=;|$
-    | $n ( $a ⟨¦, $b⟩ ) $e | 1 | TS015 | applied
-    | DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO ⟨3¦3 60⟩ =>
-    DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO(⟨3¦3, 60⟩)
+^ TO n=@word ':' v=@name
+    ⟨¦':' u=@name¦':' u=@name ':' w=@name¦':' u=@name ':' w=@name ':' x=@name⟩ $
+    | DEF $n ( $v ⟨¦, $u¦, $u , $w¦, $u , $w , $x⟩ ) | 1 | TS102 | applied
+    | TO SIDE :X⟨¦ :Y¦ :Y :Z¦ :Y :Z :V⟩⏎SHOW(X⟨¦ + Y¦ + Y + Z¦ + Y + Z + V⟩)⏎END⏎
+    SIDE(1⟨¦, 2¦, 2, 3¦, 2, 3, 4⟩) =>
+    DEF SIDE(X⟨¦, Y¦, Y, Z¦, Y, Z, V⟩)⏎SHOW(X⟨¦ + Y¦ + Y + Z¦ + Y + Z + V⟩)⏎END_DEF⏎
+    SIDE(1⟨¦, 2¦, 2, 3¦, 2, 3, 4⟩)
+^ DEF n=@defw v=@usedname ,? u=@usedname ⟨¦,? w=@usedname¦,? w=@usedname ,? x=@usedname⟩ $
+    | DEF $n ( $v , $u ⟨¦, $w¦, $w , $x⟩ ) | 1 | TS015 | applied
+    | DEF LADO X⟨ Y¦, Y, Z¦ Y Z V⟩⏎SHOW(X + Y⟨¦ + Z¦ + Z + V⟩)⏎END_DEF⏎LADO(1, 2⟨¦, 3¦, 3, 4⟩) =>
+    DEF LADO(X, Y⟨¦, Z¦, Z, V⟩)⏎SHOW(X + Y⟨¦ + Z¦ + Z + V⟩)⏎END_DEF⏎LADO(1, 2⟨¦, 3¦, 3, 4⟩)
+n=@defw a=@num|@val
+    ⟨¦,? b=@num|@val¦,? b=@num|@val ,? c=@num|@val¦
+    ,? b=@num|@val ,? c=@num|@val ,? d=@num|@val⟩ e=;|$
+    | $n ( $a ⟨¦, $b¦, $b , $c¦, $b , $c , $d⟩ ) $e | 1 | TS015 | applied
+    | DEF LADO(X⟨¦, Y¦, Y, Z¦, Y, Z, V⟩)⏎SHOW(X⟨¦ + Y¦ + Y + Z¦ + Y + Z + V⟩)⏎END_DEF⏎
+    LADO 1⟨¦ 2¦, 2, 3¦ 2 3 4⟩ =>
+    DEF LADO(X⟨¦, Y¦, Y, Z¦, Y, Z, V⟩)⏎SHOW(X⟨¦ + Y¦ + Y + Z¦ + Y + Z + V⟩)⏎END_DEF⏎
+    LADO(1⟨¦, 2¦, 2, 3¦, 2, 3, 4⟩)
 ^ DEF ( n=@word )
     | DEF $n | 1 | TS039 | offered
     | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO

@@ -26,23 +26,23 @@ Check = Callable[[str], Sequence[Diagnostic]]
 
 
 def beginning(
-    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
+    source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
     """Return what is told of a text by the way that it begins: with it the rest is read."""
     said = setup(source.text)
     if said and said.repair:
         after = check(applied(source.text, said.repair.edits))
         is_call = _CALL.match(source.text, said.repair.edits[0].span.end) is not None
-        if is_call or is_better(after, found, said.repair.edits):
+        if is_call or is_better(after, diagnostics, said.repair.edits):
             return [said]
     return _titles(source, kit)
 
 
-def other_word(source: Source, found: Sequence[Diagnostic]) -> Diagnostic | None:
+def other_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagnostic | None:
     """Return what is told of a word before the bar that is no `SI`."""
     first = lexemes(source.text[:_LONGEST].lstrip().partition("\n")[0])[:1]
     is_own = SEAL in source.text or (first and first[0].text in ("SI", "SB"))
-    told = (each for each in found if each.code is codes.SETUP_UNKNOWN)
+    told = (each for each in diagnostics if each.code is codes.SETUP_UNKNOWN)
     return None if is_own else next(told, None)
 
 

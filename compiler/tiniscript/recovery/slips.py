@@ -382,7 +382,8 @@ def _opened(slip: Slip) -> str:
 
 
 def _from_there(slip: Slip) -> str:
-    return _known(slip.old[slip.start :])
+    told = slip.old[slip.start :]
+    return _known(told[2:] if texts(told[1:2]) == ("=",) else told)  # `Y = SIDE(3)`
 
 
 _WORD_OF: dict[Code, Callable[[Slip], str]] = {
@@ -392,8 +393,9 @@ _WORD_OF: dict[Code, Callable[[Slip], str]] = {
 
 
 def _usage(slip: Slip) -> str:
+    """Return how the word is written, nothing for one of the program or a DEF: names of its own."""
     word = _word(slip)
-    return WORDS[word].usage if word in WORDS else ""
+    return WORDS[word].usage if word in WORDS and word != "DEF" else ""
 
 
 def _letter(slip: Slip) -> str:

@@ -37,7 +37,7 @@ from tiniscript.recovery.slots import filled
 from tiniscript.recovery.trailing_tokens import Around, Trailing, whole, width
 from tiniscript.recovery.worded import sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
-from tiniscript.syntax.free_names import for_a_number
+from tiniscript.syntax.free_names import free_number_name
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.operators import COMPARISONS
 
@@ -403,7 +403,7 @@ def _choice(gaps: Gaps, is_exact: bool = False) -> str:
         if is_exact and known.arguments and not match[2]:
             return ""
         orders.append(known.text + match[2] if match[2] else known.example)
-    name, count = for_a_number(gaps.part.text), len(orders)
+    name, count = free_number_name(gaps.part.text), len(orders)
     drawn, asked = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
     if count == 2:
         drawn, asked = "", ["RANDOM(1, 2) = 1"]
@@ -478,7 +478,7 @@ _GAPS: dict[str, Callable[[Gaps], str]] = {
     "head": lambda gaps: gaps.meant("h"), "called": lambda gaps: gaps.meant("w"),
     "block": lambda gaps: gaps.meant("g"), "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
     "choice": lambda gaps: _choice(gaps, is_exact=True).replace("; ", ";"),
-    "choices": _choice, "number": lambda gaps: for_a_number(gaps.part.text),
+    "choices": _choice, "number": lambda gaps: free_number_name(gaps.part.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "next": lambda gaps: WORDS[plain(gaps["s"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),

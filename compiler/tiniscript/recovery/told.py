@@ -28,7 +28,7 @@ from tiniscript.recovery.findings import meant_in
 from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
-from tiniscript.recovery.leftovers import leftovers, of_its_frame
+from tiniscript.recovery.leftovers import leftovers, setup_and_end_leftovers
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
 from tiniscript.recovery.setup import SEAL, beginning, other_word
@@ -49,11 +49,13 @@ class Findings(NamedTuple):
 
 
 class Wrong:
-    """A wrong text: `found` is what the parser and the checker, which `check` asks, say of it."""
+    """A wrong text: `diagnostics` is what parser and checker, which `check` asks, say of it."""
 
-    def __init__(self, source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) -> None:
+    def __init__(
+        self, source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
+    ) -> None:
         self.source = source
-        self.found = found
+        self.diagnostics = diagnostics
         self.check = check
         self.kit = kit
 
@@ -66,20 +68,20 @@ class Wrong:
         return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own=to == text))
 
     def _mistakes(self, text: str, is_own: bool) -> list[Code]:
-        found = self.found if is_own else self.check(text)
-        return [each.code for each in found if each.is_mistake]
+        diagnostics = self.diagnostics if is_own else self.check(text)
+        return [each.code for each in diagnostics if each.is_mistake]
 
 
 def told_of(
-    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
+    source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
-    """Return what is told of a wrong text, of which the parser and the checker say `found`.
+    """Return what is told of a wrong text, of which the parser and the checker say `diagnostics`.
 
     The readers know one end of a line that is a character: what the text has instead takes as much.
     """
     text = _CR_ALONE.sub("\n", source.text)
     source = Source(text, source.name)
-    told = _read(Wrong(source, found, check, kit), ROUNDS)
+    told = _read(Wrong(source, diagnostics, check, kit), ROUNDS)
     told = [bracketed(each, text, kit, is_offered=True) for each in told]
     told = without_wrong(told, text, check)  # what is offered is right
     told = conserving(told, text, kit)  # what is made keeps what was written
@@ -94,7 +96,7 @@ def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
     findings = (reader(wrong) for reader in READERS if rounds)
     told, edits = next((each for each in findings if each.told), Findings([], []))
     if not told:
-        told = with_usage(wrong.found, wrong.source, wrong.kit)
+        told = with_usage(wrong.diagnostics, wrong.source, wrong.kit)
     elif len(told) <= ENOUGH:
         rest = applied(wrong.source.text, edits)
         left = wrong.check(rest)
@@ -124,7 +126,7 @@ def _keys(wrong: Wrong) -> Findings:
 
 def _beginning(wrong: Wrong) -> Findings:
     """Return what is wrong with the lines before the program, and with its `SI|` (`setup`)."""
-    return _with_edits(beginning(wrong.source, wrong.found, wrong.check, wrong.kit))
+    return _with_edits(beginning(wrong.source, wrong.diagnostics, wrong.check, wrong.kit))
 
 
 def _calls(wrong: Wrong) -> Findings:
@@ -139,7 +141,7 @@ def _counters(wrong: Wrong) -> Findings:
 
 def _frame(wrong: Wrong) -> Findings:
     """Return what begins a program once more, or ends it, which needs no word (`leftovers`)."""
-    return _with_edits(of_its_frame(wrong.source, wrong.kit))
+    return _with_edits(setup_and_end_leftovers(wrong.source, wrong.kit))
 
 
 def _leftovers(wrong: Wrong) -> Findings:
@@ -149,7 +151,7 @@ def _leftovers(wrong: Wrong) -> Findings:
 
 def _other_beginning(wrong: Wrong) -> Findings:
     """Return that another word stands in the place of `SI|` (`setup`); the rest is read with SI."""
-    begun = other_word(wrong.source, wrong.found)
+    begun = other_word(wrong.source, wrong.diagnostics)
     if begun is None:
         return Findings([], [])
     told = with_usage([begun], wrong.source, wrong.kit)
@@ -161,7 +163,7 @@ def _meant_surely(wrong: Wrong) -> Findings:
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])
-    return _with_edits(meant_in(wrong.source, wrong.found, recovery, is_sure=True))
+    return _with_edits(meant_in(wrong.source, wrong.diagnostics, recovery, is_sure=True))
 
 
 def _words_after(wrong: Wrong) -> Findings:
@@ -177,7 +179,7 @@ def _guessed(wrong: Wrong) -> Findings:
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])
-    return _with_edits(meant_in(wrong.source, wrong.found, recovery, is_sure=False))
+    return _with_edits(meant_in(wrong.source, wrong.diagnostics, recovery, is_sure=False))
 
 
 def _words_of_blocks(wrong: Wrong) -> Findings:
@@ -185,7 +187,7 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
     Else what is inside would be told of as well.
     """
-    told = [each for each in wrong.found if each.code is codes.UNKNOWN_WORD
+    told = [each for each in wrong.diagnostics if each.code is codes.UNKNOWN_WORD
             and each.values.get("near") in slips.OF_BLOCKS]  # fmt: skip
     return Findings(told, [Edit(each.span, each.values["near"]) for each in told])
 
@@ -204,22 +206,22 @@ def _with_edits(told: list[Diagnostic]) -> Findings:
 # -- places ---------------------------------------------------------------------------------------
 
 
-def moved_back(found: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
+def moved_back(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
     """Return a diagnostic of the text with these edits, as one of the text without them.
 
     A condition that nobody can read is shown as it is written, and not what it was passed over for.
     """
-    values = dict(found.values)
+    values = dict(diagnostic.values)
     for edit in edits:
         if edit.text.endswith("(TRUE)") and "TRUE" not in (was := source[edit.span].strip()):
             values = {name: text.replace(edit.text, was) for name, text in values.items()}
-    place = found.place and _before(found.place, edits)
-    repair = found.repair
+    place = diagnostic.place and _before(diagnostic.place, edits)
+    repair = diagnostic.repair
     if repair is not None:
         own = tuple(Edit(_before(edit.span, edits), edit.text) for edit in repair.edits)
         passed = [edit for edit in edits if edit.text.isspace()]  # words that nothing may drop
         repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
-    return Diagnostic(found.code, _before(found.span, edits), values, place, repair)
+    return Diagnostic(diagnostic.code, _before(diagnostic.span, edits), values, place, repair)
 
 
 def _before(span: Span, edits: Sequence[Edit]) -> Span:

@@ -95,14 +95,16 @@ _MOST_OF_END = 4  # words: `fin del bucle`
 _NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
 
 
-def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
+def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is wrong with a text, in words that say how it is written."""
     text = _Text(source, kit)
-    text.lacks_loop = [it.values["right"] for it in found if it.code is codes.NOT_OPEN] == ["LOOP"]
-    found = text.with_name(found)
+    text.lacks_loop = [it.values["right"] for it in diagnostics if it.code is codes.NOT_OPEN] == [
+        "LOOP"
+    ]
+    diagnostics = text.with_name(diagnostics)
     told: list[Diagnostic] = []
-    for each in found[:_MANY]:
-        told.append((_told(Found(text, each)) if each.repair is None else None) or each)
+    for each in diagnostics[:_MANY]:
+        told.append((_told(Usage(text, each)) if each.repair is None else None) or each)
     parts = [it for it in told if it.values.get("part")]
     if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
         part = {"part": parts[0].values["part"]}
@@ -111,7 +113,7 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         told += text.turned()
     return [
         each
-        for each in (*told, *found[_MANY:])
+        for each in (*told, *diagnostics[_MANY:])
         if not (each.code in _OF_NAMES and text.is_in_wrong_def(each, told))
     ]
 
@@ -128,11 +130,11 @@ class _Text:
         """Whether any block has an end."""
         return _ENDS.search(plain(self.source.text)) is not None
 
-    def is_in_wrong_def(self, found: Diagnostic, told: Sequence[Diagnostic]) -> bool:
+    def is_in_wrong_def(self, diagnostic: Diagnostic, told: Sequence[Diagnostic]) -> bool:
         """Whether a name is in the body of a DEF that names no values in its brackets."""
         starts = (it.span.end for it in told if it.code is codes.PARAMETER_NEEDS_NAME)
-        start = max((it for it in starts if it <= found.span.start), default=-1)
-        return start >= 0 and not _DEF_END.search(self.source.text, start, found.span.start)
+        start = max((it for it in starts if it <= diagnostic.span.start), default=-1)
+        return start >= 0 and not _DEF_END.search(self.source.text, start, diagnostic.span.start)
 
     def turned(self) -> list[Diagnostic]:
         """Return moves with the power before the time, as another call of the text has them."""
@@ -157,41 +159,45 @@ class _Text:
                     ends.pop()
         return "".join(ends[-1:])
 
-    def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
+    def with_name(self, diagnostics: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
-        nameless = [each for each in found if each.code is codes.DEF_NEEDS_NAME]
-        unknown = (each for each in found if each.code is codes.UNKNOWN_WORD)
+        nameless = [each for each in diagnostics if each.code is codes.DEF_NEEDS_NAME]
+        unknown = (each for each in diagnostics if each.code is codes.UNKNOWN_WORD)
         wholes = ((it, self.source[instruction_at(it.span, self.source)]) for it in unknown)
         called = (it.values["found"] for it, whole in wholes if len(lexemes(whole)) == 1)
         name = next(called, "") if len(nameless) == 1 else ""
         if not name:
-            return found
+            return diagnostics
         own, end = nameless[0], nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
         said = own._replace(values={"name": name}, repair=repair)
-        return [said if each is own else each for each in found if each.values.get("found") != name]
+        return [
+            said if each is own else each
+            for each in diagnostics
+            if each.values.get("found") != name
+        ]
 
 
-def _told(place: Found) -> Diagnostic | None:
+def _told(place: Usage) -> Diagnostic | None:
     """Return what the first row that holds tells of a place, None where there is none."""
     return next((place.told(row, gaps) for row, gaps in holding(place)), None)
 
 
-class Found:
+class Usage:
     """What was found wrong, and the instruction around its place.
 
     `row` are the tokens of the instruction; before them rows have what was found.
     """
 
-    def __init__(self, text: _Text, found: Diagnostic) -> None:
+    def __init__(self, text: _Text, diagnostic: Diagnostic) -> None:
         self.around = text
         self.source = text.source
         self.text = text.source.text
         self.names = text.names
-        self.found = found
-        self.piece = instruction_at(found.span, text.source)
-        self.is_first = found.span.start == self.piece.start
-        self.behind_it = self.text[found.span.end :]
+        self.found = diagnostic
+        self.piece = instruction_at(diagnostic.span, text.source)
+        self.is_first = diagnostic.span.start == self.piece.start
+        self.behind_it = self.text[diagnostic.span.end :]
         self.row = lexemes(self.source[self.piece])
         self.words = [token.text for token in self.row if token.kind is WORD]
         self.signs = [token.text for token in self.row]
@@ -201,7 +207,7 @@ class Found:
         spans = (
             Span(end - len(it.source or ""), end) for it, end in zip(self.row, ends, strict=True)
         )
-        self.spans = [found.span, *spans]
+        self.spans = [diagnostic.span, *spans]
 
     def matched(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of a pattern whose part `here` begins at the place."""
@@ -283,7 +289,7 @@ class Found:
         told = Diagnostic(code, span, values, place, repair)
         if "again" not in row.how:
             return told
-        return _told(Found(self.around, told)) or told
+        return _told(Usage(self.around, told)) or told
 
     def values(self) -> dict[str, str]:
         """Return what is said before the gaps of a row are filled."""
@@ -506,10 +512,10 @@ class Found:
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
         is_taught = _TAUGHT.search(text[max(0, start - _LONG_HEAD) : start])
         right = in_place_of(text, word) if is_set or is_taught else ""
-        near = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
+        suggestion = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
         is_clock = bool(is_set and word == "TIME" and not is_set[1])
-        is_everywhere = bool(right) and (word in SINCE or not (near or is_clock))
-        return _OtherName(word, right, near, is_taught is not None, is_set, is_everywhere)
+        is_everywhere = bool(right) and (word in SINCE or not (suggestion or is_clock))
+        return _OtherName(word, right, suggestion, is_taught is not None, is_set, is_everywhere)
 
     def renamed(self) -> list[Span]:
         """Return each place where a word is meant as a name: S of `F(S, 80)`, not S alone."""
@@ -562,7 +568,7 @@ class _NoValue(NamedTuple):
 class _OtherName(NamedTuple):
     word: str
     right: str
-    near: str
+    suggestion: str
     is_def: bool
     is_set: re.Match[str] | None
     is_everywhere: bool
@@ -634,7 +640,7 @@ def _usage(word: str) -> str:
 
 def _named_by(gaps: Gaps) -> str:
     """The word that means what is written in its place."""
-    return _found(gaps).named(_right(gaps), _found(gaps).meant)
+    return _usage_at(gaps).named(_right(gaps), _usage_at(gaps).meant)
 
 
 def _right(gaps: Gaps) -> str:
@@ -644,47 +650,47 @@ def _right(gaps: Gaps) -> str:
 
 def _block(gaps: Gaps) -> str:
     """The block that words say."""
-    found = _found(gaps)
-    below = found.text[found.piece.end :].lstrip("; \t\r\n").upper()
+    usage = _usage_at(gaps)
+    below = usage.text[usage.piece.end :].lstrip("; \t\r\n").upper()
     is_open = bool(re.match(r"SI ?NO\b|ELSE", below))
-    return block(found.row, found.names, is_open)
+    return block(usage.row, usage.names, is_open)
 
 
 def _order(gaps: Gaps) -> str:
     """The one order that words say."""
-    said = _found(gaps).orders
+    said = _usage_at(gaps).orders
     return said[0].text if len(said) == 1 and not said[0].is_side_free else ""
 
 
 def _several(gaps: Gaps, is_sided: bool) -> str:
     """The orders that words say; `is_sided`: of one nobody says which way it turns."""
-    said = _found(gaps).orders
+    said = _usage_at(gaps).orders
     is_free = any(each.is_side_free for each in said)
     return written(said) if len(said) > 1 and is_free is is_sided else ""
 
 
 def _other_orders(gaps: Gaps) -> set[str]:
     """Orders beside a turn, which it alone would lose."""
-    said = _found(gaps).ordered.items()
+    said = _usage_at(gaps).ordered.items()
     return {its for word, its in said if not said_of(word, "right")} - {"L", "R", "B", "S"}
 
 
 def _endless(gaps: Gaps) -> str:
     """The word for FOREVER, where words say no order."""
-    found = _found(gaps)
-    endless = (each for each in found.words if found.names.meant(each) == "FOREVER")
-    return "" if found.meant else next(endless, "")
+    usage = _usage_at(gaps)
+    endless = (each for each in usage.words if usage.names.meant(each) == "FOREVER")
+    return "" if usage.meant else next(endless, "")
 
 
 def _word_said(gaps: Gaps) -> str:
     """The word of another language that begins an instruction, or says one."""
-    found = _found(gaps)
-    return next(filter(found.names.meant, (*found.words[:1], found.meant)), "")
+    usage = _usage_at(gaps)
+    return next(filter(usage.names.meant, (*usage.words[:1], usage.meant)), "")
 
 
 def _concept(gaps: Gaps) -> str:
     """The word of the language that it means."""
-    found, word = _found(gaps), _word_said(gaps)
+    found, word = _usage_at(gaps), _word_said(gaps)
     concept = found.names.meant(word)
     is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
     is_among = concept == "S" and {*found.ordered.values()} != {"S"}  # `ve para adelante`
@@ -693,7 +699,7 @@ def _concept(gaps: Gaps) -> str:
 
 def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
     """The same of one without values, alone or with a number, which it would lose."""
-    concept, row = _concept(gaps), _found(gaps).row
+    concept, row = _concept(gaps), _usage_at(gaps).row
     if not concept or WORDS[concept].arguments:
         return ""
     has_number = any(each.kind is NUMBER for each in row)
@@ -705,70 +711,70 @@ def _asking(word: str) -> str:
 
 
 def _variable(gaps: Gaps) -> str:
-    found = _found(gaps)
-    return next((each for each in found.words if each in found.names.variables), "")
+    usage = _usage_at(gaps)
+    return next((each for each in usage.words if each in usage.names.variables), "")
 
 
 def _own_example(gaps: Gaps) -> str:
     """The instruction with its unit where that goes, if that makes it right."""
-    found = _found(gaps)
-    example = own_example(found.source[found.piece])
-    return example if lines.is_right(lexemes(example.split("; ")[-1]), found.names) else ""
+    usage = _usage_at(gaps)
+    example = own_example(usage.source[usage.piece])
+    return example if lines.is_right(lexemes(example.split("; ")[-1]), usage.names) else ""
 
 
 def _often(gaps: Gaps) -> str:
     """The loop of a word that stands several times."""
-    own = _found(gaps).own
+    own = _usage_at(gaps).own
     return f"LOOP({own.times});{own.name};END_LOOP" if own.times > 1 else ""
 
 
 def _own_name(gaps: Gaps) -> str:
-    own = _found(gaps).own
+    own = _usage_at(gaps).own
     return "" if own.is_taught or said_of(own.name, *_NO_NAMES) else own.name
 
 
 def _end(gaps: Gaps) -> str:
     """The end that words say, or that of the block which is open."""
-    found = _found(gaps)
-    named = (BLOCK_ENDS.get(found.names.meant(word), "") for word in found.words[1:])
-    return next(named, "") or found.around.end_at(found.piece.start)
+    usage = _usage_at(gaps)
+    named = (BLOCK_ENDS.get(usage.names.meant(word), "") for word in usage.words[1:])
+    return next(named, "") or usage.around.end_at(usage.piece.start)
 
 
 def _done(gaps: Gaps) -> str:
     """What a part of a thing does, if that is a call: WRITE of `servo.write`."""
-    thing, _, done = plain(gaps.place.text[slice(*_member(_found(gaps)))]).rpartition(".")
+    thing, _, done = plain(gaps.place.text[slice(*_member(_usage_at(gaps)))]).rpartition(".")
     right = "" if said_of(thing, "device") else gaps.place.names.meant(done)
     return right if gaps.place.names.takes(right) else ""
 
 
-def _member(found: Found) -> Span:
-    match = _MEMBER.match(found.text, found.found.span.start)
+def _member(usage: Usage) -> Span:
+    match = _MEMBER.match(usage.text, usage.found.span.start)
     return Span(*match.span()) if match else Span(0, 0)
 
 
 def _unit_behind(gaps: Gaps) -> str:
     """A unit behind a calculation: `F(RANDOM(1, 3) sec, 50)`."""
-    found = _found(gaps)
-    here = found.source[found.found.span]
-    end = _end_of_value(found)
-    return here if said_of(plain(here), "unit") and found.text[end - 1] == ")" else ""
+    usage = _usage_at(gaps)
+    here = usage.source[usage.found.span]
+    end = _end_of_value(usage)
+    return here if said_of(plain(here), "unit") and usage.text[end - 1] == ")" else ""
 
 
-def _end_of_value(found: Found) -> int:
-    return len(found.text[: found.found.span.start].rstrip())
+def _end_of_value(usage: Usage) -> int:
+    return len(usage.text[: usage.found.span.start].rstrip())
 
 
 def _without_seconds(gaps: Gaps) -> str:
     """The instruction without a word for seconds."""
-    found = _found(gaps)
-    span, piece, source = found.found.span, found.piece, found.source
+    usage = _usage_at(gaps)
+    span, piece, source = usage.found.span, usage.piece, usage.source
     if said_of(plain(source[span]), "unit") != ("s", "1000"):
         return ""
-    return source[Span(piece.start, _end_of_value(found))] + source[Span(span.end, piece.end)]
+    return source[Span(piece.start, _end_of_value(usage))] + source[Span(span.end, piece.end)]
 
 
 def _no_value(gaps: Gaps, is_unit: bool) -> _NoValue | None:
-    found = _found(gaps).no_value
+    found = _usage_at(gaps).no_value
     return found if found and bool(found.unit) is is_unit else None
 
 
@@ -776,7 +782,7 @@ def _number_said(gaps: Gaps) -> str:
     """A number with a unit that values have, or with that of a way."""
     said = _no_value(gaps, is_unit=True)
     is_own = said is not None and (said.unit == said.argument.unit or bool(said.right))
-    here = _found(gaps).source[_found(gaps).found.span]
+    here = _usage_at(gaps).source[_usage_at(gaps).found.span]
     return f"{said.number} {here}" if said and is_own else ""
 
 
@@ -787,41 +793,41 @@ def _way_said(gaps: Gaps) -> str:
 
 def _foreign(gaps: Gaps) -> str:
     """A word with values that this robot does not have: whoever writes it wants the word."""
-    found = _found(gaps)
-    word = "".join(found.words[:1])
-    is_other = found.names.meant(word) or found.names.is_name(word)
-    return "" if found.signs[:2] != [word, "("] or is_other else word
+    usage = _usage_at(gaps)
+    word = "".join(usage.words[:1])
+    is_other = usage.names.meant(word) or usage.names.is_name(word)
+    return "" if usage.signs[:2] != [word, "("] or is_other else word
 
 
 def _in_words(gaps: Gaps) -> str:
     """The header with a question in words in its brackets."""
-    found = _found(gaps)
-    own = {*WORDS, *found.names.known.values} - {"SI"}
-    return "" if {*found.words} <= own else found.header()
+    usage = _usage_at(gaps)
+    own = {*WORDS, *usage.names.known.values} - {"SI"}
+    return "" if {*usage.words} <= own else usage.header()
 
 
 def _in_dark(gaps: Gaps) -> str:
     """The header of a name that asks something in words: DARK of `X > 5 OR DARK`."""
-    found = _found(gaps)
-    name = plain(found.source[found.found.span])
+    usage = _usage_at(gaps)
+    name = plain(usage.source[usage.found.span])
     is_asked = bool(said_of(name, "light", "ahead"))
-    return found.header() if is_asked and found.before()[-1].text not in COMPARISONS else ""
+    return usage.header() if is_asked and usage.before()[-1].text not in COMPARISONS else ""
 
 
 def _endless_move(gaps: Gaps) -> str:
     """A move with FOREVER as its time, and an UNTIL."""
-    found = _found(gaps)
-    is_endless = found.names.meant(plain(found.source[found.found.span])) == "FOREVER"
-    if not is_endless or not found.signs or found.signs[0] not in MOVES:
+    usage = _usage_at(gaps)
+    is_endless = usage.names.meant(plain(usage.source[usage.found.span])) == "FOREVER"
+    if not is_endless or not usage.signs or usage.signs[0] not in MOVES:
         return ""
-    start, end = (place - found.piece.start for place in found.found.span)
-    said = found.source[found.piece]
+    start, end = (place - usage.piece.start for place in usage.found.span)
+    said = usage.source[usage.piece]
     return f"{said[:start]}FOREVER{said[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
 
 
 def _forever_first(gaps: Gaps) -> str:
     """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
-    match = _FOREVER_BEHIND.fullmatch(_found(gaps).source[_found(gaps).piece])
+    match = _FOREVER_BEHIND.fullmatch(_usage_at(gaps).source[_usage_at(gaps).piece])
     if match is None:
         return ""
     until = match[3] or f" UNTIL({WORDS['UNTIL'].arguments[0].sample})"
@@ -830,23 +836,23 @@ def _forever_first(gaps: Gaps) -> str:
 
 def _asked_behind(gaps: Gaps) -> str:
     """An UNTIL with the move that it lacks."""
-    found = _found(gaps)
-    asked = re.match(r"\s*(\([^()\n]+\))", found.text[found.found.span.start + 5 :])
+    usage = _usage_at(gaps)
+    asked = re.match(r"\s*(\([^()\n]+\))", usage.text[usage.found.span.start + 5 :])
     return f"F(2, 80) UNTIL{asked[1]}" if asked else ""
 
 
 def _arm(gaps: Gaps) -> str:
     """`si no`, alone."""
-    found = _found(gaps)
-    arm = found.names.meant("_".join(found.words[:2]))
-    return arm if arm == "ELSE" and len(found.row) == 2 else ""
+    usage = _usage_at(gaps)
+    arm = usage.names.meant("_".join(usage.words[:2]))
+    return arm if arm == "ELSE" and len(usage.row) == 2 else ""
 
 
 def _begun_again(gaps: Gaps) -> str:
     """A beginning in the midst of a program, with its bar."""
-    found = _found(gaps)
-    is_bar = found.behind_it.lstrip()[:1] == "|"
-    return found.source[found.found.span].upper() + "|" * is_bar
+    usage = _usage_at(gaps)
+    is_bar = usage.behind_it.lstrip()[:1] == "|"
+    return usage.source[usage.found.span].upper() + "|" * is_bar
 
 
 def _question_begun(gaps: Gaps) -> str:
@@ -856,49 +862,49 @@ def _question_begun(gaps: Gaps) -> str:
 
 def _saying_button(gaps: Gaps) -> str:
     """A word before the bar that says the button, or looks like it."""
-    word = _found(gaps).found.values["found"]
+    word = _usage_at(gaps).found.values["found"]
     return word if word == "S8" or concept_of(word) == "BUTTON" else ""
 
 
 def _skipped(gaps: Gaps) -> str:
     """An IF that leaves out what follows its BREAK, which no loop is around."""
-    found = _found(gaps)
-    match = found.matched(_BREAK)
-    rest = _row(found.text[match.end() :]) if match else []
+    usage = _usage_at(gaps)
+    match = usage.matched(_BREAK)
+    rest = _row(usage.text[match.end() :]) if match else []
     return ";".join((match[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"])) if match and rest else ""
 
 
 def _part_of_when(gaps: Gaps) -> str:
     """An ELSE in a WHEN."""
-    found = _found(gaps)
-    before = found.text[: found.found.span.start]
+    usage = _usage_at(gaps)
+    before = usage.text[: usage.found.span.start]
     is_open = re.search(r"(?is)\bWHEN\b(?!.*\bEND_?WHEN\b)", before)
-    return found.found.values["found"] if is_open else ""
+    return usage.found.values["found"] if is_open else ""
 
 
 def _two_digits(gaps: Gaps) -> str:
     """A colon between digits, and these."""
-    start, end = _found(gaps).found.span
-    around = _found(gaps).text[max(0, start - 1) : end + 1]
+    start, end = _usage_at(gaps).found.span
+    around = _usage_at(gaps).text[max(0, start - 1) : end + 1]
     return around if re.fullmatch("[0-9]:[0-9]", around) else ""
 
 
-def _quoted(found: Found) -> Span:
+def _quoted(usage: Usage) -> Span:
     """Return the place from a quotation mark to the next one of its line."""
-    start, end = found.found.span
-    closed = re.compile(rf"[^\n]*?{found.text[start:end]}").match(found.text, end)
+    start, end = usage.found.span
+    closed = re.compile(rf"[^\n]*?{usage.text[start:end]}").match(usage.text, end)
     return Span(start, closed.end() if closed else end)
 
 
-def _dotted(found: Found) -> Span:
-    match = found.matched(_DOTS)
-    return Span(*match.span("here")) if match else found.found.span
+def _dotted(usage: Usage) -> Span:
+    match = usage.matched(_DOTS)
+    return Span(*match.span("here")) if match else usage.found.span
 
 
 def _rows_of_name(gaps: Gaps) -> list[str]:
     """The lines in which a word is meant as a name."""
-    found = _found(gaps)
-    return [str(found.source.position(each.start)[0]) for each in found.renamed()]
+    usage = _usage_at(gaps)
+    return [str(usage.source.position(each.start)[0]) for each in usage.renamed()]
 
 
 def _other_rows(gaps: Gaps) -> list[str]:
@@ -907,9 +913,9 @@ def _other_rows(gaps: Gaps) -> list[str]:
 
 def _later_rows(gaps: Gaps) -> list[str]:
     """The lines in which TIME stands behind the first place."""
-    found = _found(gaps)
-    places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", found.text)][1:]
-    return [str(found.source.position(place)[0]) for place in places]
+    usage = _usage_at(gaps)
+    places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", usage.text)][1:]
+    return [str(usage.source.position(place)[0]) for place in places]
 
 
 def _one(lines: Sequence[str]) -> str:
@@ -927,67 +933,67 @@ def _times_in_line(gaps: Gaps) -> str:
 
 def _words_behind(gaps: Gaps) -> str:
     """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
-    found = _found(gaps)
-    said = found.source[_behind(found)]
-    right = lines.right(lexemes(said), found.names)
+    usage = _usage_at(gaps)
+    said = usage.source[_behind(usage)]
+    right = lines.right(lexemes(said), usage.names)
     return shortened(said) if isinstance(right, Failure) and right.at == 0 else ""
 
 
-def _behind(found: Found) -> Span:
-    return Span(found.found.span.start, found.piece.end)
+def _behind(usage: Usage) -> Span:
+    return Span(usage.found.span.start, usage.piece.end)
 
 
 def _plain_letters(gaps: Gaps) -> str:
     """A name in the letters that a name has, which the language knows."""
-    right, concept = _found(gaps).letters
-    return right if concept in WORDS or _found(gaps).names.has(concept) else ""
+    right, concept = _usage_at(gaps).letters
+    return right if concept in WORDS or _usage_at(gaps).names.has(concept) else ""
 
 
 def _called_here(gaps: Gaps) -> str:
-    found = _found(gaps)
-    is_call = found.behind_it.lstrip(" ").startswith("(")
-    return found.source[found.found.span].upper() if is_call else ""
+    usage = _usage_at(gaps)
+    is_call = usage.behind_it.lstrip(" ").startswith("(")
+    return usage.source[usage.found.span].upper() if is_call else ""
 
 
 def _said_first(gaps: Gaps) -> str:
     """A word that says nothing, or the button, and begins an instruction."""
-    found, right = _found(gaps), _found(gaps).letters[0]
+    found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     is_said = said_of(right, "filler") or found.is_button(right)
     return right if found.is_first and is_said else ""
 
 
 def _cased(gaps: Gaps) -> str:
-    found, right = _found(gaps), _found(gaps).letters[0]
+    found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     return right if found.source[found.found.span].isupper() else right.capitalize()
 
 
-def _amount_place(found: Found) -> Span:
-    start = found.text.index(found.amount["amount"], found.piece.start)
-    return Span(start, start + len(found.amount["amount"]))
+def _amount_place(usage: Usage) -> Span:
+    start = usage.text.index(usage.amount["amount"], usage.piece.start)
+    return Span(start, start + len(usage.amount["amount"]))
 
 
-def _found(gaps: Gaps) -> Found:
-    assert isinstance(gaps.place, Found)
+def _usage_at(gaps: Gaps) -> Usage:
+    assert isinstance(gaps.place, Usage)
     return gaps.place
 
 
-def _of(get: Callable[[Found], str | None]) -> Callable[[Gaps], str]:
-    return lambda gaps: get(_found(gaps)) or ""
+def _of(get: Callable[[Usage], str | None]) -> Callable[[Gaps], str]:
+    return lambda gaps: get(_usage_at(gaps)) or ""
 
 
 # Where a row tells what it says, but where it was found.
-_PLACES: dict[str, Callable[[Found], Span]] = {
+_PLACES: dict[str, Callable[[Usage], Span]] = {
     "here": lambda it: it.piece, "behind": _behind, "member": _member, "quoted": _quoted,
     "dots": _dotted,
     "first": lambda it: Span(it.piece.start, it.piece.start + len(it.words[0])),
     "amount": _amount_place,
 }  # fmt: skip
 # Values that come together, of a place and the word that is told of.
-_SEVERAL: dict[str, Callable[[Found, str], Mapping[str, str]]] = {
+_SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "amount": lambda it, _: it.amount, "button": lambda it, _: it.button(),
     "dots": lambda it, _: it.dots(), "unended": lambda it, _: it.unended(),
-    "instead": lambda it, _: said_instead(it.signs[0]), "in_words": Found.in_words,
-    "in_brackets": Found.in_brackets,
+    "instead": lambda it, _: said_instead(it.signs[0]), "in_words": Usage.in_words,
+    "in_brackets": Usage.in_brackets,
     "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
 }  # fmt: skip
 GAPS: dict[str, Callable[[Gaps], str]] = {
@@ -997,9 +1003,9 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "found": _of(lambda it: it.found.values["found"]),
     "word": _of(lambda it: it.found.values["word"]),
     "right": _right, "named": _named_by,
-    "named_first": lambda gaps: _found(gaps).named(_right(gaps), _found(gaps).signs[0]),
+    "named_first": lambda gaps: _usage_at(gaps).named(_right(gaps), _usage_at(gaps).signs[0]),
     "usage": lambda gaps: _usage(_right(gaps)),
-    "takes": lambda gaps: _usage(_right(gaps)) if _found(gaps).orders[0].samples else "",
+    "takes": lambda gaps: _usage(_right(gaps)) if _usage_at(gaps).orders[0].samples else "",
     "block": _block, "order": _order, "sided": lambda gaps: _several(gaps, is_sided=True),
     "several": lambda gaps: _several(gaps, is_sided=False),
     "made_up": _of(lambda it: made_up(it.orders)), "endless": _endless,
@@ -1010,7 +1016,7 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "word_said": _word_said, "concept": _concept, "asking": lambda gaps: _asking(_concept(gaps)),
     "concept_alone": lambda gaps: _concept_alone(gaps, is_numbered=False),
     "concept_numbered": lambda gaps: _concept_alone(gaps, is_numbered=True),
-    "concept_usage": lambda gaps: _found(gaps).usage(_concept(gaps)), "variable": _variable,
+    "concept_usage": lambda gaps: _usage_at(gaps).usage(_concept(gaps)), "variable": _variable,
     "often_taught": _of(lambda it: "LOOP" * it.own.is_often),
     "taught": _of(lambda it: it.own.taught),
     "untaught": _of(lambda it: it.own.name * it.own.is_taught), "often": _often,
@@ -1018,7 +1024,7 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "plus": _of(lambda it: "-" if f"-{it.number}" in "".join(it.signs) else "+"),
     "own_example": _own_example,
     "own": _own_name, "end": _end, "done": _done,
-    "done_usage": lambda gaps: _found(gaps).usage(_done(gaps)),
+    "done_usage": lambda gaps: _usage_at(gaps).usage(_done(gaps)),
     "member": _of(lambda it: it.text[slice(*_member(it))]),
     "bare_asking": _of(lambda it: _asking(it.found.values["word"])),
     "bare_example": _of(lambda it: WORDS[it.meant].example
@@ -1038,8 +1044,8 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "amount": _of(lambda it: it.amount.get("amount")),
     "endless_move": _endless_move, "forever_first": _forever_first, "asked_behind": _asked_behind,
     "arm": _arm, "begun_again": _begun_again, "question_begun": _question_begun,
-    "twice": lambda gaps: _begun_again(gaps) if _found(gaps).around.begun == "SB" else "",
-    "named_endless": lambda gaps: _found(gaps).named("LOOP", _endless(gaps)),
+    "twice": lambda gaps: _begun_again(gaps) if _usage_at(gaps).around.begun == "SB" else "",
+    "named_endless": lambda gaps: _usage_at(gaps).named("LOOP", _endless(gaps)),
     "instead": _of(lambda it: it.around.begun), "saying_button": _saying_button,
     "skipped": _skipped, "part": _part_of_when, "two_digits": _two_digits,
     "sign_means": _of(lambda it: concept_of(it.source[it.found.span])),
@@ -1048,7 +1054,7 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "since": _of(lambda it: SINCE.get(it.other_name.word)),
     "name_line": lambda gaps: "".join(_other_rows(gaps)[:1]),
     "name_lines": lambda gaps: _many(_other_rows(gaps)), "name_times": _times_in_line,
-    "name_right": _of(lambda it: it.other_name.near or it.other_name.right),
+    "name_right": _of(lambda it: it.other_name.suggestion or it.other_name.right),
     "time_right": _of(lambda it: it.other_name.right
                       if it.other_name.is_set and it.other_name.is_set[1] else ""),
     "clock": _of(lambda it: it.other_name.right

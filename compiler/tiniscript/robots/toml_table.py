@@ -193,15 +193,15 @@ class Table:
             self.complain("wrong_type", key, wanted=wanted, found=_type_of(value))
 
     def not_in_kit(self, key: str, known: Sequence[str]) -> None:
-        near = nearest(key.upper(), list(known)) or ""
-        self.complain("not_in_kit", key, name=shown(key), near=near)
+        suggestion = nearest(key.upper(), list(known)) or ""
+        self.complain("not_in_kit", key, name=shown(key), near=suggestion)
 
     def finish(self) -> None:
         """Complain about every key that was never read."""
         for key in self._values:
             if key not in self._asked:
-                near = nearest(key, self._asked) or ""
-                self.complain("unknown_key", key, near=near, known=", ".join(self._asked))
+                suggestion = nearest(key, self._asked) or ""
+                self.complain("unknown_key", key, near=suggestion, known=", ".join(self._asked))
 
     def _thousandths(self, key: str, value: object, low: int, high: int) -> int:
         if isinstance(value, Written):

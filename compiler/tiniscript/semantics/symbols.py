@@ -61,7 +61,7 @@ class Scope:
     def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
         self.diagnostics.append(Diagnostic(code, span, values, place))
 
-    def report_used(self, name: str, used: Span, near: str) -> None:
+    def report_used(self, name: str, used: Span, suggestion: str) -> None:
         """Say that `name` is used before it has a value, and how it gets one first."""
         said = self._line_to_move_up(name, used)
         body = self.parsed.body
@@ -75,7 +75,7 @@ class Scope:
         edits = [Edit(Span(begin, begin), value + between)]
         if said["line"]:
             edits.append(Edit(self.source.line_span(int(said["line"])), ""))
-        values = {"name": name, "near": near, **said}
+        values = {"name": name, "near": suggestion, **said}
         repair = Repair(tuple(edits), False)
         self.diagnostics.append(Diagnostic(codes.USED_BEFORE_SET, used, values, None, repair))
 

@@ -51,10 +51,10 @@ def separated(program: ir.Program) -> ir.Program:
 
 
 class Excess(NamedTuple):
-    """More copies than a machine takes, of this DEF, for so many tasks."""
+    """More copies than a machine takes, of this DEF, for these tasks: 0 is the main one."""
 
     procedure: int
-    tasks: int
+    tasks: tuple[int, ...]
     what: str  # "variables" or "defs"
     total: int  # with all copies
     limit: int
@@ -62,16 +62,17 @@ class Excess(NamedTuple):
 
 def excess(program: ir.Program) -> Excess | None:
     """Return the DEF whose copies a machine has no room for, if there is one."""
-    owns, counts = _owning(program), users(program)
+    owns, reached = _owning(program), _reached(program)
     variables, defs = len(program.variables), len(program.procedures)
-    for k, (procedure, count) in enumerate(zip(program.procedures, counts, strict=True)):
-        if owns[k] and count > 1:
-            variables += (count - 1) * len(procedure.values)
-            defs += count - 1
+    for k, procedure in enumerate(program.procedures):
+        its_tasks = tuple(task for task, found in enumerate(reached) if k in found)
+        if owns[k] and len(its_tasks) > 1:
+            variables += (len(its_tasks) - 1) * len(procedure.values)
+            defs += len(its_tasks) - 1
             if variables > VARIABLES:
-                return Excess(k, count, "variables", variables, VARIABLES)
+                return Excess(k, its_tasks, "variables", variables, VARIABLES)
             if defs > DEFS:
-                return Excess(k, count, "defs", defs, DEFS)
+                return Excess(k, its_tasks, "defs", defs, DEFS)
     return None
 
 

@@ -38,16 +38,18 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     word, span = node.word, node.word_span
     begins = (word for word in WORDS.values() if word.role.begins)
     commands = [begin.text for begin in begins if begin.text not in ("FOREVER", "SEND")]
-    near = whole_name(scope, word, scope.def_names) if node.arguments is None else ""
-    near = near or scope.near(word, chain(commands, scope.names, scope.def_names))
-    is_own = near in scope.set_somewhere or near in scope.def_names
-    if is_own and near.rstrip(_DIGITS) == word.rstrip(_DIGITS):
-        near = ""  # `PASO2`, where there is a DEF PASO1
+    suggestion = whole_name(scope, word, scope.def_names) if node.arguments is None else ""
+    suggestion = suggestion or scope.near(word, chain(commands, scope.names, scope.def_names))
+    is_own = suggestion in scope.set_somewhere or suggestion in scope.def_names
+    if is_own and suggestion.rstrip(_DIGITS) == word.rstrip(_DIGITS):
+        suggestion = ""  # `PASO2`, where there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
     letters = [word[0]] if is_held and word[0] in WORDS else shortened(word)
     count = len(node.arguments or ())
-    near = next((letter for letter in letters if len(WORDS[letter].arguments) == count), near)
-    scope.report(codes.UNKNOWN_WORD, span, None, found=scope.source[span].upper(), near=near)
+    suggestion = next(
+        (letter for letter in letters if len(WORDS[letter].arguments) == count), suggestion
+    )
+    scope.report(codes.UNKNOWN_WORD, span, None, found=scope.source[span].upper(), near=suggestion)
 
 
 def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) -> None:

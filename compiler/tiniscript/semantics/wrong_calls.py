@@ -67,15 +67,19 @@ class WrongCalls:
         self.scope.report(codes.CALL_VALUES, node.span, name=node.word, usage=usage,
                           wanted=str(len(names)), found=str(len(node.arguments or ())))  # fmt: skip
 
-    def too_many_copies(self, program: ir.Program, found: Excess) -> None:
+    def too_many_copies(self, program: ir.Program, excess: Excess) -> None:
         """A DEF with values is compiled once for each task that reaches it."""
-        procedure = program.procedures[found.procedure]
+        procedure = program.procedures[excess.procedure]
         span = Span(procedure.span.start, procedure.span.start + len("DEF"))
+        begin = [program.body[0].span, *(task.span for task in program.tasks)]
+        lines = [self.scope.source.position(begin[k].start)[0] for k in excess.tasks]
         values = {
-            "count": str(found.tasks),
-            found.what: str(found.total),
-            "limit": str(found.limit),
+            "count": str(len(lines)),
+            excess.what: str(excess.total),
+            "limit": str(excess.limit),
         }
+        if len({*lines}) > 1:
+            values["lines"] = ", ".join(map(str, sorted({*lines})))
         self.scope.report(codes.TOO_MANY_COPIES, span, None, name=procedure.name, **values)
 
     def until_not_here(self, node: ast.Command, until: ast.Argument, word: Word | None) -> None:

@@ -56,11 +56,13 @@ class WrongValues:
         known = [each for each, its in names if its.what in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
         known += ["FOREVER"] if is_forever else []
-        near = "".join(said_of(name, "number")) or scope.near(name, known)
-        near = near or ("".join(said_of(name, "power")) if before.rstrip().endswith("=") else "")
-        near = near or whole_name(scope, name, scope.set_somewhere)
+        suggestion = "".join(said_of(name, "number")) or scope.near(name, known)
+        suggestion = suggestion or (
+            "".join(said_of(name, "power")) if before.rstrip().endswith("=") else ""
+        )
+        suggestion = suggestion or whole_name(scope, name, scope.set_somewhere)
         if (match := _COMPARED_WITH.search(before)) and scope.is_yes_no_sensor(match[1].upper()):
-            near = yes_no_of(name) or near
+            suggestion = yes_no_of(name) or suggestion
         base = name.rstrip(_DIGITS).rstrip("_")  # DISTANCE, of DISTANCE2
         stem = ("".join(said_of(base, "stem")) or base) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
@@ -70,25 +72,25 @@ class WrongValues:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
                    for diagnostic in scope.diagnostics[-ENOUGH:]):  # fmt: skip
                 return  # said once
-            scope.report_used(name, span, near)
+            scope.report_used(name, span, suggestion)
         else:
-            near = "" if which or is_variable else near
+            suggestion = "" if which or is_variable else suggestion
             only = next((sensor for sensor in sensors if name.startswith(sensor + "_")), "")
             aside = only if is_aside(name.rpartition("_")[2]) else ""
-            alike = near if near and near.rstrip(_DIGITS) == base else ""
-            near = "" if aside or alike else only or near
+            alike = suggestion if suggestion and suggestion.rstrip(_DIGITS) == base else ""
+            suggestion = "" if aside or alike else only or suggestion
             said = {"alike": alike} if alike and not which else {}
-            is_said = not (near or said or which or only or is_variable)
+            is_said = not (suggestion or said or which or only or is_variable)
             if is_said and meant in OTHER_WAY:
                 said = {"way": meant, "call": WORDS[meant].example}
             elif is_said and said_of(name + "4", "note") and _TONE_BEFORE.search(before):
                 said = {"pitch": said_of(name + "4", "note")[0]}
             elif not which and not is_variable and said_of(name, "unsensed"):
                 its_own = ", ".join(sensor.name for sensor in scope.kit.sensors)
-                said, near = {"unsensed": name, "sensors": its_own}, ""
+                said, suggestion = {"unsensed": name, "sensors": its_own}, ""
             elif is_said and said_of(name, "colour"):
                 said = {"colour": name}
-            scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
+            scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=suggestion,
                          value=value_of(name), only=only, aside=aside, **said, **which)  # fmt: skip
 
     def _amount(self, span: Span, name: str) -> dict[str, str]:

@@ -134,9 +134,9 @@ class Sensing:
         contact = self.hull.contact(pose, self._near[1]) if self._near[1] else None
         if contact is None or contact.gap_cm >= TOUCH_CM:
             return False
-        (_, _, heading), point = pose, contact.theirs
+        (_, _, heading), point = pose, contact.obstacle_point
         sits = math.atan2(place.y_cm, place.x_cm) if place.x_cm or place.y_cm else 0.0
-        side = math.atan2(point.y - contact.ours.y, point.x - contact.ours.x)
+        side = math.atan2(point.y - contact.body_point.y, point.x - contact.body_point.x)
         off = (side - sits - math.radians(heading) + math.pi) % (2 * math.pi) - math.pi
         return abs(off) <= BUMPER
 

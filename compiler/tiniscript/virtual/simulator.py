@@ -90,9 +90,9 @@ class Simulator:
     @property
     def over_ms(self) -> int | None:
         """When the robot's time is over, if that is known."""
-        began_ms = self.robot.started_ms
-        if self.lasts_ms is not None and began_ms is not None:
-            return began_ms + self.lasts_ms
+        started_ms = self.robot.started_ms
+        if self.lasts_ms is not None and started_ms is not None:
+            return started_ms + self.lasts_ms
         return self.end_ms
 
     @property

@@ -184,5 +184,5 @@ def load(name_or_path: str) -> World:
     if robots.is_path(name_or_path):
         return read(robots.text_of(name_or_path, WorldRefused), Path(name_or_path).stem)
     values = {"name": shown(name_or_path), "known": ", ".join(names())}
-    near = nearest(name_or_path.lower(), names()) or ""
-    raise WorldRefused(("no_such_world", {**values, "near": near}))
+    suggestion = nearest(name_or_path.lower(), names()) or ""
+    raise WorldRefused(("no_such_world", {**values, "near": suggestion}))

@@ -18,7 +18,7 @@ def run(options: Namespace, language: str) -> int:
         return 0
     said = explain(options.code, language)
     if said is None:
-        near = nearest(options.code.upper(), list(CODES)) or ""
-        raise CommandError(2, "no_code", found=options.code, near=near)
+        suggestion = nearest(options.code.upper(), list(CODES)) or ""
+        raise CommandError(2, "no_code", found=options.code, near=suggestion)
     print(Said(said), end="" if said.endswith("\n") else "\n")
     return 0

@@ -14,7 +14,7 @@ from tiniscript.cli.robot.description import described
 from tiniscript.cli.terminal.progress import Progress, waiting
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.flash import avrdude
-from tiniscript.flash.avrdude import Ended, Seen
+from tiniscript.flash.avrdude import Ended, StepProgress
 from tiniscript.flash.bootloaders import BOARDS, UNO, Bootloader
 from tiniscript.flash.ready import Ready
 from tiniscript.link import ports
@@ -41,7 +41,7 @@ def run(options: Namespace, language: str) -> int:
             firmware_build.row(robot, firmware_build.firmware(robot, options, language), language)
         )
         return 0
-    command = avrdude.found()
+    command = avrdude.find_avrdude()
     if command is None:
         raise CommandError(2, "flash_no_avrdude", how=INSTALLS.get(sys.platform, INSTALLS["linux"]))
     port = _port(options)
@@ -121,7 +121,7 @@ def _written(
     progress = Progress(language, 100)
     has_begun = False
 
-    def look(seen: Seen | None) -> None:
+    def look(seen: StepProgress | None) -> None:
         nonlocal has_begun
         if seen is not None:
             has_begun = True

@@ -108,4 +108,5 @@ def _print(robot_keys: list[RobotKey], language: str) -> None:
 
 def _fields(key: RobotKey) -> dict[str, object]:
     return {"id": f"{key.id:08x}", "name": key.name, "kind": KEYS[key.which][0].lower(),
-            "is_pending": key.is_pending, "is_stale": key.is_stale, "seals": key.seals}  # fmt: skip
+            "is_pending": key.is_pending, "is_stale": key.is_stale,
+            "seals": key.uses_seals}  # fmt: skip

@@ -19,7 +19,7 @@ from tiniscript.link.errors import PortError
 from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
 from tiniscript.link.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
-from tiniscript.link.modules.talk import Module, asked, found
+from tiniscript.link.modules.talk import Module, ask, find_module
 from tiniscript.link.wire import Wire
 
 
@@ -112,7 +112,7 @@ class _SetUp:
 
     def run(self) -> int:
         doing = Doing()
-        module = found(
+        module = find_module(
             self.wire, look=lambda baud: doing.tell(self._text("module_looking", baud=str(baud)))
         )
         doing.end()
@@ -147,7 +147,7 @@ class _SetUp:
         dialect = module.dialect
         questions = {NAME: dialect.ask_name, BAUD: dialect.ask_baud}
         values = {
-            what: value_of(asked(self.wire, question, dialect.ending, dialect.wait_ms))
+            what: value_of(ask(self.wire, question, dialect.ending, dialect.wait_ms))
             for what, question in questions.items()
             if question
         }

@@ -12,7 +12,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import baud_of, opened_client
-from tiniscript.cli.robot.in_reach import AT_ONCE, found
+from tiniscript.cli.robot.in_reach import AT_ONCE, find_robots
 from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, listed
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
@@ -32,7 +32,7 @@ def run(options: Namespace, language: str) -> int:
     baud = None if options.baud is None else baud_of(options, robot, language)
     in_reach = NOWHERE
     if options.ask and options.port is None:
-        in_reach = found(list(known_ports.known().names), language)
+        in_reach = find_robots(list(known_ports.known().names), language)
         for note in in_reach.notes:  # what could not be searched
             print(note, file=sys.stderr, flush=True)
     rows = listed(language, options.port, in_reach)

@@ -41,7 +41,7 @@ from tiniscript.virtual.directory import is_gone
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.simulator import CommandSimulator
-    from tiniscript.link.ports import Found
+    from tiniscript.link.ports import ListedPort
 
 T = TypeVar("T")
 
@@ -392,10 +392,10 @@ def _chosen(options: Namespace, language: str) -> str:
     return _asked(language, can_bring, virtual)
 
 
-def about_port(found: Found, language: str) -> str:
+def about_port(listed: ListedPort, language: str) -> str:
     """Return the description of a port; of a built-in one the system has none."""
-    is_told = bool(found.description) or not is_built_in(found.port)
-    return found.description if is_told else text("port_built_in", language)
+    is_told = bool(listed.description) or not is_built_in(listed.port)
+    return listed.description if is_told else text("port_built_in", language)
 
 
 def about_virtual(running: directory.Running, language: str) -> str:

@@ -184,7 +184,7 @@ def introduced(connection: Connection, is_json: bool) -> int:
     return 0
 
 
-def measured(connection: Connection, member: Member) -> Result:
+def measure_line(connection: Connection, member: Member) -> Result:
     """Describe one of many robots, and say how soon it answers."""
     result = in_a_line(connection, member)
     member.tell("crew_pinging")

@@ -11,7 +11,7 @@ from tiniscript.cli import images
 from tiniscript.cli.images import Ready
 from tiniscript.cli.robot import program_upload
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.description import measured
+from tiniscript.cli.robot.description import measure_line
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
@@ -27,7 +27,7 @@ def upload_to_many(
     """Send a program to many robots, keep its source map; return the exit code."""
     images.keep_map(ready)
     is_ping = ready.image.start == "PING"  # a program that asks who is there
-    work = measured if is_ping else partial(_upload, options, ready, name)
+    work = measure_line if is_ping else partial(_upload, options, ready, name)
     return together(options, robot, language, work)
 
 

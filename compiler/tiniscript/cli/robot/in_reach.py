@@ -40,7 +40,7 @@ class InReach(NamedTuple):
     notes: list[str]
 
 
-def found(known: list[str], language: str) -> InReach:
+def find_robots(known: list[str], language: str) -> InReach:
     """Search for some seconds. A robot that is known by a port of `known` keeps it."""
     whole = InReach({}, [], [], [])
     reasons = set()  # where both packages are missing, one note says it
@@ -123,7 +123,7 @@ def alive() -> list[Registration]:
         return list(compress(registrations, pool.map(is_alive, registrations)))
 
 
-def to_stop(is_virtual: bool = False) -> list[str]:
+def ports_to_stop(is_virtual: bool = False) -> list[str]:
     """Return the ports for `tsc stop` without `--port`.
 
     They include that of the last used robot, which may drive on without any command.

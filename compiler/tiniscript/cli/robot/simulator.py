@@ -130,15 +130,15 @@ class CommandSimulator(SimulatorThread):
             return any(event.text == wanted for event in self._told)
 
         with self._drawing:
-            began_ms = self.robot.started_ms or 0
+            started_ms = self.robot.started_ms or 0
             if wanted.partition(" ")[0] not in TOLD or not self._drawing.wait_for(
                 is_there, ROUND_S
             ):
-                return self.robot.now_ms - began_ms
+                return self.robot.now_ms - started_ms
             while True:
                 found = self._told.popleft()
                 if found.text == wanted:
-                    return found.time_ms - began_ms
+                    return found.time_ms - started_ms
 
     def unwatch(self) -> None:
         """Stop drawing; the last picture stays."""
@@ -169,10 +169,10 @@ class CommandSimulator(SimulatorThread):
 
     def _driven_ms(self) -> int:
         """Return the time from the start of the first program to the end of the last one."""
-        began_ms, ended_ms = self.robot.started_ms, self.robot.ended_ms
-        if began_ms is None:
+        started_ms, ended_ms = self.robot.started_ms, self.robot.ended_ms
+        if started_ms is None:
             return 0
-        return (self.robot.now_ms if ended_ms is None else ended_ms) - began_ms
+        return (self.robot.now_ms if ended_ms is None else ended_ms) - started_ms
 
     def took_turn(self) -> None:
         with self._drawing:

@@ -69,23 +69,23 @@ class TrimWizard(Conversation):
     def trim(self, before: Trim) -> Trim:
         self.lift()
         self._set(Trim())
-        found = self._wired()
-        self._set(found)
-        found = found._replace(least=self._least())
-        self._set(found)
+        trim = self._wired()
+        self._set(trim)
+        trim = trim._replace(least=self._least())
+        self._set(trim)
         self.answer("trim_floor")
-        slow = self._straight(found, POWERS[0])
-        quick = self._straight(found._replace(balance=slow), POWERS[1])
-        found = found._replace(balance=round((slow + quick) / 2))
-        self._set(found)
+        slow = self._straight(trim, POWERS[0])
+        quick = self._straight(trim._replace(balance=slow), POWERS[1])
+        trim = trim._replace(balance=round((slow + quick) / 2))
+        self._set(trim)
         if before.pace is None:
             say_aside("trim_no_pace_here", self.language)
-            return found
+            return trim
         if self.choice("trim_measure", 2) != YES:
-            return found._replace(pace=before.pace)
+            return trim._replace(pace=before.pace)
         ahead = self._measured("F", AHEAD_S, "trim_how_far")
         turning = self._measured("R", TURN_S, "trim_how_round")
-        return found._replace(pace=Pace(*ahead, *turning))
+        return trim._replace(pace=Pace(*ahead, *turning))
 
     def does(self, line: str) -> list[int]:
         try:
@@ -137,15 +137,15 @@ class TrimWizard(Conversation):
                 say_aside(f"{question}_number", self.language)
                 answer = self.answer(question, n=str(power))
 
-    def _straight(self, found: Trim, power: int) -> int:
+    def _straight(self, trim: Trim, power: int) -> int:
         """Balance the wheels until the robot goes straight; return the balance."""
         step, last = FIRST_STEP, 0
-        self._set(found)
+        self._set(trim)
         while True:
             self.does(f"F(2, {power})")
             answer = self.choice("trim_straight", AGAIN)
             if answer == 1:
-                return found.balance
+                return trim.balance
             if answer == AGAIN:
                 continue
             # to its left: the right wheel is too strong
@@ -153,11 +153,11 @@ class TrimWizard(Conversation):
             if last and side != last:
                 step = max(1, step // 2)
             last = side
-            balance = found.balance + side * step
+            balance = trim.balance + side * step
             if abs(balance) > MOST_BALANCE:
                 raise self._failure(sure("too_uneven", n=str(MOST_BALANCE)))
-            found = found._replace(balance=balance)
-            self._set(found)
+            trim = trim._replace(balance=balance)
+            self._set(trim)
 
     def _failure(self, finding: Finding) -> CommandError:
         found = said(finding, self.language)

@@ -177,7 +177,7 @@ def joined(port: str, verb: str) -> SharedConnection | None:
 
     Raises OtherVersion where the server is another version of tsc; `stop` works there, too.
     """
-    registration = registry.found(port)
+    registration = registry.find_registration(port)
     return None if registration is None else _joined(registration, verb)
 
 

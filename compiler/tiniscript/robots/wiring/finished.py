@@ -42,8 +42,8 @@ class _Finished:
         self.wheel = wheel_cm[0] * self.scale, wheel_cm[1] * self.scale
         half = max(self.breadth, body.wheel_base_cm * self.scale + self.wheel[1]) / 2
         self.left, self.right = BESIDE, BESIDE + 2 * half
-        places = [0.0, *(place.x_cm for place in body.places.values())]
-        ahead = max(0.0, max(places) * self.scale - self.length / 2)
+        places_x_cm = [0.0, *(place.x_cm for place in body.places.values())]
+        ahead = max(0.0, max(places_x_cm) * self.scale - self.length / 2)
         self.x, self.y = BESIDE + half, MARGIN + ahead + self.length / 2
         self.servos = [part for part in plan.parts if part.is_device and part.shape.icon == "servo"]
         self.y += JAW if self.servos and self._held() is None else 0

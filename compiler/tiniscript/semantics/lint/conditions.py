@@ -42,24 +42,24 @@ def _is_endless(loop: ir.Loop | ir.While) -> bool:
     return not isinstance(loop, ir.Loop) or loop.times is None
 
 
-def of_until(move: ir.Move, around: Around, look: Look) -> None:
+def check_until(move: ir.Move, around: Around, look: Look) -> None:
     if move.until is not None and not look.program.tasks:
-        _Conditions(look).until(move, move.until.condition, around)
+        _Conditions(look).check_until(move, move.until.condition, around)
 
 
-def of_while(loop: ir.While, around: Around, look: Look) -> None:
+def check_while(loop: ir.While, around: Around, look: Look) -> None:
     if not look.program.tasks:
-        _Conditions(look).while_(loop)
+        _Conditions(look).check_while(loop)
 
 
-def of_if(statement: ir.If, around: Around, look: Look) -> None:
+def check_if(statement: ir.If, around: Around, look: Look) -> None:
     if not look.program.tasks:
-        _Conditions(look).if_(statement, around.outermost)
+        _Conditions(look).check_if(statement, around.outermost)
 
 
-def of_show(show: ir.Show, around: Around, look: Look) -> None:
+def check_show(show: ir.Show, around: Around, look: Look) -> None:
     if around.outermost is not None and not look.program.tasks:
-        _Conditions(look).frozen_show(show, around.outermost)
+        _Conditions(look).report_frozen_show(show, around.outermost)
 
 
 class _Conditions:
@@ -71,17 +71,17 @@ class _Conditions:
 
     # -- UNTIL --------------------------------------------------------------------------------
 
-    def until(self, move: ir.Move, condition: ir.Expression, around: Around) -> None:
-        self._known_of_both(condition, move.span)
+    def check_until(self, move: ir.Move, condition: ir.Expression, around: Around) -> None:
+        self._report_known_of_both(condition, move.span)
         variables = _variables(condition)
         if variables and not any(term.op in _CHANGING for term in condition):
             time = known_value(move.time)
             if not (around.is_repeated and time is not None and time < SHORT):
-                self._frozen(move, condition, variables)
+                self._report_frozen_until(move, condition, variables)
             return
         compared = self._comparison(condition)
-        if compared is None or self._known(compared, move.span):
-            self._subtracted(condition, move.span)
+        if compared is None or self._report_known(compared, move.span):
+            self._report_subtracted(condition, move.span)
             return
         device, op, number = compared
         is_ahead = looks_ahead(device)
@@ -98,9 +98,11 @@ class _Conditions:
             written = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
             is_sure = bool(reached) and (is_ahead or device is TIME)
             fix = self._with(move, written) if is_sure else ""
-            self._exact(compared, move.span, "UNTIL", fix)
+            self._report_exact(compared, move.span, "UNTIL", fix)
 
-    def _frozen(self, move: ir.Move, condition: ir.Expression, variables: list[int]) -> None:
+    def _report_frozen_until(
+        self, move: ir.Move, condition: ir.Expression, variables: list[int]
+    ) -> None:
         held = self._look.variables.sensors_of(variables)
         name = self._program.variables[variables[0]]
         sign = ">" if move.direction == "B" else "<"
@@ -119,25 +121,25 @@ class _Conditions:
 
     # -- WHILE and IF -------------------------------------------------------------------------
 
-    def while_(self, loop: ir.While) -> None:
-        self._frozen_while(loop)
+    def check_while(self, loop: ir.While) -> None:
+        self._report_frozen_while(loop)
         head = Span(loop.span.start, loop.span.start + len("WHILE"))
         if compared := self._comparison(loop.condition):
-            self._known(compared, head)
-        self._known_of_both(loop.condition, head)
+            self._report_known(compared, head)
+        self._report_known_of_both(loop.condition, head)
 
-    def if_(self, statement: ir.If, outermost: ir.Loop | ir.While | None) -> None:
-        self._late_arms(statement)
+    def check_if(self, statement: ir.If, outermost: ir.Loop | ir.While | None) -> None:
+        self._report_late_arms(statement)
         for arm in statement.arms:
-            self._subtracted(arm.condition, arm.span)
-            self._known_of_both(arm.condition, arm.span)
+            self._report_subtracted(arm.condition, arm.span)
+            self._report_known_of_both(arm.condition, arm.span)
             compared = self._comparison(arm.condition)
-            if compared and not self._known(compared, arm.span):
-                self._exact(compared, arm.span, "IF", "")
+            if compared and not self._report_known(compared, arm.span):
+                self._report_exact(compared, arm.span, "IF", "")
             if outermost is not None and _is_endless(outermost):
-                self._frozen_if(arm, outermost)
+                self._report_frozen_if(arm, outermost)
 
-    def _frozen_while(self, loop: ir.While) -> None:
+    def _report_frozen_while(self, loop: ir.While) -> None:
         condition = loop.condition
         variables = _variables(condition)
         if not variables or any(term.op in _CHANGING for term in condition):
@@ -163,7 +165,7 @@ class _Conditions:
             values["step"] = f"{name} = {name} {'-' if is_down else '+'} 1"
         self._look.report(codes.FROZEN_WHILE, head, **values)
 
-    def _frozen_if(self, arm: ir.Arm, outermost: ir.Loop | ir.While) -> None:
+    def _report_frozen_if(self, arm: ir.Arm, outermost: ir.Loop | ir.While) -> None:
         """`D = DISTANCE; LOOP(FOREVER); IF(D < 20) …`: it moves, and looks at what was before."""
         variables = _variables(arm.condition)
         held = self._look.variables.held_in(outermost, variables)
@@ -175,10 +177,10 @@ class _Conditions:
         fix = f"{word}({asked})" if asked else ""
         self._look.report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
 
-    def frozen_show(self, show: ir.Show, outermost: ir.Loop | ir.While) -> None:
+    def report_frozen_show(self, show: ir.Show, outermost: ir.Loop | ir.While) -> None:
         """`D = DISTANCE; LOOP(5); SHOW(D); W(1); END_LOOP`: each round shows the same."""
         variables = _variables(show.value) if len(show.value) == 1 else []
-        if variables and self._thrown_once(show, variables[0], outermost):
+        if variables and self._report_thrown_once(show, variables[0], outermost):
             return
         held = self._look.variables.held_in(outermost, variables)
         if not held:
@@ -191,7 +193,7 @@ class _Conditions:
         fix = f"SHOW({held[name]})"
         self._look.report(codes.FROZEN_WHILE, show.span, name=name, sensor=held[name], fix=fix)
 
-    def _thrown_once(self, show: ir.Show, variable: int, loop: ir.Loop | ir.While) -> bool:
+    def _report_thrown_once(self, show: ir.Show, variable: int, loop: ir.Loop | ir.While) -> bool:
         """`DICE = RANDOM(1, 6); LOOP(5); SHOW(DICE); END_LOOP`: five times the same number.
 
         It is said where the loop shows it in each round, shows nothing else that changes, and
@@ -225,7 +227,7 @@ class _Conditions:
             self._look.report(codes.FROZEN_WHILE, show.span, thrown=name, within=within)
         return True
 
-    def _late_arms(self, statement: ir.If) -> None:
+    def _report_late_arms(self, statement: ir.If) -> None:
         """`IF(DISTANCE < 60) … ELSEIF(DISTANCE < 20)`: what is below 20 is below 60, too."""
         widest: dict[tuple[str, str], Comparison] = {}  # by sensor and the way of the sign
         for k, arm in enumerate(statement.arms[:_MOST_ARMS]):
@@ -240,7 +242,7 @@ class _Conditions:
                 self._look.report(codes.LATE_ARM, arm.span, wide=str(before),
                              narrow=str(compared))  # fmt: skip
 
-    def _known(self, compared: Comparison, span: Span) -> bool:
+    def _report_known(self, compared: Comparison, span: Span) -> bool:
         """Warn where the answer is known: `LIGHT_L > 5000`, of a sensor that goes up to 1023."""
         device = compared.device
         answer = answer_of(compared)
@@ -249,13 +251,13 @@ class _Conditions:
                          high=as_text(device.high), answer=answer)  # fmt: skip
         return bool(answer)
 
-    def _known_of_both(self, condition: ir.Expression, span: Span) -> None:
+    def _report_known_of_both(self, condition: ir.Expression, span: Span) -> None:
         """`DISTANCE < 10 AND DISTANCE > 40`: no distance is both, and OR was meant."""
         answer, meant = answer_of_both(condition, self._kit)
         if answer:
             self._look.report(codes.KNOWN_ANSWER, span, answer=answer, either=meant)
 
-    def _subtracted(self, condition: ir.Expression, span: Span) -> None:
+    def _report_subtracted(self, condition: ir.Expression, span: Span) -> None:
         """`DISTANCE = 5-20`: no distance is -15, and between is asked with two signs."""
         asked = [term.op for term in condition]
         if asked != ["SENSOR", "NUMBER", "NUMBER", "SUB", "EQ"]:
@@ -268,7 +270,7 @@ class _Conditions:
             self._look.report(codes.KNOWN_ANSWER, span, sensor=name, low=low, high=high,
                          answer="answer_no", between=between)  # fmt: skip
 
-    def _exact(self, compared: Comparison, span: Span, word: str, fix: str) -> None:
+    def _report_exact(self, compared: Comparison, span: Span, word: str, fix: str) -> None:
         device, op, number = compared
         if op == "EQ" and is_between(device, number):
             self._look.report(codes.EXACT, span, sensor=device.name, number=as_text(number),

@@ -25,7 +25,7 @@ _TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
 _POWERS = range(20_000, 100_001)  # and a power
 
 
-def late_conditions(body: ir.Body, around: Around, look: Look) -> None:
+def report_late_conditions(body: ir.Body, around: Around, look: Look) -> None:
     """Look at the statements of a body, not at those within them."""
     _LateConditions(look).look_at(body, around.loop)
 
@@ -43,7 +43,7 @@ class _LateConditions:
             self._in_while(loop)
         for k, statement in enumerate(body):
             if isinstance(statement, ir.If) and k not in late:
-                self._idle_stop(body, k, statement, loop)
+                self._report_idle_stop(body, k, statement, loop)
 
     def _in_loop(self, body: ir.Body) -> set[int]:
         """Find a long move, then a look at a distance: the robot drives blind in between.
@@ -64,7 +64,7 @@ class _LateConditions:
             comes = comes_true(condition, statement.direction, self._kit)
             if sensor is not None and comes:
                 asked = self._look.condition(branch.arms[0].span, "IF")
-                self._late(statement, sensor, asked)
+                self._report_late_check(statement, sensor, asked)
                 late.add(place)
         return late
 
@@ -82,9 +82,9 @@ class _LateConditions:
             sign = OPPOSITES[SIGN_OF[condition[2].op]]
             device, number = self._kit.readings[sensor], condition[1].value
             if looks_ahead(device) and device.low < number <= device.high:
-                self._late(move, sensor, f"{device.name} {sign} {as_text(number)}")
+                self._report_late_check(move, sensor, f"{device.name} {sign} {as_text(number)}")
 
-    def _late(self, move: ir.Move, sensor: int, asked: str) -> None:
+    def _report_late_check(self, move: ir.Move, sensor: int, asked: str) -> None:
         name = self._kit.readings[sensor].name
         written = self._source[move.span]
         values = {
@@ -96,7 +96,7 @@ class _LateConditions:
         }
         self._look.report(codes.LATE_CHECK, move.span, **values)
 
-    def _idle_stop(
+    def _report_idle_stop(
         self, body: ir.Body, k: int, branch: ir.If, loop: ir.Loop | ir.While | None
     ) -> None:
         """`F(5, 60); IF(DISTANCE < 20); S; ENDIF`: its S stops what stands."""
@@ -219,7 +219,7 @@ def _is_talk(statement: ir.Statement) -> bool:
     return is_wait or isinstance(statement, (ir.Read, ir.Show, ir.Beep))
 
 
-def unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
+def report_unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
     """Warn of each M of a body that the robot does not do for a while."""
     source = look.source
     for k, motors in enumerate(body):

@@ -21,7 +21,7 @@ _HEAD = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
 _TAKES_NO_TIME = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call)
 
 
-def kept_motors(look: Look) -> None:
+def report_kept_motors(look: Look) -> None:
     """Warn of each task that waits for a higher TASK, or never drives again."""
     program = look.program
     motors = _Motors(program)
@@ -95,7 +95,7 @@ class _Motors:
         return wants and once if takes_time else None
 
 
-def brief_tasks(look: Look) -> None:
+def report_brief_tasks(look: Look) -> None:
     """Warn of a TASK that is done once, and of a WHEN whose S lasts no longer than its answer."""
     program = look.program
     lower = [program.body, *(task.body for task in program.tasks if task.look is None)]

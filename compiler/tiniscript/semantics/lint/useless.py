@@ -33,7 +33,7 @@ LONGEST = 200  # characters of a note that is looked at
 # -- what is never done ----------------------------------------------------------------------
 
 
-def never_reached(body: ir.Body, around: Around, look: Look) -> None:
+def report_never_reached(body: ir.Body, around: Around, look: Look) -> None:
     """What stands after a loop without an end, or after BREAK."""
     for before, after in pairwise(body):
         if not ir.goes_on((before,)):
@@ -46,7 +46,7 @@ def never_reached(body: ir.Body, around: Around, look: Look) -> None:
             return
 
 
-def in_notes(look: Look) -> None:
+def report_instructions_in_notes(look: Look) -> None:
     """`F(2, 80)//R(1, 60)`: instructions that stand in a note.
 
     Only a note that is a row of calls with numbers, or that has such a call after a `;`, is taken
@@ -113,7 +113,7 @@ def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
 # -- blocks ----------------------------------------------------------------------------------
 
 
-def busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> None:
+def report_busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> None:
     """`WHILE(TRUE);X = DISTANCE;END_WHILE`: it never ends, and nothing in it takes time."""
     procedures = look.program.procedures
     if (
@@ -134,7 +134,7 @@ def _is_forever(loop: ir.Loop | ir.While) -> bool:
     return known_value(loop.condition) == 1
 
 
-def empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
+def report_empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
     """`LOOP(4)`, `END_LOOP`, and the moves below: beside what was probably meant to be in it.
 
     Nothing is said of an endless LOOP or a WHILE, which wait, nor of a block with a note inside or
@@ -191,7 +191,7 @@ def _said(statements: Sequence[ir.Statement], source: Source) -> list[str]:
 # -- what nobody uses ------------------------------------------------------------------------
 
 
-def unused_variables(look: Look) -> None:
+def report_unused_variables(look: Look) -> None:
     program = look.program
     used = ir.named("VARIABLE", look.statements)
     owners = {k: procedure for procedure in program.procedures for k in procedure.values}
@@ -206,7 +206,7 @@ def unused_variables(look: Look) -> None:
             look.report(codes.UNUSED_VARIABLE, statement.span, **values)
 
 
-def unused_readings(look: Look) -> None:
+def report_unused_readings(look: Look) -> None:
     """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
     asked = ir.named("SENSOR", look.statements)
     for statement in look.statements:
@@ -216,7 +216,7 @@ def unused_readings(look: Look) -> None:
             look.report(codes.UNUSED_READING, statement.span, name=name, fix=f"SHOW({name})")
 
 
-def unused_defs(look: Look) -> None:
+def report_unused_defs(look: Look) -> None:
     called = {
         statement.procedure for statement in look.statements if isinstance(statement, ir.Call)
     }
