@@ -46,6 +46,7 @@ from tiniscript.recovery.meanings import (
     said_of,
     texts,
 )
+from tiniscript.recovery.notes import note_edits
 from tiniscript.recovery.rewrites import one_word
 from tiniscript.recovery.writing import PLAIN_SIGNS, without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
@@ -70,8 +71,11 @@ _AS = {
 }  # fmt: skip
 _TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
 _NEGATES = ("no", "without", "unless", "different")
-# What frames a program and says nothing: its setup, the tags of a page; and labels of lines.
-_FRAME = re.compile(r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>")
+# What frames a program and says nothing: its setup, the tags of a page, a function with no name;
+# and labels of lines.
+_FRAME = re.compile(
+    r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>|(?:\bfunction\s*\(\s*\)|\(\s*\)\s*=>)(?=\s*\{)"
+)
 _ESCAPED = {"¡=": "!=", "&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
 _PARTS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
 _GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
@@ -623,6 +627,7 @@ class _Said:
 
 @lru_cache(2)
 def _of_wrong(text: str, others: frozenset[str], kit: Kit) -> _Said:
+    text = applied(text, note_edits(text))
     return _Said(applied(text, key_edits(text, kit)), others, kit, is_right=False)
 
 

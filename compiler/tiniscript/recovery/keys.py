@@ -25,7 +25,7 @@ _SIDES = {"F": "UP", "B": "DOWN", "L": "LEFT", "R": "RIGHT"}  # what arrows say 
 _PART = re.compile(r"([^;{}|]*)(\|?)")
 _PIECE = re.compile(r"\d[\d.]*|[^\W\d_]+|<>|!=|==|\S")
 _HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # of `upKey`
-_EQUAL = ("=", "==", "_", "-", '"', "'", "<>", "!=", "(")
+_EQUAL = ("=", "==", "_", "-", ".", '"', "'", "<>", "!=", "(")
 _GIVEN = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
 _SET = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
 _LINKS = ("the", "of", "to", "is", "filler", "small", "pressed")
@@ -153,6 +153,9 @@ class _Part:
 
     def _key(self, k: int) -> _Key | None:
         """Return the key that pieces from one on say: its side goes before it or behind it."""
+        if self._word(k).isalpha() and self._word(k + 1) == "." and not _is_key(self._word(k)):
+            key = self._key(k + 2)  # of a thing: `input.buttonIsPressed(Button.A)`
+            return key and key._replace(first=k)
         begun = self._while(k, lambda it: it.isalpha() and _says(it, *_LINKS))
         side = _side(self._word(begun))
         at = (
@@ -162,11 +165,11 @@ class _Part:
         )
         if not _is_key(self._word(at)):
             return None
-        end = self._while(at, lambda it: _is_key(it) or _says(it, "the", "of"))
-        end = self._while(at, _is_key) if self._word(end) in ("A", "B") else end
+        end = self._past_keys(at, "the", "of")
+        end = self._past_keys(at) if self._word(end) in ("A", "B") else end
         signs: list[str] = []
         if not side:
-            behind = self._while(end, lambda it: it in _EQUAL or _says(it, *_LINKS))
+            behind = self._while(end, lambda it: it in _EQUAL or _is_key(it) or _says(it, *_LINKS))
             letters = (n for n in range(end, behind + 1) if self._word(n) in ("A", "B"))
             side = _side(self._word(behind))
             last = behind if side else next(letters, None)
@@ -179,6 +182,8 @@ class _Part:
                 return None
             is_compared = bool({*signs} & {"=", "==", "_"}) and self._word(behind) not in ("", ")")
             end = (last if last is not None else behind if is_compared else end - 1) + 1
+        while self._word(end) == "_" and self._word(end + 1).isalnum():
+            end += 2  # a name is one thing
         closing = self._while(end, lambda it: it in ('"', "'") or _says(it, "is", "the", "pressed"))
         end = closing if self._says_pressed(end, closing) or '"' in signs or "'" in signs else end
         if "(" in signs and self._word(end) == ")":
@@ -206,6 +211,13 @@ class _Part:
     def _while(self, k: int, fits: Callable[[str], bool]) -> int:
         while k < len(self.pieces) and fits(self._word(k)):
             k += 1
+        return k
+
+    def _past_keys(self, k: int, *links: str) -> int:
+        """Pass what says a key, also in one name, `KEY_ARROW`, and words of these kinds."""
+        while _is_key(self._word(k)) or _says(self._word(k), *links):
+            after = self._word(k + 2) if self._word(k + 1) == "_" else ""
+            k += 2 if _is_key(after) or _says(after, *links) else 1
         return k
 
     def _says_pressed(self, start: int, end: int) -> bool:

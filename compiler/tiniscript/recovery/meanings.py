@@ -448,7 +448,7 @@ class Names:
         classes = [each for each in said if each.islower() and not is_own]
         if text not in WORDS:
             classes += [_CLASSES[each] for each in lexicon().get(text, ()) if each in _CLASSES]
-        classes += ["@unit"] if "unit" in said and text not in WORDS else []
+        classes += ["@unit"] if "unit" in said and text not in WORDS and not is_own else []
         classes += ["@cross"] if text == "X" and not is_own else []
         if "unit" not in said and text not in WORDS and not is_own:
             classes += [f"@like_{way}" for way in WAYS if is_slip(text, way)]

@@ -44,7 +44,8 @@ def _nearest(named: str, span: Span, source: Source) -> Span | None:
     assert line_end is not None  # each text has an end
     part = _each_plain(text[begin : line_end.start()])
     words = r"\s*".join(map(re.escape, _each_plain(named).split()))
-    head, tail = (r"(?<!\w)" * named[0].isalnum(), r"(?!\w)" * named[-1].isalnum())
+    head = r"(?<!\w)" if named[0].isdigit() else r"(?<![^\W\d])" * named[0].isalpha()  # V of 2V
+    tail = r"(?!\w)" * named[-1].isalnum()
     matches = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
     places = (Span(begin + match.start(), begin + match.end()) for match in matches)
     return min(places, key=lambda it: _distance(it, span), default=None)

@@ -29,6 +29,7 @@ from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.leftovers import leftovers, setup_and_end_leftovers
+from tiniscript.recovery.notes import noted
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
 from tiniscript.recovery.setup import SEAL, beginning, other_word
@@ -107,6 +108,11 @@ def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
 
 
 # -- readers --------------------------------------------------------------------------------------
+
+
+def _notes(wrong: Wrong) -> Findings:
+    """Return notes that begin with a sign of another language: nothing in them is read (`notes`)."""
+    return _with_edits(noted(wrong.source))
 
 
 def _labels(wrong: Wrong) -> Findings:
@@ -194,7 +200,7 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 # Laws of their own come before what a search finds surely, and what it guesses comes last.
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _labels, _beginning, _keys, _calls, _counters, _frame, _other_beginning, _meant_surely,
+    _notes, _labels, _beginning, _keys, _calls, _counters, _frame, _other_beginning, _meant_surely,
     _leftovers, _words_after, _guessed, _words_of_blocks,
 )  # fmt: skip
 
