@@ -370,7 +370,7 @@ a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => 
     | $v = $e | 1.5 | TS050 | applied
     | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 # calls and their brackets: kind, two, other
-TIME ( n=@num ) e=;|$ | W ( $n ) $e | 1 | TS102 | offered | TIME(3);F(1, 50) => W(3);F(1, 50)
+^ TIME ( n=@num ) $ | W ( $n ) | 1 | TS102 | offered | TIME(2);F(1, 50) => W(2);F(1, 50)
 a=@num b=@val
     | $a * $b | 1.5 | TS048 | offered
     | V = 30⏎F(1, 2V) => V = 30⏎F(1, 2 * V)
