@@ -21,7 +21,9 @@ _WITH_LINES: dict[Code, tuple[str, ...] | None] = {
 _UNKNOWN = (codes.UNKNOWN_WORD, codes.UNTAUGHT)  # one word: of each its first place
 _ONCE = _WITH_LINES | {
     **dict.fromkeys((codes.BRACES, codes.CASES), ()),
-    **dict.fromkeys((codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME)),
+    **dict.fromkeys(
+        (codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME, codes.SWITCH_WHAT)
+    ),
 }
 
 

@@ -18,6 +18,7 @@ from tiniscript.recovery.meanings import lexemes, plain
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.writing import in_one_line, laid_out
 
+_ENDLESS = "LOOP(FOREVER)"
 # Codes whose sentence names what is right.
 _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
@@ -137,6 +138,8 @@ def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
     if code is codes.OTHER_LANGUAGE and is_near:
         code = codes.UNKNOWN_WORD
         values |= {"found": values["found"].upper(), "near": suggestion}
+    elif suggestion == "FOREVER" and _ENDLESS in told.fix:
+        values["right"] = _ENDLESS  # FOREVER alone begins no block
     return code, values
 
 

@@ -25,6 +25,7 @@ from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
 from tiniscript.recovery.findings import meant_in
+from tiniscript.recovery.given_back import given_back
 from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
@@ -140,6 +141,11 @@ def _calls(wrong: Wrong) -> Findings:
     return _with_edits(misplaced_values(wrong.source))
 
 
+def _given_back(wrong: Wrong) -> Findings:
+    """Return what is wrong with DEFs that give a value back (`given_back`)."""
+    return Findings(*given_back(wrong.source))
+
+
 def _counters(wrong: Wrong) -> Findings:
     """Return what is wrong with loops that count, where LOOP counts nothing (`counters`)."""
     return _with_edits(counters(wrong.source))
@@ -200,8 +206,8 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 # Laws of their own come before what a search finds surely, and what it guesses comes last.
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _notes, _labels, _beginning, _keys, _calls, _counters, _frame, _other_beginning, _meant_surely,
-    _leftovers, _words_after, _guessed, _words_of_blocks,
+    _notes, _labels, _given_back, _beginning, _keys, _calls, _counters, _frame, _other_beginning,
+    _meant_surely, _leftovers, _words_after, _guessed, _words_of_blocks,
 )  # fmt: skip
 
 

@@ -71,7 +71,6 @@ _DOTS = re.compile(
 )
 _MANY_BELOW = 6  # instructions that an example takes into a block
 _ENDS = re.compile(rf"\b{words_of('end')}")
-_BREAK = re.compile(r"(?i)\b(IF[ \t]*\([^\n;]*\))[\s;]*(?P<here>BREAK)[\s;]*END_?IF\b")
 _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
 _TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
 _WORD = re.compile(r"\w")
@@ -866,14 +865,6 @@ def _saying_button(gaps: Gaps) -> str:
     return word if word == "S8" or concept_of(word) == "BUTTON" else ""
 
 
-def _skipped(gaps: Gaps) -> str:
-    """An IF that leaves out what follows its BREAK, which no loop is around."""
-    usage = _usage_at(gaps)
-    match = usage.matched(_BREAK)
-    rest = _row(usage.text[match.end() :]) if match else []
-    return ";".join((match[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"])) if match and rest else ""
-
-
 def _part_of_when(gaps: Gaps) -> str:
     """An ELSE in a WHEN."""
     usage = _usage_at(gaps)
@@ -953,6 +944,14 @@ def _called_here(gaps: Gaps) -> str:
     usage = _usage_at(gaps)
     is_call = usage.behind_it.lstrip(" ").startswith("(")
     return usage.source[usage.found.span].upper() if is_call else ""
+
+
+def _lamp_here(gaps: Gaps) -> str:
+    """A word for a lamp with an accent, where the kit has no lamp."""
+    usage = _usage_at(gaps)
+    has_lamp = "LED" in usage.names.actuators
+    word = usage.source[usage.found.span].upper()
+    return word if usage.is_first and not has_lamp and concept_of(plain(word)) == "LED" else ""
 
 
 def _said_first(gaps: Gaps) -> str:
@@ -1047,7 +1046,7 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "twice": lambda gaps: _begun_again(gaps) if _usage_at(gaps).around.begun == "SB" else "",
     "named_endless": lambda gaps: _usage_at(gaps).named("LOOP", _endless(gaps)),
     "instead": _of(lambda it: it.around.begun), "saying_button": _saying_button,
-    "skipped": _skipped, "part": _part_of_when, "two_digits": _two_digits,
+    "part": _part_of_when, "two_digits": _two_digits,
     "sign_means": _of(lambda it: concept_of(it.source[it.found.span])),
     "sign_usage": _of(lambda it: _usage(concept_of(it.source[it.found.span]) or "")),
     "everywhere": _of(lambda it: it.other_name.right if it.other_name.is_everywhere else ""),
@@ -1067,5 +1066,6 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "words_behind": _words_behind, "before": _of(lambda it: it.found.values["before"]),
     "plain_letters": _plain_letters, "letters_mean": _of(lambda it: it.letters[1]),
     "letters_usage": _of(lambda it: it.usage(it.letters[1])), "called_here": _called_here,
+    "lamp_here": _lamp_here,
     "said_first": _said_first, "cased": _cased,
 }  # fmt: skip

@@ -416,7 +416,7 @@ class _Checker(Scope):
 
     def break_(self, node: ast.Break, made: list[Statement]) -> None:
         if not self.loops:
-            self.report(codes.BREAK_OUTSIDE, node.span)
+            self.wrong.break_outside(node)
         made.append(ir.Break(node.span))
 
     def def_(self, node: ast.Def, made: list[Statement]) -> None:

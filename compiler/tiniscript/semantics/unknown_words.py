@@ -10,14 +10,24 @@ import re
 from collections.abc import Set as AbstractSet
 from itertools import chain, takewhile
 
-from tiniscript.base.words import BLOCK_ENDS, WORDS, Word, names, shortened
+from tiniscript.base.words import (
+    BLOCK_ENDS,
+    WORDS,
+    Word,
+    concept_of,
+    names,
+    said_of,
+    shortened,
+)
 from tiniscript.diagnostics import codes
-from tiniscript.semantics.named_values import value_of
+from tiniscript.semantics.named_values import value_of, yes_no_of
 from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.syntax import ast
 from tiniscript.syntax.lexer import WORD, scan
 
 _DIGITS = "0123456789"
+_LAMP = "LED"  # in the kits that have one
+_SWITCHED = {"TRUE": "TRUE", "1": "TRUE", "FALSE": "FALSE", "0": "FALSE"}
 MANY_TIMES = 20  # that a DEF is done by hand in a class
 
 
@@ -30,8 +40,28 @@ def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
         scope.report(codes.CALL_BEFORE_DEF, span, name=word)
     elif word in scope.set_somewhere:
         scope.report(codes.VARIABLE_ALONE, span, name=word)
-    else:
+    elif not _report_lamp(scope, node):
         _report_unknown_word(scope, node)
+
+
+def _report_lamp(scope: Scope, node: ast.Command) -> bool:
+    """Report `LAMP(1)`, `LIGHT(ON)`: what a kit calls its lamp, or that it has none.
+
+    LED is the word of other kits, and a light that is not switched may be a sensor. Return whether
+    that is meant.
+    """
+    word, arguments = node.word, node.arguments or ()
+    given = [scope.source[argument.span].upper() for argument in arguments]
+    answers = [yes_no_of(each) or _SWITCHED.get(each, "") for each in given]
+    is_light = said_of(word, "stem")[:1] == ("LIGHT",) and len(answers) == 1 and bool(answers[0])
+    if word == _LAMP or not (concept_of(word) == _LAMP or is_light):
+        return False
+    said = {"lamp": word}
+    if any(device.name == _LAMP and device.is_yes_no for device in scope.kit.actuators):
+        answer = answers[0] if len(answers) == 1 and answers[0] else "TRUE"
+        said |= {"switch": _LAMP, "fix": f"{_LAMP}({answer})"}
+    scope.report(codes.SWITCH_WHAT, node.word_span, node.span, **said)
+    return True
 
 
 def _report_unknown_word(scope: Scope, node: ast.Command) -> None:

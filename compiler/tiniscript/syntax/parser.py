@@ -242,7 +242,10 @@ class Parser:
         while True:
             name = cursor.inner()
             if name.kind is not WORD:
-                self.reporter.fail(codes.PARAMETER_NEEDS_NAME, name.span, name=of.text)
+                from tiniscript.syntax.unnamed import used_inside  # of a wrong program alone
+
+                inside = used_inside(cursor.source, name) if name.kind is NUMBER else {}
+                self.reporter.fail(codes.PARAMETER_NEEDS_NAME, name.span, name=of.text, **inside)
             cursor.take_inner(WORD)
             if name.text in WORDS:
                 self.reporter.report(codes.RESERVED, name.span, word=name.text)

@@ -49,6 +49,7 @@ TABLE = (
     Row((codes.FROZEN_WHILE, codes.LATE_ARM, codes.EXACT, codes.KNOWN_ANSWER),
         ir.If, conditions.check_if),
     Row((codes.FROZEN_WHILE,), ir.Show, conditions.check_show),
+    Row((codes.ASKED_ONCE,), PROGRAM, conditions.report_asked_once),
     # what comes of a move
     Row((codes.LATE_CHECK, codes.IDLE_STOP), BODY, moves.report_late_conditions),
     Row((codes.UNSEEN_MOTORS,), BODY, moves.report_unseen_motors),
@@ -64,6 +65,7 @@ TABLE = (
     # tasks
     Row((codes.NO_MOTORS,), TASKS, tasks.report_kept_motors),
     Row((codes.TASK_DONE_ONCE, codes.WHEN_GOES_ON), TASKS, tasks.report_brief_tasks),
+    Row((codes.LONE_TASK,), TASKS, tasks.report_lone_task),
 )  # fmt: skip
 
 

@@ -62,6 +62,15 @@ def check_show(show: ir.Show, around: Around, look: Look) -> None:
         _Conditions(look).report_frozen_show(show, around.outermost)
 
 
+def report_asked_once(look: Look) -> None:
+    """A program that reads no remote control loads nothing for it."""
+    remote = {*range(len(look.kit.sensors), len(look.kit.readings))}
+    if remote & ir.named("SENSOR", look.statements):
+        from tiniscript.semantics.lint import once
+
+        once.report_asked_once(look, remote)
+
+
 class _Conditions:
     def __init__(self, look: Look) -> None:
         self._look = look

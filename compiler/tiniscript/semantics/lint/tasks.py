@@ -1,4 +1,4 @@
-"""Warns of tasks: of two that drive at once, and of one that is over where another was meant.
+"""Warns of tasks: of two that drive at once, of one alone, and of one that is over too soon.
 
 The lower of two waits, or never gets the motors; that is not said where a task lets the motors go
 now and then, as far as that can be seen. `TASK;BEEP(0.2, 440);W(1);END_TASK` waits before nothing,
@@ -133,6 +133,27 @@ def _done_once(task: ir.Task, source: Source) -> Diagnostic:
     edits = (Edit(Span(after, after), f"{between}LOOP(FOREVER)"),
              Edit(Span(before, before), f"END_LOOP{between}"))  # fmt: skip
     return Diagnostic(codes.TASK_DONE_ONCE, task.word, {}, None, Repair(edits, False))
+
+
+def report_lone_task(look: Look) -> None:
+    """`TASK;F(5, 50);BEEP(5, 440);END_TASK` alone: in it one comes after the other."""
+    program = look.program
+    is_idle = all(isinstance(each, (ir.Read, ir.Assign)) for each in program.body)
+    (task, *others) = program.tasks
+    if others or task.look is not None or not task.body or not is_idle:
+        return
+    text = look.source[task.span]
+    both = [each for each in task.body if not isinstance(each, ir.Read)]
+    beside = sorted(both, key=_drives)
+    if [*map(_drives, beside)] != [False, True] or not isinstance(beside[0], ir.Beep):
+        look.report(codes.LONE_TASK, task.word)
+        return
+    parts = ["TASK", look.source[beside[0].span], "END_TASK", look.source[beside[1].span]]
+    edit = Edit(task.span, ("\n" if "\n" in text else ";").join(parts))
+    repair = None if "//" in text or not isinstance(beside[1], ir.Move) else Repair((edit,), False)
+    values = {"fix": ";".join(parts)} if repair else {}
+    place = task.span if repair else None
+    look.found.append(Diagnostic(codes.LONE_TASK, task.word, values, place, repair))
 
 
 def _goes_on(task: ir.Task, driving: ir.Statement, look: Look) -> None:
