@@ -23,6 +23,7 @@ The laws, from which no row and no reader is exempt, and where each is kept:
   wrong at several places is told once (`dedupe`).
 - A mistake points at what its message names (`pointing`), and a sign that nobody sees has a name
   (`invisible`).
+- What the comment sign of another language begins is a note, and nothing in it is read (`notes`).
 - A question in brackets that a word has not is asked before it, and a value there is named
   (`bracketed`).
 """

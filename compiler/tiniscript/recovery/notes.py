@@ -18,7 +18,7 @@ from tiniscript.recovery.meanings import plain
 from tiniscript.recovery.writing import without_note
 
 _SIGN = re.compile(
-    r"(?i)(?:^|(?<=[\s;{}|]))(?P<sign>#+|--+>?|<!--+|/\*+|REM\b)(?P<space>[ \t]*)(?=[^\W\d]|[¡¿\"'])"
+    r"(?i)(?:^|(?<=[\s;{}|]))(?P<sign>#+|--+>?|<!--+|/\*+|REM\b)[ \t]*(?=[^\W\d]|[¡¿\"'])"
 )
 _END = re.compile(r"[ \t]*(?:\*+/|--+>)\s*$")
 _OPEN = re.compile(r"[=<>*+\-,(][ \t]*$")  # a value has begun, and goes on
@@ -49,9 +49,11 @@ def _notes(text: str) -> Iterator[tuple[Span, str, tuple[Edit, ...]]]:
         if sign is not None:
             end = _END.search(line, sign.end())
             begin = Edit(Span(start + sign.start(), start + sign.end()), "// ")
-            edits = (begin, Edit(Span(start + end.start(), start + end.end()), "")) if end else (begin,)
+            edits = (
+                (begin, Edit(Span(start + end.start(), start + end.end()), "")) if end else (begin,)
+            )
             right = line[: sign.start()] + "// " + line[sign.end() : end.start() if end else None]
-            yield Span(start + sign.start(), start + sign.end("sign")), right.strip(), edits
+            yield Span(start + sign.start(), start + sign.end("sign")), right.strip(), tuple(edits)
         start += len(line) + 1
 
 

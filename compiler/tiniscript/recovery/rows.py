@@ -270,7 +270,8 @@ l=@val is? between a=@num and b=@num
 # a side of the stick, which is a number: kind
 ⟨PAD_X¦PAD_X¦PAD_Y¦PAD_Y⟩ is|=|== ⟨L|left¦R|right¦F|up¦B|down⟩
     | ⟨PAD_X <¦PAD_X >¦PAD_Y >¦PAD_Y <⟩ 0 | 1 | TS010 | first offered
-    | IF(⟨PAD_X = LEFT¦PAD_X = DERECHA¦PAD_Y = UP¦PAD_Y = ABAJO⟩);S;ENDIF => IF(⟨PAD_X <¦PAD_X >¦PAD_Y >¦PAD_Y <⟩ 0);S;ENDIF
+    | IF(⟨PAD_X = LEFT¦PAD_X = DERECHA¦PAD_Y = UP¦PAD_Y = ABAJO⟩);S;ENDIF =>
+    IF(⟨PAD_X <¦PAD_X >¦PAD_Y >¦PAD_Y <⟩ 0);S;ENDIF
 # questions and sums: kind, branch
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val
     | $a $s $b AND $b $t $c | 1 | TS037 | applied
@@ -379,7 +380,8 @@ f=MAX|MIN ( a=@noparen+ , b=@noparen+ , c=@noparen+ )
     | X = MAX(LIGHT_L, LIGHT_R, 200)⏎F(1, X) => X = MAX(MAX(LIGHT_L, LIGHT_R), 200)⏎F(1, X)
 o==|(|, f=⟨ABS a=@num|@val¦MAX|MIN|ROUND|RANDOM a=@num|@val , b=@num|@val⟩ e=;|$
     | $o $f ( $a ⟨¦, $b⟩ ) $e | 1 | TS015 | offered
-    | X = ⟨ABS DISTANCE¦ROUND DISTANCE, 1⟩⏎F(X, 50) => X = ⟨ABS(DISTANCE)¦ROUND(DISTANCE, 1)⟩⏎F(X, 50)
+    | X = ⟨ABS DISTANCE¦ROUND DISTANCE, 1⟩⏎F(X, 50) =>
+    X = ⟨ABS(DISTANCE)¦ROUND(DISTANCE, 1)⟩⏎F(X, 50)
 x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
 x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
 RANDOM ( between|from? a=@num to|and|until|- b=@num )

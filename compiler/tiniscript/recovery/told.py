@@ -112,7 +112,7 @@ def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
 
 
 def _notes(wrong: Wrong) -> Findings:
-    """Return notes that begin with a sign of another language: nothing in them is read (`notes`)."""
+    """Return notes that begin with another sign: nothing in them is read (`notes`)."""
     return _with_edits(noted(wrong.source))
 
 
