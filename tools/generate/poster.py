@@ -153,7 +153,9 @@ def page(language: str) -> Page:
         for number, (code, says) in enumerate(rows):
             key = f"block/{code.partition('(')[0]} in languages/{language}/studio.toml"
             assert len(code) <= CODE_SIGNS, f"too long for the poster: {code}"
-            assert len(says) <= SAYS_SIGNS, f"too long for the poster: {code} {says}; {key} is shorter"
+            assert len(says) <= SAYS_SIGNS, (
+                f"too long for the poster: {code} {says}; {key} is shorter"
+            )
             assert says, f"the poster has nothing to say of {code}: {key}"
             shown += re.findall(r"[A-Z_]+", re.sub(r"\(.*?\)", "", code.replace(",", "")))
             shown += re.findall(r"\b(?:UNTIL|FOREVER|CM|DEG)\b", code)
