@@ -50,7 +50,7 @@ uint32_t machine_ms() { return now_ms - held_ms; }
 void begin_breakpoints(const uint8_t* image, uint16_t length) {
   held_ms = 0;
   goes_on = false;
-  if (breakpoints.has_places()) link.seal();
+  if (breakpoints.has_places()) link.write_checksum();
   if (breakpoints.has_places() && get32(image + kChecksumAt) != places_program) {
     breakpoints.forget_places();
   }
@@ -91,7 +91,7 @@ Status tick_machine() { return machine.tick(now_ms, kTickBudget); }
 
 // Records a fault.
 void fault(uint8_t number, uint16_t at) {
-  link.seal();  // the record contains the checksum of its image
+  link.write_checksum();  // the record contains the checksum of its image
   robot_status.fault = number;
   robot_status.fault_at = at;
   robot_status.fault_program = get32(run_image + kChecksumAt);
@@ -250,7 +250,7 @@ uint16_t port_run_at() { return machine.at(); }
 #ifdef tiniscript_has_breakpoints
 Answer port_set_breakpoints(const uint8_t* places, uint8_t count) {
   if (!is_running() && (!has_booted() || !load_program())) return not_now();
-  link.seal();
+  link.write_checksum();
   const uint8_t* const image = is_running() ? run_image : program;
   const uint16_t length = get16(image + kCodeLengthAt);
   if (!breakpoints.set(code_of(image), length, places, count)) return Answer::kBadValue;

@@ -33,8 +33,6 @@ const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80,
 constexpr uint8_t kChatter = 3;  // so many of them
 constexpr uint8_t kAsking = 5;
 
-bool is_latched() { return port_status().state >= State::kStopped; }
-
 }  // namespace
 
 void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {

@@ -63,7 +63,7 @@ void Link::faulted() {
 
 #ifdef tiniscript_has_breakpoints
 void Link::halted() {
-  attends_ = true;
+  owns_halt_ = true;
   due_ |= kDueHalted;
   left_ms_[kHaltedAgain] = kHaltedAgainMs;
 }
