@@ -24,11 +24,11 @@ from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
-from tiniscript.recovery.findings import meant_in
 from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.leftovers import leftovers, setup_and_end_leftovers
+from tiniscript.recovery.meant import meant_in
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
 from tiniscript.recovery.setup import SEAL, beginning, other_word
@@ -159,7 +159,7 @@ def _other_beginning(wrong: Wrong) -> Findings:
 
 
 def _meant_surely(wrong: Wrong) -> Findings:
-    """Return what is wrong with a text that is read wholly and surely (`search`, `findings`)."""
+    """Return what is wrong with a text that is read wholly and surely (`search`, `meant`)."""
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])
@@ -175,7 +175,7 @@ def _words_after(wrong: Wrong) -> Findings:
 
 
 def _guessed(wrong: Wrong) -> Findings:
-    """Return what is wrong with the lines that are read, if not surely (`search`, `findings`)."""
+    """Return what is wrong with the lines that are read, if not surely (`search`, `meant`)."""
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])
