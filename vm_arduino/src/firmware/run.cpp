@@ -26,9 +26,7 @@ Flag<Bit::kMayStart>
     may_start;  // the button is down and nothing ran or was stopped since: its release starts
 Flag<Bit::kStartDue> is_start_due;  // the button was released, but the program was not available
 bool has_motors_on;
-#ifdef tiniscript_reads_keys
-bool reads_keys;  // the program that runs has read some
-#endif
+bool reads_keys;  // the program that runs has read some, where kReadsKeys
 Flag<Bit::kPrepared> is_prepared;  // machine and board are reset for a program
 
 #ifdef tiniscript_has_breakpoints
@@ -144,9 +142,7 @@ void begin_run(const uint8_t* image) {
   is_start_due = false;
   may_start = false;
   link.let_go();
-#ifdef tiniscript_reads_keys
-  reads_keys = false;
-#endif
+  if (kReadsKeys) reads_keys = false;
   guide_begin();
   robot_status.state = State::kRunning;
   robot_status.run++;
@@ -308,14 +304,10 @@ bool firmware_runs(Place* place) {
 
 // -- what a program asks ------------------------------------------------------------------------
 
-#ifdef tiniscript_reads_keys
-bool port_reads_keys() { return reads_keys && is_running(); }
-#endif
+bool port_reads_keys() { return kReadsKeys && reads_keys && is_running(); }
 
 int32_t remote_reading(uint8_t number) {
-#ifdef tiniscript_reads_keys
-  reads_keys = true;
-#endif
+  if (kReadsKeys) reads_keys = true;
   const RemoteKeys* const remote_keys = link.remote();
   if (remote_keys == nullptr) return 0;
   if (number < kRemoteKeys) {

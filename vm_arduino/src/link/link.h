@@ -165,6 +165,11 @@ class Link {
 
   bool has_open_text() const { return console_.is_open(); }
   void drop_text() { console_.drop(); }
+#else
+  // What the firmware asks of `Links`, where it has several.
+  static void expire_others() {}
+  static constexpr bool is_driving() { return true; }
+  static constexpr bool take_text_memory() { return true; }
 #endif
 
  private:
