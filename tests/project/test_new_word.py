@@ -233,7 +233,7 @@ from tiniscript.robots.text_levels import LEVELS
 from tiniscript.studio import block_kinds
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
-from tools.generate import poster, text_tables
+from tools.generate import documents, poster, text_tables
 form = read("SI|LAMP(50)", robots.load("tinibot").kit)
 lines = [line.text for line in poster.page("es") if isinstance(line, poster.Line)]
 print(json.dumps({
@@ -241,6 +241,7 @@ print(json.dumps({
     "tables": text_tables.words_tables("a test"),
     "block": [form.body[0].kind, print_blocks(form).text, block_kinds.SAYS[LAMP.text]],
     "says": lines[lines.index(LAMP.example) + 1],
+    "reference": documents.language_document("docs/es/language.md", "es"),
 }))
 """
 
@@ -248,7 +249,7 @@ print(json.dumps({
 def test_what_needs_no_more_than_the_table_has_a_word_with_a_role_of_its_own(
     tmp_path: Path,
 ) -> None:
-    """No robot's reader knows it; it has a block, and a place on the poster."""
+    """No robot's reader knows it; it has a block, and a place on the poster and in references."""
     ran = subprocess.run(
         [sys.executable, "-c", OWN_ROLE, str(tmp_path / "said")],
         cwd=ROOT,
@@ -262,6 +263,7 @@ def test_what_needs_no_more_than_the_table_has_a_word_with_a_role_of_its_own(
     assert "// LAMP" in packed and "// LAMP" not in rows
     assert found["block"] == ["plain_1", "SI|LAMP(50)\n", "{LAMP} LAMP"]
     assert found["says"] == SAID["es"]
+    assert f"\n- Otras instrucciones: `LAMP(POWER)` {SAID['es']}\n" in found["reference"]
 
 
 @pytest.mark.parametrize(("language", "says"), SAID.items())

@@ -102,7 +102,7 @@ def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]
         for word in WORDS.values():
             first = word.stands_for.partition("(")[0].rpartition(";")[2]  # the first call
             if first and f"{{{first}}}" in code:
-                yield word.example, _as_block(word, language) or f"= {word.stands_for}"
+                yield word.example, as_block(word, language) or f"= {word.stands_for}"
 
 
 def _others(language: str) -> Iterator[tuple[str, str]]:
@@ -110,10 +110,10 @@ def _others(language: str) -> Iterator[tuple[str, str]]:
     shown = {word for _, rows in GROUPS for row in rows for word in re.findall(r"[A-Z_]+", row)}
     for word in WORDS.values():
         if word.role.is_instruction and not word.stands_for and word.text not in shown:
-            yield word.example, _as_block(word, language)
+            yield word.example, as_block(word, language)
 
 
-def _as_block(word: Word, language: str) -> str:
+def as_block(word: Word, language: str) -> str:
     """Return what the block of a word says beside the word, or nothing."""
     return (translated("studio", f"block/{word.text}", language) or "").partition("} ")[2]
 
