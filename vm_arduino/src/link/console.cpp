@@ -260,7 +260,7 @@ bool Console::has_room() {
   uint16_t room;
   if (!text_may_drive()) {
     refused_ = Remark::kNotOwner;
-  } else if (!reader_.has_setup() && is_latched()) {
+  } else if (!reader_.has_setup() && port_is_latched()) {
     refused_ = Remark::kLatched;
   } else {
     refused_ = Remark::kSaving;

@@ -331,7 +331,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
         found = Answer::kBadValue;
       } else if ((found = lacks_program()) != Answer::kOk) {
         break;
-      } else if (is_latched()) {
+      } else if (port_is_latched()) {
         found = Answer::kLatched;
       } else if ((found = port_prepare_upload(true)) == Answer::kOk) {
         image_ = nullptr;

@@ -17,7 +17,7 @@ constexpr uint16_t kIsa = kIsaMajor << 8 | kIsaMinor;
 constexpr uint8_t kFirstAt = kIsaMajorAt;  // first header byte that BEGIN carries
 constexpr uint8_t kLiveByte = static_cast<uint8_t>(Message::kLive);
 
-bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !is_latched(); }
+bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !port_is_latched(); }
 
 }  // namespace
 
@@ -41,7 +41,7 @@ tini_noinline void Link::make_ahead() {
 // Runs the image that was made ahead. False: this frame does not allow it.
 bool Link::go_live() {
   const uint8_t* const bytes = receiver_->bytes();
-  if (!check_.is_whole() || !is_next(bytes[kSeqAt], bytes[kEpochAt]) || is_latched() ||
+  if (!check_.is_whole() || !is_next(bytes[kSeqAt], bytes[kEpochAt]) || port_is_latched() ||
       port_may_drive(kLiveByte) != Answer::kOk || port_prepare_upload(true) != Answer::kOk) {
     return false;
   }

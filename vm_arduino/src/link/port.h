@@ -167,7 +167,7 @@ void port_stop(uint8_t fault);
 void port_release();
 
 // Whether a stop keeps the robot from starting, until port_release.
-inline bool is_latched() { return port_status().state >= State::kStopped; }
+inline bool port_is_latched() { return port_status().state >= State::kStopped; }
 
 // What runs: where it is, the byte of its code with which the instruction begins that runs or
 // waits, and its image. Only while something runs.
