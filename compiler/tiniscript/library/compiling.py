@@ -32,8 +32,8 @@ class Compiled(NamedTuple):
     """What became of a text. Where a diagnostic is a mistake, `image` is empty.
 
     `program` is the checked program, as written, and `lowered` what the code was made of; `places`
-    says where in the text each
-    instruction comes from, `yes_no` which of its variables are a yes/no.
+    says where in the text each instruction comes from, `yes_no` which of its variables are a
+    yes/no.
     """
 
     source: Source
