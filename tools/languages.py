@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -203,6 +203,16 @@ def _heading(language: str) -> str:
     return heading(*itself(language))
 
 
+def missing(entries: Iterable[Entry]) -> Iterator[tuple[int, str]]:
+    """Yield what has no translation, with the line of the one before, after which it goes."""
+    line = 1
+    for entry in entries:
+        if entry.said:
+            line = entry.line
+        else:
+            yield line, f"{entry.key} is missing: {entry.english}"
+
+
 def report(own: Translation) -> int:
     """Say what is wrong with a language, and how much of it is there; return what must not be."""
     wrong = sum(tell(path, problems) for path, problems in own.problems())
@@ -223,10 +233,7 @@ def report(own: Translation) -> int:
             path, [(stale.line, f"{stale.key}: {was}: {stale.english}") for stale in stales]
         )
         if own.language.is_complete:
-            empty = [entry for entry in there if not entry.said]
-            lacks += tell(
-                path, [(1, f"{entry.key} is missing: {entry.english}") for entry in empty]
-            )
+            lacks += tell(path, [*missing(there)])
     new = [entry for entry in entries if entry.seen == UNKNOWN]
     if new:
         print(f"{own.code}: {len(new)} texts are new. Note of which English texts they are:  "

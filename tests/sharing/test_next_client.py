@@ -68,8 +68,8 @@ class SteppedLine:
     def stop(self) -> None:
         self.session.stop(self.robot_itself.now_ms)
 
-    def halt(self, run: int) -> None:
-        self.session.halt(run, self.robot_itself.now_ms)
+    def end_run(self, run: int) -> None:
+        self.session.end_run(run, self.robot_itself.now_ms)
 
     def withdraw(self, request: PendingRequest[Any]) -> None:
         self.session.withdraw(request)

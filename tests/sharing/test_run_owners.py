@@ -62,7 +62,7 @@ class FakeLine:
         self.stops += 1
         return 0
 
-    def halt(self, run: int) -> None:
+    def end_run(self, run: int) -> None:
         self.halted.append(run)
 
     def withdraw(self, request: PendingRequest[Any]) -> None:

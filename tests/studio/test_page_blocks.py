@@ -25,7 +25,7 @@ from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.studio.block_form import data_of, kinds_in
-from tiniscript.studio.block_kinds import FIXED, KINDS
+from tiniscript.studio.block_kinds import KINDS, PLAIN
 from tiniscript.studio.block_reading import read
 from tools.builds.page_texts import page_texts
 from tools.builds.studio import BLOCKLY, stale
@@ -546,7 +546,7 @@ def offered(page: Page) -> set[str]:
 
 def test_every_word_that_has_a_block_can_be_dragged_out(page: Page) -> None:
     """And to begin with, those of several things at once. A grey block is what nobody can read."""
-    kinds = set(KINDS) - {"grey"} - ({"fixed"} if not FIXED else set())
+    kinds = set(KINDS) - {"grey"} - ({"plain"} if not PLAIN else set())
     with_names = "SI|SPEED = 5;\nDEF HOP;\n  F(1, SPEED);\nEND_DEF;\nHOP;\n"
     page.select_option("#robot", "grabber")
     start(page, with_names, "all")

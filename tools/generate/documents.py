@@ -17,6 +17,7 @@ from tiniscript.base.words import WORDS
 from tiniscript.lessons.lesson import AREA, KINDS, WHATS, Kind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools import ROOT, measures
+from tools.generate.poster import as_block
 from tools.site.documents import LIST, documents, sources
 
 PACKAGE = ROOT / "compiler" / "tiniscript"
@@ -91,14 +92,24 @@ def bring_up_document(document: str, language: str) -> str:
 
 
 def language_document(document: str, language: str) -> str:
-    """Return a reference of the language, whose list of words has those with fixed values."""
-    words = [
-        f"`{word.usage.upper()}` = `{word.stands_for}`"
-        for word in WORDS.values()
-        if word.stands_for
-    ]
-    row = f"- {text('documents', 'language/fixed', language)}: {' '.join(words)}\n"
-    return spliced(_text(document), "fixed", row if words else "")
+    """Return a reference of the language, whose list of words is whole.
+
+    It has those with fixed values, and the instructions that no row by hand has.
+    """
+    whole = _text(document)
+    by_hand = set(re.findall(r"`([A-Z_]+)`", whole.partition("<!-- begin generated: fixed")[0]))
+    words = [word for word in WORDS.values() if word.role.is_instruction]
+    rows = {
+        "fixed": [f"`{it.usage.upper()}` = `{it.stands_for}`" for it in words if it.stands_for],
+        "others": [
+            f"`{it.usage.upper()}` {as_block(it, language)}".rstrip()
+            for it in words
+            if not it.stands_for and it.text not in by_hand
+        ],
+    }
+    said = {key: text("documents", f"language/{key}", language) for key in rows}
+    lines = (f"- {said[key]}: {' '.join(found)}\n" for key, found in rows.items() if found)
+    return spliced(whole, "fixed", "".join(lines))
 
 
 def list_of_documents(command: str) -> str:

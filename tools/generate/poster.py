@@ -1,7 +1,8 @@
 """The poster of the language: every word of `words.py` on one page, in each language that has its title.
 
-Knows the layout; what is said of each word, the catalogue. A word of the table that has no row here,
-or two, is an error: the poster is whole or not made.
+Knows the layout; what is said of each word, the catalogue. An instruction that has no row here comes
+among those of OTHERS, as its block says it; another word without a row is an error: the poster is
+whole or not made.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from functools import partial
 
 from tiniscript.base.languages import found as translated
 from tiniscript.base.languages import text, told_in
-from tiniscript.base.words import WORDS
+from tiniscript.base.words import WORDS, Word
 from tools.generate import paper
 from tools.generate.paper import BOLD, MONO, SANS, Box, Line, Page
 
@@ -83,6 +84,7 @@ GROUPS = (
     )),
 )
 # fmt: on
+OTHERS = "Tell"  # the heading of instructions that have no row above
 
 
 def _said(key: str, language: str) -> str:
@@ -100,8 +102,20 @@ def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]
         for word in WORDS.values():
             first = word.stands_for.partition("(")[0].rpartition(";")[2]  # the first call
             if first and f"{{{first}}}" in code:
-                says = translated("studio", f"block/{word.text}", language)
-                yield word.example, says.partition("} ")[2] if says else f"= {word.stands_for}"
+                yield word.example, as_block(word, language) or f"= {word.stands_for}"
+
+
+def _others(language: str) -> Iterator[tuple[str, str]]:
+    """Yield the instructions that no row of GROUPS has, and what is said of them."""
+    shown = {word for _, rows in GROUPS for row in rows for word in re.findall(r"[A-Z_]+", row)}
+    for word in WORDS.values():
+        if word.role.is_instruction and not word.stands_for and word.text not in shown:
+            yield word.example, as_block(word, language)
+
+
+def as_block(word: Word, language: str) -> str:
+    """Return what the block of a word says beside the word, or nothing."""
+    return (translated("studio", f"block/{word.text}", language) or "").partition("} ")[2]
 
 
 def posters(command: str) -> dict[str, Callable[[], str]]:
@@ -129,6 +143,7 @@ def page(language: str) -> Page:
     y = 74.0
     shown: list[str] = []
     groups = [(heading, list(_with_fixed(rows, language))) for heading, rows in GROUPS]
+    next(rows for heading, rows in groups if heading == OTHERS).extend(_others(language))
     room = paper.HEIGHT - 26 - y - (HEAD_PT + 2) * len(groups)
     row_pt = min(ROW_PT, room / sum(len(rows) for _, rows in groups))
     assert row_pt >= LEAST_ROW_PT, f"the page has room for {room / LEAST_ROW_PT:.0f} rows"
@@ -136,7 +151,12 @@ def page(language: str) -> Page:
         found.append(Line(LEFT, y + 15, 12, BOLD, BLUE, _said(heading, language)))
         y += HEAD_PT
         for number, (code, says) in enumerate(rows):
-            assert len(code) <= CODE_SIGNS and len(says) <= SAYS_SIGNS, (code, says)
+            key = f"block/{code.partition('(')[0]} in languages/{language}/studio.toml"
+            assert len(code) <= CODE_SIGNS, f"too long for the poster: {code}"
+            assert len(says) <= SAYS_SIGNS, (
+                f"too long for the poster: {code} {says}; {key} is shorter"
+            )
+            assert says, f"the poster has nothing to say of {code}: {key}"
             shown += re.findall(r"[A-Z_]+", re.sub(r"\(.*?\)", "", code.replace(",", "")))
             shown += re.findall(r"\b(?:UNTIL|FOREVER|CM|DEG)\b", code)
             if number % 2 == 0:

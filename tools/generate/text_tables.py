@@ -45,9 +45,9 @@ def role_of(word: Word) -> str:
     role = roles.get(word.role.name, word.role.name)
     if role not in ROLES:
         raise LookupError(
-            f"{word.text} has a role of its own, {role}. A robot's reader of text needs it: a name "
-            "in ROLES of tools/generate/text_tables.py, and what it does in vm_arduino/src/text/; "
-            "or it reads it not: `lacks` of all LEVELS in robots/text_levels.py"
+            f"a robot's reader of text is to know {word.text} (READ in robots/text_levels.py): "
+            f"its role, {role}, needs a name in ROLES of tools/generate/text_tables.py, and what "
+            "it does in vm_arduino/src/text/"
         )
     return role
 

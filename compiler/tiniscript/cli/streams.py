@@ -14,7 +14,6 @@ from __future__ import annotations
 import codecs
 import os
 import re
-import select
 import stat
 import sys
 from time import monotonic
@@ -115,6 +114,8 @@ def refuse_unread() -> None:
         return
     if not (stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode)):
         return
+    import select  # asked only where nothing may be written for long
+
     end = select.poll()
     end.register(number, 0)
     if end.poll(0):
@@ -125,6 +126,8 @@ def _is_written(stream: TextIO, pipe: int) -> bool:
     """Write what waits for a pipe; return whether all was taken in time."""
     if sys.platform == "win32":
         return False
+    import select  # of an interrupted command
+
     end_s = monotonic() + UNREAD_S
     os.set_blocking(pipe, False)
     try:

@@ -24,7 +24,6 @@ from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
 from tiniscript.semantics.lint import lint
 from tiniscript.semantics.optimizer import optimized
-from tiniscript.syntax.later_words import given_way, in_program
 from tiniscript.syntax.parser import parse
 
 
@@ -32,8 +31,8 @@ class Compiled(NamedTuple):
     """What became of a text. Where a diagnostic is a mistake, `image` is empty.
 
     `program` is the checked program, as written, and `lowered` what the code was made of; `places`
-    says where in the text each
-    instruction comes from, `yes_no` which of its variables are a yes/no.
+    says where in the text each instruction comes from, `yes_no` which of its variables are a
+    yes/no.
     """
 
     source: Source
@@ -81,6 +80,8 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     if not any(diagnostic.is_mistake for diagnostic in diagnostics):
         diagnostics += lint(checked.program, kit, source, parsed.scan)
         if kit.given:
+            from tiniscript.syntax.later_words import given_way
+
             diagnostics += given_way(parsed.scan.tokens, kit, source)
     return Compiled(source, codes.in_order(diagnostics), checked.program)
 
@@ -90,6 +91,8 @@ def _kit_in(text: str, kit: Kit) -> Kit:
     written = text.upper()
     if not any(word in written for word in KIT_WORDS_SINCE):
         return kit
+    from tiniscript.syntax.later_words import in_program
+
     return in_program(text, kit)
 
 

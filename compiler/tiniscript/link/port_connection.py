@@ -112,10 +112,10 @@ class PortConnection(LinkConnection):
         self._wake()
         return began_ms
 
-    def halt(self, run: int) -> None:
+    def end_run(self, run: int) -> None:
         """End a run whose client has gone; what others have asked for goes on."""
         with self._news:
-            self.session.halt(run, self._now_ms())
+            self.session.end_run(run, self._now_ms())
         self._wake()
 
     def withdraw(self, request: PendingRequest[Any]) -> None:

@@ -219,7 +219,7 @@ class Session(Requester):
         self._cancel(CANCELLED)
         self._stop.begin(now_ms)
 
-    def halt(self, run: int, now_ms: int) -> None:
+    def end_run(self, run: int, now_ms: int) -> None:
         """End a run whose client has gone. What others have asked for goes on."""
         self._orphan = run
         self._end_orphan(now_ms)

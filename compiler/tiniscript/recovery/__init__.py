@@ -1,9 +1,10 @@
 """Reads what was meant by a wrong program. People are told of one that it reads wholly and surely.
 
-Six steps, a module each: meanings of words (`meanings`, with a lexicon for each language),
+Seven steps, a module each: meanings of words (`meanings`, with a lexicon for each language),
 rewrites (`rewrites`, with the table `rows`), slots, blocks, candidates (`search`, of whose lines
 `lines` finds the readings), explanations (`slips` says what is wrong with one instruction,
-`explanation` what with a text). `told` asks these and all other readers in their order.
+`explanation` what with a text), diagnostics (`meant`). `told` asks these and all other readers in
+their order.
 
 The laws, from which no row and no reader is exempt, and where each is kept:
 

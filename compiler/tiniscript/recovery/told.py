@@ -24,12 +24,12 @@ from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
-from tiniscript.recovery.findings import meant_in
 from tiniscript.recovery.given_back import given_back
 from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.leftovers import leftovers, setup_and_end_leftovers
+from tiniscript.recovery.meant import meant_in
 from tiniscript.recovery.notes import noted
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
@@ -171,7 +171,7 @@ def _other_beginning(wrong: Wrong) -> Findings:
 
 
 def _meant_surely(wrong: Wrong) -> Findings:
-    """Return what is wrong with a text that is read wholly and surely (`search`, `findings`)."""
+    """Return what is wrong with a text that is read wholly and surely (`search`, `meant`)."""
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])
@@ -187,7 +187,7 @@ def _words_after(wrong: Wrong) -> Findings:
 
 
 def _guessed(wrong: Wrong) -> Findings:
-    """Return what is wrong with the lines that are read, if not surely (`search`, `findings`)."""
+    """Return what is wrong with the lines that are read, if not surely (`search`, `meant`)."""
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])

@@ -11,7 +11,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import LINE_END, Source, Span
 from tiniscript.base.words import WORDS
 from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
-from tiniscript.studio.block_kinds import KINDS, fixed_kind
+from tiniscript.studio.block_kinds import KINDS, kind_of
 from tiniscript.syntax.ast import (
     Argument,
     Assign,
@@ -170,7 +170,7 @@ class _Reader:
         known = WORDS.get(node.word)
         arguments = node.arguments or ()
         if known is not None:
-            kind = fixed_kind(len(known.arguments)) if known.stands_for else known.role.name
+            kind = kind_of(known)
         elif node.arguments is not None:
             kind = "call" if node.word in self._defs else "set"
         else:

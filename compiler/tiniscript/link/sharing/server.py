@@ -303,7 +303,7 @@ class Server:
         if not self._line.runs(run):
             return
         if client is None:
-            self._line.halt(run)
+            self._line.end_run(run)
         else:
             self._owner = client, run
 
@@ -353,7 +353,7 @@ class Server:
     def _end_run(self) -> None:
         """End the run of a client that has left."""
         if self._owner is not None:
-            self._line.halt(self._owner[1])
+            self._line.end_run(self._owner[1])
         self._owner = None
 
     def _drop(self, client: ConnectedClient) -> None:
