@@ -21,7 +21,7 @@ from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.shared_connection import DEAF_S, SharedConnection
 
 LONG_S = 20 * DEAF_S
-ANSWER = {"id": 1, "status": OK, "detail": 0, "heard": 9, "is_echoed": False, "boot": 0,
+ANSWER = {"id": 1, "status": OK, "detail": 0, "heard": 9, "came": "", "is_echoed": False, "boot": 0,
           "values": {}}  # fmt: skip
 SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.of_event(ShownEvent(5, 0))}
 
