@@ -20,6 +20,7 @@ from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.requests import Reply
+from tiniscript.studio.page_line import PageKeys, PageRobot
 from tiniscript.studio.robot_link import RobotLink
 
 BAUDS = (9600, 19200, 38400, 57600, 115200)
@@ -220,6 +221,18 @@ def test_a_connection_says_what_answers_instead_of_a_robot(recording: Recording)
         answer = RobotLink(line, language)._failure(Reply(LOST))
         assert answer["failure"] == FOREIGN
         assert word + recording.said[:20] in answer["said"] and answer["advice"]
+
+
+@pytest.mark.parametrize("name", ["snek", "brownout", "mbot"])
+def test_the_page_says_what_its_port_has_heard(name: str) -> None:
+    recording = RECORDINGS[name]
+    page = PageRobot("tinibot", "es", PageKeys(b""))
+    page.go(recording.data, 5, [{"do": "hello", "id": 1, "limit_ms": 300}])
+    news = [each for now_ms in range(5, 900, 20) for each in page.go(b"", now_ms, [])["news"]]
+    (answer,) = news
+    assert answer["failure"] == FOREIGN
+    assert answer["said"].startswith(foreign.sentence(recording.name, "es").said)
+    assert recording.said in answer["said"]
 
 
 @pytest.mark.parametrize(

@@ -179,9 +179,7 @@ class _Others:
             return None
         finding = Finding(found.name, found.is_sure, {"said": found.said})
         if found.is_sure:
-            rows = [kept for kept in self._kept if kept.cause != found.name]
-            # what is surely some text may be that of a board that is probably known
-            return rows[0] if rows and found.name in foreign.GENERAL else finding
+            return finding
         self._kept.append(finding)
         return None
 
