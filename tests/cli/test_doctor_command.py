@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support import foreign_boards as boards
 from tests.support.command import FOREVER, Command, Tsc, inside, process
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on, uploading
@@ -136,6 +137,49 @@ def test_what_is_no_robot_and_what_others_have_written(tsc: Tsc) -> None:
     assert done.code == 0
     assert "\x1b" not in done.out, "it cannot move the cursor"
     assert len(done.out.split("\n\n")[0].splitlines()) == 4
+
+
+SEVEN = [
+    (boards.FirmataBoard(57_600), "firmata", "The board runs Firmata", "StandardFirmata.ino 2.5"),
+    (boards.MbotBoard(115_200), "mbot", "The board has the firmware of an mBot", "06.01.009"),
+    (boards.LineEchoSketch(9600), "echo_sketch", "a sketch that sends back", "came back"),
+    (boards.SnekBoard(115_200), "snek", "The board runs Snek", ">"),
+    (boards.PythonBoard(115_200), "micropython", "The board runs MicroPython", "CTRL-B"),
+    (boards.BrownoutBoard(115_200), "esp32_brownout", "The ESP32's voltage drops",
+     "Brownout detector was triggered"),
+    (boards.AtBoard(115_200), "at_firmware", "Espressif's AT firmware", "AT version:2.2.0.0"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("end", "cause", "what", "heard"), SEVEN, ids=[row[1] for row in SEVEN])
+def test_a_board_that_is_not_ours_at_a_real_port(
+    tsc: Tsc, end: boards.Board, cause: str, what: str, heard: str
+) -> None:
+    """At the speed of a robot with an HC-05, which most of them do not have."""
+    with PtyEnd(end) as pty_end:
+        done = tsc("doctor", "--port", pty_end.port, "--json").gives(3)
+    (finding,) = json.loads(done.out)["findings"]
+    assert (finding["cause"], finding["is_sure"]) == (cause, True)
+    assert what in finding["said"] and heard in finding["seen"] and finding["next"]
+
+
+@pytest.mark.parametrize(("board", "said"), [
+    (boards.BrownoutBoard, "voltage drops, and it restarts"),
+    (boards.MbotBoard, "the firmware of an mBot"),
+    (boards.SnekBoard, "The board runs Snek"),
+    (boards.Esp32Board, "An ESP32 starts here"),
+])  # fmt: skip
+def test_an_upload_says_what_is_there_instead_of_a_robot(
+    tsc: Tsc, hasty: None, board: type[boards.Board], said: str
+) -> None:
+    """It asks nothing but HELLO, and hears what a board says when it starts."""
+    with PtyEnd(board(9600)) as pty_end:
+        words = ("upload", "-e", "SI|F(1, 50)", "--port", pty_end.port)
+        done = tsc(*words).gives(3, f"no TiniScript robot answers on {pty_end.port}", said)
+        assert "speed" not in done.err
+    with PtyEnd(board(9600)) as pty_end:
+        rows = json.loads(tsc("doctor", "--ports", "--ask", "--port", pty_end.port, "--json").out)
+        assert said in rows[0]["said"]
 
 
 def test_wrong_use_and_no_such_port(tsc: Tsc) -> None:

@@ -30,7 +30,7 @@ class FakeLine:
     """A line whose robot does what the test says: begins run 7, ends it, and tells events."""
 
     address, gone, robot, held_by = PORT, None, None, ""
-    heard, is_echoed, boot, has_ended = 0, False, 0, False
+    heard, came, is_echoed, boot, has_ended = 0, b"", False, 0, False
 
     def __init__(self) -> None:
         self.is_running = False

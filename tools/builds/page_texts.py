@@ -5,7 +5,7 @@ from __future__ import annotations
 from tiniscript.base.languages import Texts, about, texts
 
 # Of what the page's Python says; the sentences of lessons come with these.
-MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names")
+MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names", "foreign")
 # What the page says as the command does: how a recording compares, and why a run has ended.
 OF_COMMAND = {
     **{f"record_{what}": f"replay_{what}" for what in (

@@ -28,7 +28,7 @@ from tiniscript.doctor.line import Line
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
 from tiniscript.link import errors
-from tiniscript.link.connection import LinkConnection
+from tiniscript.link.connection import LinkConnection, stranger
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED
 from tiniscript.link.outcomes import ConnectionLost
@@ -193,6 +193,9 @@ def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[F
     try:
         reply = robot.hello()
         if reply is None:
+            found = stranger(client)
+            if found is not None:
+                return (Finding(found.name, found.is_sure, {"said": found.said}),)
             return (probably("falls_silent"),)
         return tuple(examine(robot, reply, question.expected, question.watch_ms, doors.on_step))
     except ConnectionLost:

@@ -1,12 +1,15 @@
 """What doctor, self-test, a module's set-up and trim can find: one table of causes.
 
-Knows no sentence: those of a cause, a short name that stays, are in `languages/en/command.toml`.
+Knows no sentence: those of a cause, a short name that stays, are in `languages/en/command.toml`,
+and of a board that is not ours in `languages/en/foreign.toml`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
+
+from tiniscript.link import foreign
 
 OK, OPEN, WRONG = "ok", "open", "wrong"  # OPEN: nothing is wrong for sure, and a person may look
 
@@ -34,7 +37,8 @@ CAUSES = dict((
     *_all(WRONG, "", "no_permission login_again busy modem_manager other_tsc out_of_reach"),
     *_all(WRONG, "", "other_host slow_port no_serial_port port_broken port_gone not_opened"),
     # what answers there
-    *_all(WRONG, "", "echo module_set_up module_alone wrong_baud module_baud crossed other_sketch"),
+    *_all(WRONG, "", "echo module_set_up module_alone wrong_baud module_baud crossed one_way"),
+    *_all(WRONG, "", " ".join(foreign.NAMES)),
     *_all(WRONG, "", "bootloader_only garbled silent"),
     # the robot, by what it says
     *_all(WRONG, "", "other_robot unproven"),

@@ -16,7 +16,14 @@ from tiniscript.library import opening
 from tiniscript.library.errors import ProgramError, RobotError
 from tiniscript.library.refusing import refusal
 from tiniscript.link import errors
-from tiniscript.link.connection import DEADLINE_MS, PendingRequest, Requester, reason_of
+from tiniscript.link.connection import (
+    DEADLINE_MS,
+    FOREIGN,
+    PendingRequest,
+    Requester,
+    reason_of,
+    stranger,
+)
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply
@@ -251,11 +258,21 @@ class Client:
             return "port_busy"
         return "port_gone"
 
+    def foreign(self) -> tuple[str, str]:
+        """Return the sentences on the board that answers instead of a robot."""
+        from tiniscript.link.foreign import told
+
+        found = stranger(self.line)
+        assert found is not None
+        return told(found, self.language)
+
     def failure(self, reply: Reply[object]) -> Exception:
         """Return the error for a reply that is not OK."""
         reason = reason_of(self.line, reply)
         if reason != "status":
             values = {"port": opening.shown(self.port), "id": f"{reply.detail:08x}"}
+            if reason == FOREIGN:
+                values["what"], values["then"] = self.foreign()
             return RobotError(reason, self.language, values)
         said = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
         name = name_of(reply.status)

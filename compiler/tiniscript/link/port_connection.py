@@ -180,7 +180,7 @@ class PortConnection(LinkConnection):
                 heard = self._read()
                 if heard:
                     with self._news:
-                        self.heard += len(heard)
+                        self.note_heard(heard)
                         self.session.receive(heard, self._now_ms())
                         self._tell()
         except (OSError, TypeError) as why:  # TypeError: from pyserial, if the port is closed

@@ -88,7 +88,7 @@ class PageLine(LinkConnection):
 
     def go(self, data: bytes, now_ms: int) -> bytes:
         """Take the bytes that have arrived; return those to send."""
-        self.heard += len(data)
+        self.note_heard(data)
         self.now_ms = now_ms
         self.session.receive(data, now_ms)
         sent = self.session.poll(now_ms)

@@ -22,11 +22,13 @@ from tiniscript.library.refusing import refusal
 from tiniscript.link.authority import whose
 from tiniscript.link.connection import (
     DEADLINE_MS,
+    FOREIGN,
     STATUS,
     LinkConnection,
     PendingRequest,
     Requester,
     reason_of,
+    stranger,
 )
 from tiniscript.link.messages import (
     MOST_BALANCE,
@@ -207,6 +209,12 @@ class RobotLink:
 
     def _failure(self, reply: Reply[Any]) -> Json:
         reason = reason_of(self._connection, reply)
+        found = stranger(self._connection) if reason == FOREIGN else None
+        if found is not None:
+            from tiniscript.link.foreign import told as told_of
+
+            said, advice = told_of(found, self.language)
+            return {"failure": reason, "said": said, "advice": advice}
         if reason != STATUS:
             return {"failure": reason, "said": "", "advice": ""}
         said, advice = sentence(reply.status, reply.detail, self.language)

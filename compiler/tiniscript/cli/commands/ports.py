@@ -14,12 +14,14 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import baud_of, opened_client
 from tiniscript.cli.robot.in_reach import AT_ONCE, find_robots
 from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, listed
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import Said, text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link import known_ports
 from tiniscript.link.authority import whose
+from tiniscript.link.connection import stranger
+from tiniscript.link.foreign import told
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.protocol import LOOKER
 from tiniscript.robots.profile import Robot
@@ -60,6 +62,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
         with closing(opened_client(port, robot, LOOKER, baud, language, OPEN_S)) as client:
             reply = client.hello()
             device_info, heard = client.line.robot, client.line.heard
+            found = stranger(client.line)
     except CommandError as failure:
         return {"answer": None, "said": failure.plain(language)}
     except RobotError as gone:
@@ -81,4 +84,6 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "owner": owner,
             "said": said,
         }
+    if found is not None and (found.has_row or found.is_sure):
+        return {"answer": None, "said": Said(told(found, language).said.rstrip("."))}
     return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}

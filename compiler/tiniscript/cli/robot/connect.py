@@ -20,14 +20,14 @@ from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import asking
 from tiniscript.cli.terminal.progress import Quiet, waiting
-from tiniscript.cli.texts import say_aside, text
+from tiniscript.cli.texts import Said, say_aside, text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link import known_ports
-from tiniscript.link.connection import PendingRequest, Requester, reason_of
+from tiniscript.link.connection import FOREIGN, PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
 from tiniscript.link.outcomes import LOOK_S, ConnectionLost, Event
@@ -291,6 +291,9 @@ class Connection(Client):
         reason = reason_of(self.line, reply)
         if reason == "status":
             return CommandError(3, "plain", said=self.said(reply))
+        if reason == FOREIGN:
+            what, then = self.foreign()
+            return CommandError(3, reason, port=shown(self.port), what=Said(what), then=Said(then))
         return CommandError(3, reason, port=shown(self.port), id=f"{reply.detail:08x}")
 
     def said(self, reply: Reply[object]) -> str:

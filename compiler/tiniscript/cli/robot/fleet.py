@@ -36,9 +36,9 @@ NOBODY = (
     "port_not_announced",
 )  # fmt: skip
 NO_ROBOT = (
-    "link_silent", "link_other", "link_echo", "not_confirmed", "port_slow", "port_no_port",
-    "port_broken", "port_busy", "port_forbidden", "port_forbidden_linux", "port_gone",
-    "port_no_robot", "radio_gone", "stop_held", "stop_held_unknown",
+    "link_silent", "link_other", "link_foreign", "link_echo", "not_confirmed", "port_slow",
+    "port_no_port", "port_broken", "port_busy", "port_forbidden", "port_forbidden_linux",
+    "port_gone", "port_no_robot", "radio_gone", "stop_held", "stop_held_unknown",
 )  # fmt: skip
 
 

@@ -6,7 +6,8 @@
     {"do": "upload", "id": 1, "limit_ms": 6000, "image": "..", ..}
                                                  {"id": 1, "done_bytes": 54}
                                                  {"id": 1, "status": 0, "detail": 0, "values": {..},
-                                                  "heard": 99, "is_echoed": false, "boot": 7}
+                                                  "heard": 99, "came": "", "is_echoed": false,
+                                                  "boot": 7}
                                                  {"event": "SHOW", "ms": 1234, "values": {..}}
     {"do": "places"}                             {"event": "PLACE", "ms": 1234, "values": {..}}
     {"do": "stop"}

@@ -315,6 +315,7 @@ class Server:
             "detail": outcome.detail,
             "values": protocol.plain(values),
             "heard": self._line.heard,
+            "came": self._line.came.hex(),
             "is_echoed": self._line.is_echoed,
             "boot": self._line.boot,
         })  # fmt: skip

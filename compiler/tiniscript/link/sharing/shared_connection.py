@@ -155,6 +155,7 @@ class SharedConnection(LinkConnection):
             request.done_bytes = protocol.number(message, "done_bytes")
             return
         self.heard = protocol.number(message, "heard")
+        self.came = protocol.data(message, "came")
         self.is_echoed = protocol.field(message, "is_echoed", bool)
         self._boot = protocol.number(message, "boot")
         reply = protocol.reply(message, request.kind)
