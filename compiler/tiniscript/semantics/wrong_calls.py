@@ -167,7 +167,7 @@ class WrongCalls:
         if word == "LOOP":
             fix = "LOOP(FOREVER)" if text.upper() == "TRUE" else f"WHILE({text})"
         own = value_of_def(self.scope, span)
-        self.scope.report(codes.WANTS_NUMBER, span, by=word, found=text, fix=fix, **own)
+        self.scope.report(codes.WANTS_NUMBER, span, None, by=word, found=text, fix=fix, **own)
 
     def device_set(self, node: ast.Assign, device: Name) -> None:
         """`DISTANCE = 20`, `LED = TRUE`: a number for a distance may be where to stop."""

@@ -126,7 +126,8 @@ class WrongValues:
         span = Span(operand.start, operand.end)
         by = "-" if op == "NEG" else SIGN_OF.get(op, op)
         own = value_of_def(self.scope, span)
-        self.scope.report(codes.WANTS_NUMBER, span, by=by, found=self.scope.source[span], **own)
+        found = self.scope.source[span]
+        self.scope.report(codes.WANTS_NUMBER, span, None, by=by, found=found, **own)
 
     def no_yes_no(self, by: str, operand: Operand, other: Operand | None) -> None:
         """`other` is the other side of an AND or OR.
