@@ -75,7 +75,7 @@ _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END
 _TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
-_CALL = re.compile(r"(\w{3,})\s*\([^()]*\w[^()]*\)")
+_CALL = re.compile(r"([^\W\d]\w*)\s*\((?=\W{0,40}\w).*\)", re.DOTALL)
 _LONG_HEAD = 100  # characters of a DEF before the name of a value
 _TAUGHT = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
 _OWN = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
@@ -91,7 +91,8 @@ _BEGINS = (";", "newline", "|")  # what an instruction begins behind
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
 _MOST_OF_END = 4  # words: `fin del bucle`
-_NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
+_NO_CALLS = ("leaves", "again", "etc", "end")
+_NO_NAMES = (*_NO_CALLS, "filler", "same")  # without values
 
 
 def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
@@ -398,7 +399,7 @@ class Usage:
         given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
         if not name or number or len({*given}) > 1:  # seconds, or how often: who writes it knows
             call = _CALL.fullmatch(piece)
-            is_other = call is None or self.names.meant(call[1]) or said_of(call[1], *_NO_NAMES)
+            is_other = call is None or said_of(call[1], *_NO_CALLS)
             is_often = bool(number and self.around.lacks_loop)
             return _Own("", "" if is_other or call is None else call[1], is_often, 0, False)
         if self.names.meant(name):

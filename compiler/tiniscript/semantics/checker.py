@@ -271,7 +271,7 @@ class _Checker(Scope):
 
     def wants_condition(self, argument: ast.Argument, by: str) -> None:
         found = self.source[argument.span]
-        values = self.types.wrong.condition(found)
+        values = self.types.wrong.condition(argument.span)
         self.report(codes.WANTS_CONDITION, argument.span, None, by=by, found=found, **values)
 
     def stack_fits(self, values: Sequence[Value], span: Span) -> None:

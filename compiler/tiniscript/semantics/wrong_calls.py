@@ -38,6 +38,7 @@ from tiniscript.semantics.unknown_words import (
     report_unknown,
     report_words_shown,
 )
+from tiniscript.semantics.wrong_values import value_of_def
 from tiniscript.syntax import ast
 from tiniscript.syntax.free_names import numbered
 
@@ -191,7 +192,8 @@ class WrongCalls:
         fix = f"W(FOREVER) UNTIL({text})" if word == "W" and set(text) & set("<>=") else ""
         if word == "LOOP":
             fix = "LOOP(FOREVER)" if text.upper() == "TRUE" else f"WHILE({text})"
-        self.scope.report(codes.WANTS_NUMBER, span, by=word, found=text, fix=fix)
+        own = value_of_def(self.scope, span)
+        self.scope.report(codes.WANTS_NUMBER, span, None, by=word, found=text, fix=fix, **own)
 
     def device_set(self, node: ast.Assign, device: Name) -> None:
         """`DISTANCE = 20`, `LED = TRUE`: a number for a distance may be where to stop."""

@@ -17,7 +17,7 @@ from tiniscript.semantics.comparisons import is_aside
 from tiniscript.semantics.named_values import value_of, yes_no_of
 from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
 from tiniscript.semantics.unknown_words import whole_name
-from tiniscript.syntax.ast import Part
+from tiniscript.syntax.ast import Def, Part
 from tiniscript.syntax.operators import SIGN_OF
 
 _EQUAL = frozenset(("EQ", "NE"))
@@ -125,7 +125,9 @@ class WrongValues:
     def no_number(self, op: str, operand: Operand) -> None:
         span = Span(operand.start, operand.end)
         by = "-" if op == "NEG" else SIGN_OF.get(op, op)
-        self.scope.report(codes.WANTS_NUMBER, span, by=by, found=self.scope.source[span])
+        own = value_of_def(self.scope, span)
+        found = self.scope.source[span]
+        self.scope.report(codes.WANTS_NUMBER, span, None, by=by, found=found, **own)
 
     def no_yes_no(self, by: str, operand: Operand, other: Operand | None) -> None:
         """`other` is the other side of an AND or OR.
@@ -134,9 +136,9 @@ class WrongValues:
         """
         span = Span(operand.start, operand.end)
         found = self.scope.source[span]
-        values = self.condition(found)
+        values = self.condition(span)
         if by == "NOT" and "example" in values:  # NOT X is `X = 0`, as other languages have it
-            values = {"example": f"{found.upper()} > 0"}
+            values = {**values, "example": f"{found.upper()} > 0"}
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
             before, after = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
@@ -147,12 +149,13 @@ class WrongValues:
                 values = {"fix": f"{found} {after[1]}"}
         self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=found, **values)
 
-    def condition(self, found: str) -> dict[str, str]:
+    def condition(self, span: Span) -> dict[str, str]:
         """Return the yes or no that a number alone means, or an example of a condition with it."""
-        word = found.upper()
+        word = self.scope.source[span].upper()
         name = self.scope.names.get(word)
         if name is not None:
-            return {"example": f"{word} < 10" if name.what == "sensor" else f"{word} > 0"}
+            example = f"{word} < 10" if name.what == "sensor" else f"{word} > 0"
+            return {"example": example, **value_of_def(self.scope, span)}
         meant = {"0": "FALSE", "1": "TRUE"}.get(word)
         if meant or not word.isdecimal():
             return {"fix": meant} if meant else {}
@@ -168,3 +171,13 @@ class WrongValues:
         if digit not in ("0", "1") or op not in _EQUAL or not found.isidentifier():
             return ""
         return found.upper() if (digit == "1") == (op == "EQ") else f"NOT {found.upper()}"
+
+
+def value_of_def(scope: Scope, span: Span) -> dict[str, str]:
+    """Return the value at `span` and its DEF, whose first call says what it is; or nothing."""
+    name = scope.source[span].upper()
+    for node in scope.parsed.body:
+        if isinstance(node, Def) and node.span.start < span.start < node.span.end:
+            is_own = any(parameter.name == name for parameter in node.parameters)
+            return {"own": name, "called": node.name} if is_own else {}
+    return {}

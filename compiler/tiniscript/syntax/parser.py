@@ -239,6 +239,7 @@ class Parser:
         cursor.i += 1
         if cursor.take_inner(")"):
             return
+        more = None
         while True:
             name = cursor.inner()
             if name.kind is not WORD:
@@ -250,10 +251,14 @@ class Parser:
             if name.text in WORDS:
                 self.reporter.report(codes.RESERVED, name.span, word=name.text)
             found.append(Parameter(name.text, name.span))
-            if not cursor.take_inner(","):
+            odd = self.expressions.after_name()
+            more = more or odd
+            if not cursor.take_inner(",") and (odd is None or odd.kind is not WORD):
                 break
         if not cursor.take_inner(")"):
             self.expressions.no_close(bracket)
+        if more is not None:
+            self.expressions.no_names_alone(bracket, more, [each.name for each in found])
 
     def task(self, word: Token) -> None:
         cursor = self.cursor

@@ -19,9 +19,6 @@ uint8_t letter_at(const char* word) {
   return flash_byte(reinterpret_cast<const uint8_t*>(word));
 }
 
-// As the reader's; a tab may stand where a space may.
-bool is_blank(uint8_t byte) { return byte == ' ' || byte == '\t'; }
-
 bool is_digit(uint8_t byte) { return static_cast<uint8_t>(byte - '0') < 10; }
 
 }  // namespace
@@ -46,7 +43,7 @@ bool KeyLine::read(RemoteKeys* remote_keys) {
 }
 
 void KeyLine::skip_blanks() {
-  while (is_blank(*at_) || *at_ == ';') at_++;
+  while (*at_ == ' ' || *at_ == ';') at_++;
 }
 
 // Takes a word that lies in flash, if it comes next.
@@ -61,8 +58,7 @@ bool KeyLine::takes(const char* word) {
 
 // Takes a blank and a number from -100 to 100.
 bool KeyLine::take_way(int8_t* way) {
-  if (!is_blank(*at_)) return false;
-  while (is_blank(*at_)) at_++;
+  if (*at_++ != ' ') return false;
   const bool is_below = *at_ == '-';
   if (is_below) at_++;
   if (!is_digit(*at_)) return false;
