@@ -398,7 +398,7 @@ const PARTS = {
     };
   },
 
-  // What is said of a STOP.
+  // What is said of a STOP: of this page, or of somebody else, after which something is started.
   async stopping() {
     const page = freshPage();
     await learns(page);
@@ -408,19 +408,27 @@ const PARTS = {
     let began_ms = 0;
     const speech = { isHeld: false, say: (key) => notes.push([now() - began_ms, key, speech.isHeld]) };
     const stopping = new Stopping(speech);
+    const acts = {
+      stop: () => stopping.begin(),
+      hide: () => stopping.begin('say_file'),
+      confirm: () => stopping.confirm('BUTTON'),
+      start: () => stopping.forget(),
+      nothing: () => {},
+    };
     return async (chance, isGood) => {
       notes = [];
       began_ms = now();
-      stopping.begin(chance() < 0.3 ? 'say_file' : '');
-      await passes(chance.below(LINK.confirm_ms / 2));
-      if (chance() < 0.3) stopping.begin();
-      await passes(chance.below(LINK.confirm_ms));
+      for (let k = 1 + chance.below(4); k > 0; k -= 1) {
+        acts[chance.of(Object.keys(acts))]();
+        await passes(chance.below(chance.of([LINK.confirm_ms / 2, 2 * LINK.confirm_ms])));
+      }
       const end = chance.of(isGood ? ['none', 'confirm'] : ['confirm', 'over']);
       if (end === 'confirm') stopping.confirm('SEQUENCE');
       if (end === 'over') notes.push(stopping.end()());
-      stopping.forget();
       if (isGood) await passes(2 * LINK.confirm_ms);
-      return { ends: [end], seen: [notes, stopping.isOpen, speech.isHeld] };
+      const seen = [notes, stopping.isOpen, speech.isHeld];
+      stopping.forget(); // something is started
+      return { ends: [end], seen };
     };
   },
 
