@@ -111,6 +111,7 @@ const PARTS = {
       simulator.stop();
       if (end === 'leave') simulator.leave();
       await passes(100);
+      if (end === 'leave' && (simulator.state || simulator.trace.length || simulator.phase !== 'off')) throw new Error('it was left, and is seen again');
       return { ends: [end, simulator.failure ? 'failure' : simulator.phase], seen: [notes, simulator.phase] };
     };
   },
