@@ -541,6 +541,7 @@ const PARTS = {
       notes.push(answer?.image);
     });
     checking.ready();
+    let open = 0;
     return async (chance, isGood) => {
       breaks = () => !isGood && chance() < 0.3;
       const ends = [];
@@ -551,11 +552,39 @@ const PARTS = {
         pageState.programText.set(text);
         if (pageState.checked.value) throw new Error('what is said is of the text before');
         notes.push(document.documentElement.dataset['state']);
-        if (!isGood && chance() < 0.3) checking.whenChecked();
+        if (!isGood && chance() < 0.3) {
+          open += 1;
+          checking.whenChecked().then(() => { open -= 1; });
+        }
         await passes(isGood ? 1000 : chance.below(400));
         ends.push(document.documentElement.dataset['state']);
       }
+      if (!isGood) await passes(1000); // a try that fails ends, too
+      if (open) throw new Error(`${open} wait for ever`);
       return { ends: [...new Set(ends)], seen: [notes, document.documentElement.dataset['image']] };
+    };
+  },
+
+  // A run that is kept, and played again.
+  async again() {
+    const page = freshPage();
+    const { Run } = await page.load('virtual/runs.js');
+    const run = new Run({ of: 'real', text: 'F(1)', robot: 'tinibot', program: '1' }, PROGRAM, null);
+    run.file = 'a run';
+    return async (chance) => {
+      run.again();
+      let now_ms = chance.below(100);
+      let bumps = 0;
+      let parting = null;
+      for (let k = chance.below(60); k > 0; k -= 1) {
+        now_ms += 1 + chance.below(90);
+        bumps += Number(chance() < 0.1);
+        if (chance() < 0.02) parting ??= { at_ms: now_ms };
+        const events = chance() < 0.4 ? [[now_ms, chance.of(['SHOW 1', 'MOTORS 1 2', 'READ DISTANCE 5', 'FAULT 1', 'BEEP 97 100']), 0]] : [];
+        run.add({ now_ms, bumps, parting, events, at: 0, places: [0], is_running: true });
+      }
+      const { marks, moments, seconds, size } = run;
+      return { ends: [parting ? 'parted' : 'whole'], seen: structuredClone([marks, run.parting, moments.length, moments.events, moments.parts, moments.shows(moments.length), moments.last_ms, seconds, size]) };
     };
   },
 
