@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import random
 import sys
+from collections.abc import Callable
 
 import pytest
 
@@ -104,6 +105,74 @@ def compare(seed: int) -> bool:
 @pytest.mark.parametrize("seed", range(12))
 def test_a_program_that_is_stepped_does_what_it_does_alone(seed: int) -> None:
     compare(seed)
+
+
+# -- the next run ------------------------------------------------------------------------------
+
+NEXT = "SI|BEEP(0.001, 31);LOOP(3);SHOW(TIME);F(0.06, 80);END_LOOP;W(0.1);M(30, 30);W(0.2);SHOW(9)"
+STOPS: dict[str, Callable[[Debugged], object]] = {
+    "nothing": lambda it: None,  # the next run ends it
+    "zeros": lambda it: it.session.receive(it.robot.step(bytes(4)), it.robot.now_ms),
+    "its computer": lambda it: it.session.stop(it.robot.now_ms),
+    "the button": lambda it: it.robot.talk(it.session, 1, flags=1),
+    "a stall": lambda it: it.robot.talk(it.session, 1, flags=4),
+}
+
+
+def halts_before(it: Debugged, rng: random.Random) -> None:
+    """Start the program, step it, let it go on and leave it halted, and end it anyhow."""
+    for _ in range(rng.randint(1, 3)):
+        statements = begins(it.image.code)
+        it.places(*rng.sample(statements, rng.randint(0, 4)))
+        it.start()
+        for _ in range(rng.randint(0, 5)):
+            it.talk(rng.choice((1, 20, 100, 700)))
+            how = rng.choice((RESUME_GO, RESUME_STEP, RESUME_STEP))
+            if rng.random() < 0.7:
+                it.go(how)
+        if rng.random() < 0.5:
+            it.session.resume(how=rng.choice((RESUME_GO, RESUME_STEP)))  # on its way at a stop
+            it.talk(rng.choice((0, 1, 2, 3)))
+        STOPS[rng.choice([*STOPS])](it)
+        it.talk(rng.choice((300, 700)))
+
+
+def seen_next(it: Debugged, places: list[int]) -> list[str]:
+    """Return what a run does and tells, with its halts, from when it was asked for."""
+    assert it.places(*places) == OK
+    it.events.clear()
+    done = len(it.robot.did)
+    it.start()
+    began_ms, found, halts = it.robot.now_ms, list[str](), 0
+    while it.robot.now_ms < began_ms + 1500:
+        is_halted = False
+        for event in it.talk(4):
+            if event.name in ("SHOW", "HALTED", *ENDS):
+                what = getattr(event, "value", getattr(event, "at", ""))
+                found.append(f"{event.name} {what}")
+                is_halted = event.name == "HALTED"
+        if is_halted:
+            halts += 1
+            it.go(RESUME_STEP if halts % 3 == 0 else RESUME_GO)
+    did = it.robot.did[done:]
+    while did and not did[0].endswith("BEEP 31 1"):
+        del did[0]  # the end of the run before
+    rows = (line.split(" ", 1) for line in did)
+    return [*found, *(f"{int(ms) - began_ms} {what}" for ms, what in rows)]
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_a_run_after_any_halts_is_as_on_a_fresh_robot(seed: int) -> None:
+    rng = random.Random(seed)
+    it, fresh = Debugged(NEXT), Debugged(NEXT)
+    halts_before(it, rng)
+    places = rng.sample(begins(it.image.code), rng.choice((0, 0, 1, 2)))
+    wanted = None
+    for each in (fresh, it):
+        each.robot.talk(each.session, -each.robot.now_ms % 100)
+        found = [row for row in seen_next(each, places) if "STOPPED" not in row]
+        wanted = wanted or found
+        assert found == wanted, f"{places}\n{found}\nnot\n{wanted}"
 
 
 if __name__ == "__main__":

@@ -324,3 +324,39 @@ def test_an_upload_is_lost_by_a_start_alone(press: str) -> None:
         outcome = table.robot.until(table.session, request, 30_000)
         drives = f"MOTORS {OTHER} {OTHER}" in " ".join(table.robot.did)
         assert (outcome == OK) == drives == (SHORT not in PRESSES[press][1])
+
+
+# What happens while the button is down: only a robot that stood all the time starts at the release.
+MEANWHILE: dict[str, Callable[[Table], object]] = {
+    "nothing": lambda table: None,
+    "a line": lambda table: table.session.live(image_of(f"SI|F(600, {LINE})").code),
+    "a short line": lambda table: table.session.live(image_of(f"SI|F(0.05, {LINE})").code),
+    "an upload": lambda table: table.session.upload(image_of(f"SI|F(600, {OTHER})"), saves=False),
+    "text": lambda table: typed(table.robot, f"SI|F(0.05, {TYPED})\n"),
+    "a stop": lambda table: table.session.stop(table.robot.now_ms),
+    "zeros": lambda table: table.robot.step(bytes(4)),
+    "a stop by text": lambda table: typed(table.robot, "S\n"),
+}
+
+
+@pytest.mark.parametrize("is_sure", [True, False])
+@pytest.mark.parametrize("meanwhile", MEANWHILE)
+def test_a_release_starts_nothing_where_something_ran_or_was_stopped_since(
+    meanwhile: str, is_sure: bool
+) -> None:
+    table = Table()
+    table.is_ready(SAVED)
+    if "text" in meanwhile:
+        table.quiet()
+    table.talk(1, PRESSED)
+    table.talk(31 if is_sure else 5)
+    if is_sure:
+        table.talk(1, HELD)
+    MEANWHILE[meanwhile](table)
+    table.talk(300)
+    if not is_sure:
+        table.talk(1, HELD)
+    table.talk(1, RELEASED)
+    table.talk(700)
+    starts = f"MOTORS {SAVED} {SAVED}" in " ".join(table.robot.did)
+    assert starts == (meanwhile == "nothing")

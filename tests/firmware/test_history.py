@@ -457,11 +457,11 @@ def in_the_end(scene: Scene, how: Behind) -> list[object]:
     robot.until(session, session.hello())
     assert session.robot
     values = session.robot.values
-    trim = session.trim()  # refused where the button has confirmed another owner in the story
+    trim = session.trim()  # a claim that was confirmed may have given it another key
     robot.until(session, trim)
     robot.talk(session, 1500)
     kept = robot.memory() if how.is_cut else b""
-    return [(values.id, values.name, values.features, repr(trim.outcome)), kept]
+    return [(values.id, values.name, values.features, told_of(trim)), kept]
 
 
 @lru_cache(maxsize=1)

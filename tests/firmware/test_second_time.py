@@ -494,6 +494,35 @@ def test_what_a_held_wheel_was_behind_is_not_made_up_for_by_the_next_program(whe
     assert most_ahead(scene) < 0.15
 
 
+def ends_of_move(scene: Scene, wheels: int, from_edges: float) -> tuple[float, ...]:
+    """Return how far the wheels go in a move; some are held for a moment as soon as the left one
+    has gone so far."""
+    robot = scene.robot
+    before = robot.gone()
+    robot.did.clear()
+    uploads(scene, "F(12 CM, 60)")
+    held_ms = 0
+    while not robot.did[-1].endswith("FINISHED"):
+        if robot.gone()[0] - before[0] > from_edges:
+            held_ms += 1
+        robot.hold(wheels if 0 < held_ms < 200 else 0)
+        robot.talk(scene.session, 1)
+        assert robot.now_ms < 60_000
+    robot.hold(0)
+    robot.talk(scene.session, 700)
+    return tuple(now - then for now, then in zip(robot.gone(), before, strict=True))
+
+
+@pytest.mark.parametrize("wheels", [1, 2, 3])
+def test_each_move_is_corrected_however_many_were_corrected_before(wheels: int) -> None:
+    way, _ = ends_of_move(with_discs(), 0, 0)
+    scene = with_discs()
+    for _ in range(6):
+        ends = ends_of_move(scene, wheels, way - 2)
+        assert all(abs(end - way) < 1.5 for end in ends), ends
+        scene.robot.wait(300)
+
+
 def check_all(seed: int) -> str:
     for starts in STARTS:
         check(seed, starts, [*KINDS][seed % len(KINDS)])

@@ -12,6 +12,7 @@ from struct import pack
 
 import pytest
 
+from tests.link.test_queue_across_a_stop import OWN, STOPS
 from tests.link.test_session import greeted as described
 from tests.link.test_unsent_requests import greeted, image
 from tests.machines.host_firmware import HostFirmware
@@ -316,6 +317,32 @@ def test_a_stop_by_somebody_else_voids_what_is_held(how: str) -> None:
     session.press(*UP)
     robot.talk(session, 60)
     assert robot.remote() == readings(UP)
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
+    """Before somebody says so: whoever held it, however soon the next program begins."""
+    rng = random.Random(seed)
+    session, robot = greeted()
+    how = rng.choice((*STOPS, OWN))
+    assert robot.until(session, session.upload(image(DRIVES), saves=False)) == OK
+    for _ in range(rng.randint(1, 3)):
+        for speaker in range(rng.randint(1, 2)):
+            session.press(rng.randint(1, 63), rng.randint(-100, 100), speaker=speaker)
+        robot.talk(session, rng.choice((0, 1, 20, 60, 200)))
+    if how == OWN:
+        session.stop(robot.now_ms)
+    else:
+        session.receive(STOPS[how](robot, session), robot.now_ms)
+    robot.talk(session, rng.choice((20, 40, 80, 150, 400)))  # it hears of the stop
+    robot.codes()
+    session.live(image("W(9)").code)
+    has_begun = False
+    for _ in range(70):
+        robot.talk(session, 10)
+        has_begun = has_begun or bool(robot.codes())
+        assert not has_begun or robot.remote() == NONE, how
+    assert has_begun, how
 
 
 def test_a_program_begins_with_nothing_held() -> None:

@@ -111,6 +111,7 @@ const PARTS = {
       simulator.stop();
       if (end === 'leave') simulator.leave();
       await passes(100);
+      if (end === 'leave' && (simulator.state || simulator.trace.length || simulator.phase !== 'off')) throw new Error('it was left, and is seen again');
       return { ends: [end, simulator.failure ? 'failure' : simulator.phase], seen: [notes, simulator.phase] };
     };
   },
@@ -398,7 +399,7 @@ const PARTS = {
     };
   },
 
-  // What is said of a STOP.
+  // What is said of a STOP: of this page, or of somebody else, after which something is started.
   async stopping() {
     const page = freshPage();
     await learns(page);
@@ -408,19 +409,27 @@ const PARTS = {
     let began_ms = 0;
     const speech = { isHeld: false, say: (key) => notes.push([now() - began_ms, key, speech.isHeld]) };
     const stopping = new Stopping(speech);
+    const acts = {
+      stop: () => stopping.begin(),
+      hide: () => stopping.begin('say_file'),
+      confirm: () => stopping.confirm('BUTTON'),
+      start: () => stopping.forget(),
+      nothing: () => {},
+    };
     return async (chance, isGood) => {
       notes = [];
       began_ms = now();
-      stopping.begin(chance() < 0.3 ? 'say_file' : '');
-      await passes(chance.below(LINK.confirm_ms / 2));
-      if (chance() < 0.3) stopping.begin();
-      await passes(chance.below(LINK.confirm_ms));
+      for (let k = 1 + chance.below(4); k > 0; k -= 1) {
+        acts[chance.of(Object.keys(acts))]();
+        await passes(chance.below(chance.of([LINK.confirm_ms / 2, 2 * LINK.confirm_ms])));
+      }
       const end = chance.of(isGood ? ['none', 'confirm'] : ['confirm', 'over']);
       if (end === 'confirm') stopping.confirm('SEQUENCE');
       if (end === 'over') notes.push(stopping.end()());
-      stopping.forget();
       if (isGood) await passes(2 * LINK.confirm_ms);
-      return { ends: [end], seen: [notes, stopping.isOpen, speech.isHeld] };
+      const seen = [notes, stopping.isOpen, speech.isHeld];
+      stopping.forget(); // something is started
+      return { ends: [end], seen };
     };
   },
 
@@ -532,6 +541,7 @@ const PARTS = {
       notes.push(answer?.image);
     });
     checking.ready();
+    let open = 0;
     return async (chance, isGood) => {
       breaks = () => !isGood && chance() < 0.3;
       const ends = [];
@@ -542,11 +552,39 @@ const PARTS = {
         pageState.programText.set(text);
         if (pageState.checked.value) throw new Error('what is said is of the text before');
         notes.push(document.documentElement.dataset['state']);
-        if (!isGood && chance() < 0.3) checking.whenChecked();
+        if (!isGood && chance() < 0.3) {
+          open += 1;
+          checking.whenChecked().then(() => { open -= 1; });
+        }
         await passes(isGood ? 1000 : chance.below(400));
         ends.push(document.documentElement.dataset['state']);
       }
+      if (!isGood) await passes(1000); // a try that fails ends, too
+      if (open) throw new Error(`${open} wait for ever`);
       return { ends: [...new Set(ends)], seen: [notes, document.documentElement.dataset['image']] };
+    };
+  },
+
+  // A run that is kept, and played again.
+  async again() {
+    const page = freshPage();
+    const { Run } = await page.load('virtual/runs.js');
+    const run = new Run({ of: 'real', text: 'F(1)', robot: 'tinibot', program: '1' }, PROGRAM, null);
+    run.file = 'a run';
+    return async (chance) => {
+      run.again();
+      let now_ms = chance.below(100);
+      let bumps = 0;
+      let parting = null;
+      for (let k = chance.below(60); k > 0; k -= 1) {
+        now_ms += 1 + chance.below(90);
+        bumps += Number(chance() < 0.1);
+        if (chance() < 0.02) parting ??= { at_ms: now_ms };
+        const events = chance() < 0.4 ? [[now_ms, chance.of(['SHOW 1', 'MOTORS 1 2', 'READ DISTANCE 5', 'FAULT 1', 'BEEP 97 100']), 0]] : [];
+        run.add({ now_ms, bumps, parting, events, at: 0, places: [0], is_running: true });
+      }
+      const { marks, moments, seconds, size } = run;
+      return { ends: [parting ? 'parted' : 'whole'], seen: structuredClone([marks, run.parting, moments.length, moments.events, moments.parts, moments.shows(moments.length), moments.last_ms, seconds, size]) };
     };
   },
 

@@ -32,6 +32,7 @@ ENDS = {
     "pictures": {"made", "none"},
     "worker": {"good", "failed"},
     "checking": {"changed", "checked"},
+    "again": {"parted", "whole"},
     "lessons": {"check", "end", "edit"},
     "asking": {"stays", "goes"},
     "python": {"error", "not fetched", "silent"},

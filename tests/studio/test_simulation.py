@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+import random
+from collections.abc import Callable, Iterable
 
 import pytest
 
@@ -133,6 +134,44 @@ def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:
     assert state["events"][-1][1] == "STOP" and simulation.robot.now_ms - before < 200
     simulation.go(1000)
     assert simulation.state()["events"] == []
+
+
+PUSHED = "SB|LOOP(3);SHOW(TIME);F(0.1, 60);R(0.1, 40);END_LOOP;F(60, 20)"
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> None:
+    """Each stop is one, whatever has stopped the robot before."""
+    rng = random.Random(seed)
+    fresh, simulation = started_run(PUSHED), started_run(PUSHED, is_held=rng.random() < 0.3)
+    parts = simulation.marks.parts
+    acts: list[Callable[[], object]] = [
+        simulation.push,
+        simulation.push,
+        simulation.go_on,
+        lambda: simulation.go(rng.choice((1, 30, 150, 700))),
+        lambda: simulation.step(rng.choice((1, 50, 400))),
+        lambda: simulation.press(rng.randrange(64), 0, 0),
+        simulation.stop,
+    ]
+    if rng.random() < 0.3:
+        acts += [lambda: simulation.set_breakpoints(rng.sample(parts, rng.randint(0, 2)))]
+    for _ in range(rng.randint(2, 9)):
+        act = rng.choice(acts)
+        act()
+        assert act != simulation.stop or not any(simulation.state()["motors"])
+    if len(acts) > 7:
+        simulation.set_breakpoints(())
+    simulation.stop()
+    assert not simulation.robot.is_running and not any(simulation.state()["motors"])
+    seen = []
+    for each in (fresh, simulation):
+        each.robot.take_events()
+        each.push()
+        each.go(1500)
+        assert each.held_at is None
+        seen.append(lines(each))
+    assert seen[0] == seen[1] and len(seen[0]) > 10
 
 
 def test_a_fault_is_named() -> None:
