@@ -22,7 +22,7 @@ ENDIF
 N = N + 4.5
 SHOW(N)
 """
-KEYS = "  s: step   g: go on   Ctrl-C: stop"
+KEYS = "  s: step   g: continue   Ctrl-C: stop"
 BEFORE_4 = ["Halted before line 4: F(0.1, 80)", "  N = 1, FAR = TRUE"]
 BEFORE_6 = ["Halted before line 6: N = N + 4.5", "  N = 1, FAR = TRUE"]
 BEFORE_7 = ["Halted before line 7: SHOW(N)", "  N = 5.5, FAR = TRUE"]
@@ -91,7 +91,7 @@ def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
         "Halted before line 5: S",
         "  N = 3",
         "  Line 1: another task, waiting",
-        "  Line 2: another task, with the motors",
+        "  Line 2: another task, using the motors",
         "  Line 3: another task, waiting for the motors",
     ]
 

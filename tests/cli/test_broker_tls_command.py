@@ -61,7 +61,7 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
     later = on(school.robot, "set", "wifi").out
     assert "is at the broker" in later and "tsc class" not in later, "it knows no port"
     _, *next_command = shlex.split(said.partition("To see all of them:  ")[2])
-    assert "no program; nothing runs; yours" in inside(*next_command, data=b"a secret\n").out
+    assert "no program; nothing is running; yours" in inside(*next_command, data=b"a secret\n").out
 
 
 def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path) -> None:

@@ -54,7 +54,7 @@ def test_programs_that_are_right_give_zero_and_each_is_checked_once(folder: Path
     assert "--csv is for several programs or a folder" in done.err
     (folder / "empty").mkdir()
     done = tsc("check", "empty").gives(2, out="")
-    assert done.err.startswith("tsc: empty has no program in it. Their names end in .ts or .tini.")
+    assert done.err.startswith("tsc: there is no program in empty. Names of programs end in .ts or .tini.")
 
 
 def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None:
@@ -118,7 +118,7 @@ def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
         deep.mkdir()
         (deep / f"p{k}.ts").write_text(WRONG if k % 2 else RIGHT, encoding="utf-8")
     done = tsc("check", "d").gives(1)
-    assert done.out.endswith("programs: 30, without mistakes: 15\n")
+    assert done.out.endswith("programs: 30, free of mistakes: 15\n")
 
 
 # -- repairs ------------------------------------------------------------------------------------

@@ -41,7 +41,7 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     assert found == [
         f"Port {pty_robot.port}",
         "1. tinibot is fine (sure)",
-        "   seen: kit tinibot, id 12345678; it answered 20 questions, and was not restarted",
+        "   seen: kit tinibot, id 12345678; it answered 20 messages and did not restart",
         "   next: Nothing to do. If it restarts when it drives:  tsc doctor --watch 20",
     ]
     assert robot[0] == f"tinibot on {pty_robot.port}, id 12345678, free"

@@ -43,7 +43,7 @@ def test_the_lessons_are_listed(tsc: Tsc) -> None:
 def test_one_program(tsc: Tsc, folder: Path) -> None:
     done = tsc("lesson", "check", "1", folder / "ana.ts")
     assert done.code == 0
-    assert "done! The task of lesson 1 is solved." in done.out
+    assert "done! You solved lesson 1." in done.out
     tsc("lesson", "check", "1", folder / "beto.ts", "--lang", "es").gives(
         1, out="- El robot se quedó 18 cm antes del centro de la cochera. Haz que avance más."
     )
@@ -273,7 +273,7 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     }  # fmt: skip
     verdicts = [row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())]
     assert verdicts.count("no_program") == len(notes)
-    assert done.err.startswith("Not checked, since they look like notes: Léeme primero.TXT, README")
+    assert done.err.startswith("Not checked because they look like notes: Léeme primero.TXT, README")
     table = tsc("lesson", "check", "1", pupils).out.splitlines()
     assert [row[len("README.txt") :].strip() for row in table if row.startswith("README")] == [
         "no program"

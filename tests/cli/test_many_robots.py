@@ -155,7 +155,7 @@ def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     done = inside("doctor", "--all").gives(0)
     rows = [line.split("(")[1].split(")")[0] for line in done.out.splitlines()]
     assert sorted(rows) == sorted(names)
-    assert done.out.count("nothing runs") == len(names)
+    assert done.out.count("nothing is running") == len(names)
     ports_of = ("--port", names[0], "--port", names[2])
     found = results(inside("doctor", "--count", "3", "--json", *ports_of))
     assert set(found) == {names[0], names[2]}

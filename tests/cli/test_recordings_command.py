@@ -90,7 +90,7 @@ def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     assert 0 < recording.rows[0].ms <= recording.rows[1].ms < 2000
     assert not is_foreign(file)
     done = tsc("run", file)
-    assert (done.code, done.err) == (0, "Both did the same. Comparisons: 2.\n")
+    assert (done.code, done.err) == (0, "Both did the same. Values compared: 2.\n")
     file.write_bytes(file.read_bytes().replace(b'SHOW 5"', b'SHOW 6"'))
     done = tsc("run", file, "--world", "line", "--lang", "es").gives(1)
     assert done.err.startswith("Línea 1: el robot dice 6 a los 0.")
@@ -109,7 +109,7 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
     for each, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
         assert wanted_ms <= each.ms <= wanted_ms + 100, events
     done = inside("run", file)
-    assert (done.code, done.err) == (0, "Both did the same. Comparisons: 7.\n")
+    assert (done.code, done.err) == (0, "Both did the same. Values compared: 7.\n")
 
 
 def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> None:
@@ -124,8 +124,8 @@ def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("events", "code", "said"),
     [
-        (((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")), 0, "Both did the same. Comparisons: 2."),
-        (((200, "SHOW 5"), (300, "LOST")), 0, "Both did the same. Comparisons: 1."),
+        (((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")), 0, "Both did the same. Values compared: 2."),
+        (((200, "SHOW 5"), (300, "LOST")), 0, "Both did the same. Values compared: 1."),
         (((200, "SHOW 5"), (400, "MISSED")), 0, "Then values of the robot did not arrive"),
         ((), 1, "The recording ends before the robot said anything"),
         (((200, "LOST"),), 1, "The recording ends before the robot said anything"),
@@ -153,7 +153,7 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
         for end in ("\n", "\r\n"):
             file.write_bytes((mark + text.replace("\n", end)).encode(encoding))
             done = tsc("run", file)
-            assert done.err == "Both did the same. Comparisons: 2.\n", (encoding, end, done)
+            assert done.err == "Both did the same. Values compared: 2.\n", (encoding, end, done)
 
 
 @pytest.mark.parametrize(

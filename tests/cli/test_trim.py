@@ -102,7 +102,7 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
     done = on(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
     assert done.out.endswith(
         "keeps: motors swapped, right wheel reversed, right wheel 5 % weaker, "
-        "the wheels start to move at 12 %, centimetres and degrees by the numbers of its kit\n"
+        "the wheels begin to turn at 12 %, centimetres and degrees according to its kit\n"
     )
     assert keeps(pty_robot) == Trim(True, False, True, -5, 12, Pace())
     assert on(pty_robot, "--exchange", "no", "--balance", "0").code == 0
@@ -285,9 +285,9 @@ def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None
     done = on(pty_robot, data=LIFTED + measuring).gives(0)
     assert keeps(pty_robot).pace == Pace(16.5, 33.25, 144, 288)
     assert done.err.count("18 in") == 5
-    assert "goes 16.5 cm in a second at 40 % and 33.25 at 80 %" in done.out
+    assert "drives 16.5 cm per second at 40 % and 33.25 at 80 %" in done.out
     told_by_info = pty_robots.on(pty_robot, "doctor").out
-    assert "turns 144 degrees in a second at 40 % and 288 at 80 %" in told_by_info
+    assert "turns 144 degrees per second at 40 % and 288 at 80 %" in told_by_info
 
 
 def test_who_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:

@@ -48,7 +48,7 @@ def test_slots_and_checksums_are_for_those_who_ask(pty_robot: PtyRobot) -> None:
     assert {row["slot"] for row in told if row.get("slot") is not None} == {0}
     # what is lost without power is told to all
     done = on(pty_robot, "upload", "-e", "SI|S;S", "--no-save")
-    assert done.out.splitlines()[0].endswith("   in RAM only   SI: running")
+    assert done.out.splitlines()[0].endswith("   only in RAM   SI: running")
 
 
 def test_a_program_goes_on_without_tsc(pty_robot: PtyRobot) -> None:
@@ -61,7 +61,7 @@ def test_a_program_goes_on_without_tsc(pty_robot: PtyRobot) -> None:
 def test_a_program_that_waits_ends_with_its_receipt(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "upload", "-e", "SB|F(0.1, 80)")
     assert (done.code, pty_robot.did) == (0, [])
-    assert "SB: waits for the button or tsc start\nSaved." in done.out
+    assert "SB: waiting for the button or tsc start\nSaved." in done.out
     pty_robot.push()
     pty_robot.until(lambda: "FINISHED" in pty_robot.did, "the button starts it")
     done = on(pty_robot, "start").gives(0)
@@ -79,7 +79,7 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
         pty_robot.damages = damages
         done = on(pty_robot, "upload", ours, "--no-run", "--no-save")
         assert (done.code, pty_robot.did) == (0, [])
-        assert "in RAM only   SI: waits" in done.out
+        assert "only in RAM   SI: waits" in done.out
         assert on(pty_robot, "show", "-o", theirs).code == 0
         assert theirs.read_bytes() == ours.read_bytes(), damages
         fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
@@ -237,7 +237,7 @@ def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRob
     """As data it is a receipt."""
     first, second = with_two(pty_robot)
     for language, checksum, said, saved in (
-        ("en", first, "it holds the previous program again, checksum", "Saved. It starts"),
+        ("en", first, "it has the previous program again, checksum", "Saved. It starts"),
         ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
     ):
         done = on(pty_robot, "start", "--previous", "--lang", language).gives(0, "")

@@ -286,7 +286,7 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
     command.until("SI: running")
     command.until("SHOW 1")
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "Stopped: the robot has confirmed it.", out=str(picture))
+    command.ended().gives(2, "Stopped: the robot has confirmed the stop.", out=str(picture))
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 

@@ -120,7 +120,7 @@ def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
     (folder / ready.name_of("tinibot", "nano", digest)).write_text(":00000001FF\n")
     rows = tsc(clone, "--list").out.splitlines()
     assert rows[:2] == [
-        "tinibot on uno: ready, 0 bytes", "tinibot on nano: is built when it is first written"
+        "tinibot on uno: ready, 0 bytes", "tinibot on nano: will be built the first time"
     ]  # fmt: skip
 
 

@@ -72,7 +72,7 @@ CASES = [
     ('kind = "reaches"\nat = [140, 100]', "F(1, 89)", "F(20, 5)", "the time was over, and the robot was still on its way"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "M(89, 89)", "Add a wait after M"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "IF(LIGHT_L > LIGHT_R);M(10, 50);ELSE;M(50, 10);ENDIF", "Add a wait after M"),
-    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "M(50, 50);W(FOREVER) UNTIL(DISTANCE > 9);S", "Is the question of UNTIL TRUE from the start? See what the robot reads: SHOW(DISTANCE)"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "M(50, 50);W(FOREVER) UNTIL(DISTANCE > 9);S", "Is the condition of UNTIL TRUE from the start? See what the robot reads: SHOW(DISTANCE)"),
     ('kind = "beeps"\nat = [140, 100]', "F(1, 89);BEEP(0.1,440)", "BEEP(0.1,440);F(1, 89)", "beeped 40 cm from the goal; 10 cm or less is right"),
     ('kind = "beeps"\nat = ["start", [140, 100]]', "BEEP(0.1,440);F(1, 89);BEEP(0.1,440)", "BEEP(0.1,440);F(1, 89)", "did not beep at the goal 2: its nearest beep was 40 cm away"),
     ('kind = "beeps"\ntimes = 2\n[[criteria]]\nkind = "needs"\nwords = ["LOOP"]', "LOOP(2);BEEP(0.1,440);END_LOOP", "LOOP(2);F(0.1,50);END_LOOP;BEEP(0.1,440);BEEP(0.1,440)", "just as well when each LOOP is done only once"),
@@ -92,21 +92,21 @@ CASES = [
     ('kind = "drives"\nat_most_cm = 30', "F(0.5, 50)", "F(1, 89)", "drove 40 cm; the task allows 30 cm"),
     ('kind = "pauses"\nat_least_seconds = 1', "F(1,50);W(1);B(1,50)", "F(1,50);W(0.5);B(1,50)", "waited 0.5 s; the task asks for 1 s"),
     ('kind = "ends_in"\nat = "start"', "F(1, 50); B(1, 50)", "F(1, 50); B(0.3, 50)", "change one thing only"),
-    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(1, 89) UNTIL(DISTANCE > 9)", "did not move. Is the question of UNTIL TRUE from the start? See what the robot reads: SHOW(DISTANCE)"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(1, 89) UNTIL(DISTANCE > 9)", "did not move. Is the condition of UNTIL TRUE from the start? See what the robot reads: SHOW(DISTANCE)"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "WHILE(LIGHT_L > 900);F(1, 89);END_WHILE", "question of WHILE FALSE from the start? See what the robot reads: SHOW(LIGHT_L)"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60); IF(LIGHT_L > 900);F(1, 89);ENDIF", "only turned on the spot. Is the question of IF FALSE"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF GO;F(1, 89);END_DEF", "teaches the word GO and never calls it"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF GO;F(1, 89);END_DEF;DEF NO;B(1, 89);END_DEF;GO;GO;GO", "went 37 cm past"),
-    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "W(FOREVER) UNTIL(DISTANCE < 9); F(1, 89)", "did not move. Does the question of UNTIL ever become TRUE? See what the robot reads: SHOW(DISTANCE)"),
-    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "WHILE(LIGHT_L < 900);W(0.1);END_WHILE;F(1, 89)", "Does the question of WHILE ever become FALSE? See what the robot reads: SHOW(LIGHT_L)"),
-    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "LOOP(FOREVER);IF(LIGHT_L > 900);F(1, 89);ENDIF;W(0.1);END_LOOP", "Does the question of IF ever become TRUE?"),
-    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "WHILE(DISTANCE > 9);IF(LIGHT_L > 900);F(1, 89);ENDIF;W(0.1);END_WHILE", "Does the question of IF ever become TRUE?"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "W(FOREVER) UNTIL(DISTANCE < 9); F(1, 89)", "did not move. Does the condition of UNTIL ever become TRUE? See what the robot reads: SHOW(DISTANCE)"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "WHILE(LIGHT_L < 900);W(0.1);END_WHILE;F(1, 89)", "Does the condition of WHILE ever become FALSE? See what the robot reads: SHOW(LIGHT_L)"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "LOOP(FOREVER);IF(LIGHT_L > 900);F(1, 89);ENDIF;W(0.1);END_LOOP", "Does the condition of IF ever become TRUE?"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "WHILE(DISTANCE > 9);IF(LIGHT_L > 900);F(1, 89);ENDIF;W(0.1);END_WHILE", "Does the condition of IF ever become TRUE?"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "LOOP(2);IF(LIGHT_L > 900);F(1, 89);ENDIF;END_LOOP", "question of IF FALSE from the start?"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "IF(DISTANCE > 9);S;ELSE;F(1, 89);ENDIF", "question of IF TRUE from the start?"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "IF(LIGHT_L > 900);BEEP(0.1,440);ENDIF;F(1, 89) UNTIL(DISTANCE > 9)", "question of UNTIL TRUE from the start?"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "W(0.5) UNTIL(LIGHT_L > 900);F(1, 89) UNTIL(DISTANCE > 9)", "See what the robot reads: SHOW(DISTANCE)"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF GO;F(1, 89);END_DEF;IF(LIGHT_L > 900);GO;ENDIF", "question of IF FALSE from the start?"),
-    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60);W(FOREVER) UNTIL(LIGHT_L > 900);F(1, 89)", "only turned on the spot. Does the question of UNTIL ever become TRUE?"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60);W(FOREVER) UNTIL(LIGHT_L > 900);F(1, 89)", "only turned on the spot. Does the condition of UNTIL ever become TRUE?"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(1, 0) UNTIL(DISTANCE < 9)", "Give it a move with time and power"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(0, 89) UNTIL(DISTANCE < 9)", "Give it a move with time and power"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF GO;F(1, 0);END_DEF;GO;IF(LIGHT_L > 900);S;ENDIF", "Give it a move with time and power"),
@@ -191,7 +191,7 @@ def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str
     lesson = lesson_of(tmp_path, OBEYS.format(key=f"KEY_{key}"))
     assert said(lesson, answering(key, DOES[key])) == []
     (missed,) = said(lesson, answering(OTHER[key], DOES[key]))
-    assert f"After 1.0 s KEY_{key} was held, and the robot did not {FAILS[key]}." in missed
+    assert f"After 1.0 s KEY_{key} was held down, but the robot did not {FAILS[key]}." in missed
     if not FAILS[key].startswith("beep"):
         (missed,) = said(lesson, answering(key, DOES[OTHER[key]]))
         assert f"did not {FAILS[key]}." in missed
@@ -285,7 +285,7 @@ def test_a_question_of_when_keeps_the_robot(tmp_path: Path) -> None:
     reaches = '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n'
     lesson = lesson_of(tmp_path, reaches, "tinibot32")
     (found,) = said(lesson, "WHEN(DISTANCE < 4);F(1, 89);END_WHEN")
-    assert "Does the question of WHEN ever become TRUE? See what the robot reads" in found
+    assert "Does the condition of WHEN ever become TRUE? See what the robot reads" in found
 
 
 @pytest.mark.parametrize(

@@ -130,7 +130,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "wrong": {
             "DEF HOP; F(0.2, 60); B(0.2, 60); L(0.2, 60); R(0.2, 60); L(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(4); HOP; END_LOOP": "The program has 5 moves; 4 will do",
-            "DEF HOP; F(0.2, 60); B(0.2, 60); END_DEF; HOP; HOP; HOP; HOP": "The robot did not beep. Give it a sound: BEEP(0.2, 440)",
+            "DEF HOP; F(0.2, 60); B(0.2, 60); END_DEF; HOP; HOP; HOP; HOP": "The robot did not beep. Add a sound: BEEP(0.2, 440)",
         },
     },
     6: {
@@ -168,7 +168,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "F(2.59, 60); R(0.417, 60); SEEN = DISTANCE; L(0.417, 60); IF(SEEN < 60); L(0.417, 60); ELSE; R(0.417, 60); END_IF; F(2.4, 60)": "",
         },
         "rote": {
-            "SI|IF(DISTANCE < 30); BEEP(0.3, 220); ELSE; BEEP(0.3, 880); ENDIF": "The robot did not move. Give it a move with time and power: F(2, 80)",
+            "SI|IF(DISTANCE < 30); BEEP(0.3, 220); ELSE; BEEP(0.3, 880); ENDIF": "The robot did not move. Add a move with time and power: F(2, 80)",
         },
         "wrong": {
             "F(2.59, 60); R(0.417, 60); IF(DISTANCE < 60); L(0.833, 60); END_IF; F(1, 60)": "At the end the robot was 38 cm from the exit",
@@ -184,7 +184,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF PATROL; F(FOREVER, 60) UNTIL(DISTANCE < 20); R(0.42, 60); R(0.42, 60); END_DEF; LOOP(5); PATROL; END_LOOP": "",
         },
         "rote": {
-            "F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The program does not use LOOP. It helps here: LOOP(3) ... END_LOOP",
+            "F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The program does not use LOOP. Use it here: LOOP(3) ... END_LOOP",
             "LOOP(2); BEEP(0.1, 440); END_LOOP; F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The robot does the task just as well when each LOOP is done only once",
             "LOOP(1); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); END_LOOP": "The LOOP of the program repeats nothing",
         },
@@ -224,7 +224,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; LOOP(FOREVER); STRAIGHT; TO_LEFT; TO_RIGHT; IF(BUTTON); BREAK; ENDIF; END_LOOP; S; SHOW(TIME)": "",
         },
         "rote": {
-            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; STRAIGHT; S": "Is the question of UNTIL TRUE from the start?",
+            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; STRAIGHT; S": "Is the condition of UNTIL TRUE from the start?",
             "DEF HOP; W(0.1) UNTIL(TRUE); END_DEF; HOP; WHILE(NOT BUTTON); M(30, 30); IF(LINE_L); M(0, 35); ENDIF; IF(LINE_R); M(35, 0); ENDIF; W(0.02); END_WHILE; S; SHOW(TIME)": "The robot does the task just as well without the word HOP",
         },
         "wrong": {
@@ -241,7 +241,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "SI|LOOP(FOREVER); M(60, 60); W(0.5); END_LOOP\nWHEN(DISTANCE < 35); R(0.2, 60); END_WHEN\nTASK; LOOP(FOREVER); BEEP(0.1, 440); W(2); END_LOOP; END_TASK": "",
         },
         "wrong": {
-            "SI|W(1)\nWHEN(DISTANCE < 30); B(0.4, 60); R(0.5, 60); END_WHEN": "The robot did not move. Does the question of WHEN ever become TRUE? See what the robot reads: SHOW(DISTANCE)",
+            "SI|W(1)\nWHEN(DISTANCE < 30); B(0.4, 60); R(0.5, 60); END_WHEN": "The robot did not move. Does the condition of WHEN ever become TRUE? See what the robot reads: SHOW(DISTANCE)",
         },
     },
     14: {
@@ -252,7 +252,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "rote": {
             "SI|LOOP(3)\n  LED(TRUE); W(0.3)\n  LED(FALSE); W(0.3)\nEND_LOOP\nF(1, 60)": "The robot stopped 125 cm before the middle of the hospital. Make it go further.",
-            "SI|LOOP(13); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.19); END_LOOP; S; L(0.51, 60); LOOP(9); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.17); END_LOOP; S\nTASK; BEEP(0.1, 440); END_TASK": "The robot does the task just as well without the TASK. Let TASK do a part of the task.",
+            "SI|LOOP(13); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.19); END_LOOP; S; L(0.51, 60); LOOP(9); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.17); END_LOOP; S\nTASK; BEEP(0.1, 440); END_TASK": "The program solves the task just as well without the TASK. Use TASK for a part of the task.",
         },
         "wrong": {
             "SI|F(4, 60); L(0.51, 60); F(2, 60)\nTASK; LOOP(12); LED(TRUE); W(0.2); LED(FALSE); W(0.2); END_LOOP; END_TASK": "The robot stopped 40 cm before the middle of the hospital. Make it go further.",

@@ -45,7 +45,7 @@ def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
     done = on(pty_robot, "stop")
     assert (done.code, done.out) == (
-        0, f"Stopped: the robot on {pty_robot.port} has confirmed it.\n",
+        0, f"Stopped: the robot on {pty_robot.port} has confirmed the stop.\n",
     )  # fmt: skip
     assert not pty_robot.moves
     command.ended().gives(3, out="The robot was stopped from a computer.")

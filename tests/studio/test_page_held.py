@@ -119,12 +119,12 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     for count, ends in enumerate(("cancel", "nothing"), 1):
         page.click("#flash_write")
         hears(page, partial(held.has, count), "it is fetched")
-        said(page, "Fetching the firmware. Nothing is written yet.")
+        said(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
         said(page, "The firmware has not arrived.")
         if ends == "cancel":
             page.click("#flash_cancel")
-            said(page, "Cancelled. Nothing was written: the board is as it was.")
+            said(page, "Cancelled. Nothing was written: the board has not changed.")
         else:
             page.clock.fast_forward(25_000)
             said(page, "The firmware did not arrive, and nothing was written")
@@ -141,11 +141,11 @@ def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
     for _ in range(2):
         page.click("#flash_write")
         hears(page, lambda: held.routes, "it is fetched")
-        said(page, "Fetching the firmware. Nothing is written yet.")
+        said(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
         said(page, "The firmware has not arrived.")
         page.click("#flash_cancel")
-        said(page, "Cancelled. Nothing was written: the board is as it was.")
+        said(page, "Cancelled. Nothing was written: the board has not changed.")
     assert page.evaluate("window.port.opened") == 0
 
 
@@ -331,6 +331,6 @@ def test_a_stop_that_nobody_hears_says_so_at_once_and_is_tried_on(pages: Pages) 
         hears(page, lambda: held.routes, "it is asked")
         page.clock.fast_forward(3100)
         locator = page.locator("#stops")
-        locator.filter(has_text="STOP has not reached tsc studio.").wait_for(state="attached")
+        locator.filter(has_text="STOP did not reach tsc studio.").wait_for(state="attached")
         page.context.unroute_all()
         hears(page, lambda: page.locator("#stops").is_hidden(), "it is heard: there is no robot")

@@ -91,7 +91,7 @@ def test_a_check_can_be_ended(page: Page) -> None:
     page.click("#lesson_check")
     page.locator("#lesson_said", has_text="World 1 of 5").wait_for()
     page.click("#lesson_end")
-    assert page.inner_text("#lesson_said") == "You ended the check. There is no result."
+    assert page.inner_text("#lesson_said") == "You stopped the check, so there is no result."
     assert page.evaluate("document.activeElement.id") == "lesson_check"
     choose(page, 1)
     right, _ = catalogue.answers(FOLDERS[0])

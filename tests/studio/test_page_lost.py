@@ -19,13 +19,13 @@ from tiniscript.studio.attending import LEFT_S
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
 
-CONFIRMED = "Stopped: the robot has confirmed it."
-HIDDEN = "The robot was stopped: this page was hidden. Come back here to drive it."
+CONFIRMED = "Stopped: the robot has confirmed the stop."
+HIDDEN = "The robot was stopped because this page was hidden. Come back here to drive it."
 SILENT = (
     "The robot has not confirmed the stop."
-    " If it moves, lift it, and take its batteries or its plug out."
+    " If it moves, lift it and remove its batteries or unplug it."
 )
-LATE = "The robot has confirmed the stop now: it stands still."
+LATE = "The robot has now confirmed the stop: it stands still."
 # What is said beneath the buttons from now on.
 LISTEN = """() => {
   const line = document.querySelector('#link_said');

@@ -68,7 +68,7 @@ def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     page.keyboard.press("Escape")
-    said(page, "Stopped: the robot has confirmed it.")
+    said(page, "Stopped: the robot has confirmed the stop.")
     assert not robot.moves
 
 
