@@ -59,20 +59,20 @@ def names() -> Catalogue:
     for folder in ("robots", "virtual/worlds", "lessons"):
         for path in sorted((FOLDER.parent / folder).rglob("*.toml")):
             place = path.relative_to(FOLDER.parent).as_posix()
-            for said in _said_in(tomllib.loads(path.read_text(encoding="utf-8"))):
+            for said in _english_texts(tomllib.loads(path.read_text(encoding="utf-8"))):
                 catalogue.entries.setdefault((said, said), Entry(said, said, notes=[place]))
     return catalogue
 
 
-def _said_in(value: object) -> Iterator[str]:
+def _english_texts(value: object) -> Iterator[str]:
     """Yield each text that stands in English in a TOML file, in a row `en` or a table `en`."""
     if isinstance(value, dict):
         for key, each in value.items():
             said = each.values() if isinstance(each, dict) else [each]
-            yield from said if key == SOURCE else _said_in(each)
+            yield from said if key == SOURCE else _english_texts(each)
     elif isinstance(value, list):
         for each in value:
-            yield from _said_in(each)
+            yield from _english_texts(each)
 
 
 def pseudo(source: Catalogue) -> Catalogue:

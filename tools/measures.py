@@ -24,7 +24,7 @@ Import = ast.Import | ast.ImportFrom
 
 
 def main() -> int:
-    tracked = _tracked()
+    tracked = _tracked_files()
     package = [path for path in tracked if PACKAGE in path.parents and path.suffix == ".py"]
     tests = [path for path in tracked if ROOT / "tests" in path.parents]
     trees = {_name(path): ast.parse(path.read_bytes()) for path in package}
@@ -58,7 +58,7 @@ def direct(arrows: Graph) -> Graph:
     """Return the arrows without those that a path of others replaces; there is no circle."""
     return {
         name: {target for target in targets
-               if not any(target in _reached(arrows, other) for other in targets)}
+               if not any(target in _reachable(arrows, other) for other in targets)}
         for name, targets in arrows.items()
     }  # fmt: skip
 
@@ -75,7 +75,7 @@ def _graph(trees: dict[str, ast.Module]) -> Graph:
     }
 
 
-def _tracked() -> list[Path]:
+def _tracked_files() -> list[Path]:
     """Return the files that git knows and that are here, in English, Spanish or no language."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True)
     paths = (ROOT / name for name in listed.stdout.decode().split("\0") if name)
@@ -147,13 +147,13 @@ def _targets(each: Import, name: str, files: dict[str, ast.Module]) -> Iterator[
 
 def circles(graph: Graph) -> set[frozenset[str]]:
     """Return the groups of files that import each other."""
-    reached = {name: _reached(graph, name) for name in graph}
+    reached = {name: _reachable(graph, name) for name in graph}
     groups = (frozenset(other for other in found if name in reached[other])
               for name, found in reached.items())  # fmt: skip
     return {group for group in groups if len(group) > 1}
 
 
-def _reached(graph: Graph, start: str) -> set[str]:
+def _reachable(graph: Graph, start: str) -> set[str]:
     found: set[str] = set()
     left = [start]
     while left:

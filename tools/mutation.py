@@ -152,12 +152,12 @@ def braces_edits(text: str, suffix: str) -> Iterator[Edit]:
     for match in NUMBER.finditer(plain):
         yield match.start(), match.end(), str(int(match[0], 0) + 1)
     for match in IF.finditer(plain):
-        yield match.end(), _closing(plain, match.end()), "false"
+        yield match.end(), _closing_bracket(plain, match.end()), "false"
     for match in STATEMENT.finditer(plain):
         yield match.end() - len(match[0].lstrip()), match.end(), ";"
 
 
-def _closing(text: str, at: int) -> int:
+def _closing_bracket(text: str, at: int) -> int:
     """Return where the bracket closes that opened right before `at`."""
     depth = 1
     while depth:
@@ -328,14 +328,14 @@ class Copy:
 
     def failing(self, tests: Sequence[str], *, is_page: bool = False) -> str:
         """Return what fails first of the tests, or nothing."""
-        if is_page and (why := self._ends(["-m", "tools.builds.studio", "--again"])):
+        if is_page and (why := self._last_words(["-m", "tools.builds.studio", "--again"])):
             return f"the build: {why}"
         # A size, and what is generated or built, notice any change.
         left_out = "not keeps_to_its_size and not generated and not same_page"
         chosen = ["-q", "-x", "-p", "no:cacheprovider", "-k", left_out, *tests]
-        return self._ends(["-m", "pytest", *chosen])
+        return self._last_words(["-m", "pytest", *chosen])
 
-    def _ends(self, words: list[str]) -> str:
+    def _last_words(self, words: list[str]) -> str:
         environment = {
             **os.environ,
             "PYTHONPATH": str(self.folder / "compiler"),

@@ -43,9 +43,9 @@ def told(text: str) -> Iterator[str]:
         candidate = wrong.recovery.whole if is_whole and wrong.recovery else None
         for change in candidate.changes if candidate else ():
             for step in change.steps:
-                yield f"  {_shown(step)}\n    by {row_of(step, kit)}"
+                yield f"  {_step_text(step)}\n    by {row_of(step, kit)}"
         rest = applied(rest, its.edits)
-    yield from map(_told, check_text(text, kit).diagnostics)
+    yield from map(_diagnostic_text, check_text(text, kit).diagnostics)
 
 
 def row_of(step: Step, kit: Kit) -> str:
@@ -69,11 +69,11 @@ def _line(text: str) -> str:
     return text.strip().replace("\n", " ⏎ ")
 
 
-def _shown(step: Step) -> str:
+def _step_text(step: Step) -> str:
     return f"{step.code.number}  {' '.join(texts(step.before))}  ->  {' '.join(texts(step.after))}"
 
 
-def _told(diagnostic: Diagnostic) -> str:
+def _diagnostic_text(diagnostic: Diagnostic) -> str:
     values = {name: its for name, its in diagnostic.values.items() if its}
     how = "" if diagnostic.repair is None else "made" if diagnostic.repair.is_sure else "offered"
     return f"{diagnostic.code.number} {values} {how}".rstrip()

@@ -94,7 +94,7 @@ def take(path: Path, own: Translation) -> int:
     for message in catalog:
         forms = _forms(message, own.language)
         if message.id and not message.fuzzy and all(forms.values()):
-            if why := _take(message, forms, own):
+            if why := _take_text(message, forms, own):
                 print(f"{path}:{message.lineno}: {why}")
                 wrong += 1
             taken += not why
@@ -109,7 +109,7 @@ def _forms(message: Message, language: Language) -> Forms:
     return dict(zip(language.forms, message.string or ("",), strict=False))
 
 
-def _take(message: Message, forms: Forms, own: Translation) -> str:
+def _take_text(message: Message, forms: Forms, own: Translation) -> str:
     """Take one text; return why that is not possible, or nothing."""
     english, *plural = [message.id] if isinstance(message.id, str) else message.id
     name, _, key = (message.context or "").partition("/")

@@ -54,7 +54,9 @@ def test_programs_that_are_right_give_zero_and_each_is_checked_once(folder: Path
     assert "--csv is for several programs or a folder" in done.err
     (folder / "empty").mkdir()
     done = tsc("check", "empty").gives(2, out="")
-    assert done.err.startswith("tsc: there is no program in empty. Names of programs end in .ts or .tini.")
+    assert done.err.startswith(
+        "tsc: there is no program in empty. Names of programs end in .ts or .tini."
+    )
 
 
 def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None:

@@ -253,7 +253,9 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     done = tsc("check", *LINE)
     assert done.code == 1
     said = "tinibot has no BUTTON; the robot liner has it.\nTry:  "  # its first word
-    either = "If your robot is not a liner, remove the parts that need BUTTON. If it is, write above"
+    either = (
+        "If your robot is not a liner, remove the parts that need BUTTON. If it is, write above"
+    )
     assert f"{said}{either} the program: // robot: liner " in done.err
     assert "LINE_L = 0" not in done.err
     for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):

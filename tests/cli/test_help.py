@@ -362,5 +362,5 @@ def test_ctrl_c_before_tsc_knows_its_language(monkeypatch: pytest.MonkeyPatch) -
     def interrupt() -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tiniscript.cli._mend_streams", interrupt)
+    monkeypatch.setattr("tiniscript.cli._repair_streams", interrupt)
     assert main(["check", "-e", "S"]) == 2

@@ -273,7 +273,9 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     }  # fmt: skip
     verdicts = [row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())]
     assert verdicts.count("no_program") == len(notes)
-    assert done.err.startswith("Not checked because they look like notes: Léeme primero.TXT, README")
+    assert done.err.startswith(
+        "Not checked because they look like notes: Léeme primero.TXT, README"
+    )
     table = tsc("lesson", "check", "1", pupils).out.splitlines()
     assert [row[len("README.txt") :].strip() for row in table if row.startswith("README")] == [
         "no program"

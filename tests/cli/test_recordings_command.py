@@ -124,7 +124,11 @@ def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("events", "code", "said"),
     [
-        (((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")), 0, "Both did the same. Values compared: 2."),
+        (
+            ((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")),
+            0,
+            "Both did the same. Values compared: 2.",
+        ),
         (((200, "SHOW 5"), (300, "LOST")), 0, "Both did the same. Values compared: 1."),
         (((200, "SHOW 5"), (400, "MISSED")), 0, "Then values of the robot did not arrive"),
         ((), 1, "The recording ends before the robot said anything"),

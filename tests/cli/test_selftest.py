@@ -178,7 +178,7 @@ def test_only_the_port_of_the_self_test_is_opened(
     monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO", ())
     monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
     with PtyEnd(Firmware()) as end:
-        monkeypatch.setattr("tiniscript.doctor.diagnosis._only", lambda *_: end.port)
+        monkeypatch.setattr("tiniscript.doctor.diagnosis._only_port", lambda *_: end.port)
         done = inside("doctor", "--selftest", "--json").gives(3)
         assert end.heard == b""
     assert json.loads(done.out)["found"][0]["cause"] == "not_opened"

@@ -102,7 +102,8 @@ def test_the_machine_from_the_specification_passes_all(
     count = len(machine_cases()) - needing
     assert count > 600 and needing > 600
     assert done.out == (
-        f"{needing} cases with TASK, WHEN, CM or DEG were skipped: this machine does not support them.\n"
+        f"{needing} cases with TASK, WHEN, CM or DEG were skipped: "
+        "this machine does not support them.\n"
         f"{count} of {count} cases pass. Kit 5, bytecode 2.1.\n"
     )
     tasks = "--only", "tasks: "

@@ -45,9 +45,7 @@ def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
     times, shown = [end_s], []
     while times[-1] > 0:
         page.keyboard.press("ArrowLeft")
-        assert doing(page).startswith(
-            f"Looking back: at {seconds(page):.1f} s line 5 ran, F(0.5, "
-        )
+        assert doing(page).startswith(f"Looking back: at {seconds(page):.1f} s line 5 ran, F(0.5, ")
         assert seconds(page) < times[-1] or seconds(page) == times[-1] == 0
         if seconds(page) == times[-1]:
             break

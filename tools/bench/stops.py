@@ -182,7 +182,9 @@ def slowest(firmware: Path, robot: Robot, board: str, baud: int) -> Slowest:
 
 def summed_up(stopped: Busy) -> Slowest:
     each = sorted(stopped.cycles)
-    return Slowest(len(each), *map(_us, (each[-1], each[len(each) // 2], stopped.together())))
+    return Slowest(
+        len(each), *map(_microseconds, (each[-1], each[len(each) // 2], stopped.together()))
+    )
 
 
 def with_echoes(places: Iterable[int]) -> list[Place]:
@@ -205,5 +207,5 @@ def sample(stopped: Busy, count: int, seed: int) -> list[Place]:
     return places + (with_edges([places[0].at]) if stopped.has_discs else [])
 
 
-def _us(cycles: int) -> float:
+def _microseconds(cycles: int) -> float:
     return cycles / CYCLES_PER_MS * 1000

@@ -125,11 +125,11 @@ def main() -> None:
         studio.served() as server,
         studio.browser(driver, is_whole=True) as browser,
     ):
-        for rows in (_measured, _moved, _drawn):
+        for rows in (_measured, _time_to_move, _drawing_cost):
             found += [(ROWS[name], *its) for name, *its in rows(browser, server.address)]
         slowest_ms = _stopped_ms(browser)
-    with studio.served(_packed()) as server:
-        rated = _rated(server.address).values()
+    with studio.served(_packed_files()) as server:
+        rated = _lighthouse_scores(server.address).values()
         found.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in rated), "95"))
     packed = int(size_rows(PAGE)[-1].split()[1].replace(",", ""))
     found.append((ROWS["files"], f"{packed / 1e6:.2f} MB", "6 MB"))
@@ -162,7 +162,7 @@ def _typed_ms(page: Page, is_pausing: bool) -> float:
     return 1000 * (_processor_s(page) - before_s - 2 * short_s) / (2 * TYPED)
 
 
-def _moved(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
+def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     """A processor that is four times as slow, from a click on a picture to a robot that moves."""
     cold: list[float] = []
     warm: list[float] = []
@@ -193,7 +193,7 @@ def _moved(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     yield "pictures", f"{late} of {len(frames):,}", "none"
 
 
-def _drawn(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
+def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     """The same by the work of the page's main thread for each picture: load changes it less."""
     works: list[float] = []
     for _ in range(STARTS):
@@ -296,14 +296,14 @@ def _program(lines: int = LINES) -> str:
     return ";\n".join([*rows, "  S", "  W(1)", "END_LOOP"])
 
 
-def _packed() -> dict[str, serving.File]:
+def _packed_files() -> dict[str, serving.File]:
     return {
         name: file._replace(packed=gzip.compress(file.data, 6, mtime=0))
         for name, file in serving.files().items()
     }
 
 
-def _rated(address: str) -> dict[str, float]:
+def _lighthouse_scores(address: str) -> dict[str, float]:
     """Return the median points of each of Lighthouse's categories."""
     tools = found_tools()
     call = [*tools.npm, "exec", "--yes", "--ignore-scripts", LIGHTHOUSE, "--", address,

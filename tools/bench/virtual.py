@@ -30,12 +30,12 @@ ROWS = tuple(f"`{name}`" for name, _, _ in PROGRAMS)
 def main() -> None:
     found = []
     for name, robot, world in PROGRAMS:
-        times = max(SECONDS / _alone_s(name, robot, world) for _ in range(RUNS))
+        times = max(SECONDS / _run_alone_s(name, robot, world) for _ in range(RUNS))
         found.append((f"`{name}`", f"`{world}`", f"{times:,.0f}"))
     page.show("virtual", found)
 
 
-def _alone_s(name: str, robot: str, world: str) -> float:
+def _run_alone_s(name: str, robot: str, world: str) -> float:
     virtual = VirtualRobot(robots.load(robot), worlds.load(world))
     text = (ROOT / "examples" / name).read_text(encoding="utf-8")
     Talk(virtual).upload(text, is_detached=True)

@@ -88,7 +88,7 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
                         ignore=shutil.ignore_patterns(studio.STAMP))  # fmt: skip
         link = '<a href="studio/index.html">TiniScript Studio</a>'
     choice = (SITE / "choice.html").read_text(encoding="utf-8")
-    rows = "\n".join(map(_chosen, reversed(halves)))
+    rows = "\n".join(map(_start_page, reversed(halves)))
     choice = choice.replace("STUDIO", link).replace("HALVES", rows)
     (folder / "index.html").write_text(choice, encoding="utf-8")
     (folder / ".nojekyll").touch()  # else some hosts leave out folders that begin with _
@@ -102,7 +102,7 @@ def halves_of(found: list[Document]) -> list[str]:
     return [language for language in languages() if any(language in one.sources for one in found)]
 
 
-def _chosen(language: str) -> str:
+def _start_page(language: str) -> str:
     said = f"{about(language).name}: {text('documents', 'site/choice', language)}"
     return f'<a href="{language}/index.html" lang="{language}" hreflang="{language}">{said}</a>'
 

@@ -26,7 +26,9 @@ def kept() -> Made:
     """Return how what is kept of these documents is made, by its name in a clone."""
     made = wiring_pages(COMMAND, is_kept=True)
     pages = {name: make for name, make in made.items() if name.startswith(f"docs/{SOURCE}/")}
-    shown = _shown() | {drawing for make in pages.values() for drawing in _drawings(make())}
+    shown = _shown_drawings() | {
+        drawing for make in pages.values() for drawing in _drawings(make())
+    }
     return pages | {name: make for name, make in made.items() if name in shown}
 
 
@@ -39,7 +41,7 @@ def built() -> dict[str, str]:
     return {name: make() for name, make in (made | wiring_pages(COMMAND)).items()}
 
 
-def _shown() -> set[str]:
+def _shown_drawings() -> set[str]:
     """Return the drawings that the documents of a clone show, but for pages of wiring."""
     return {
         drawing

@@ -128,12 +128,12 @@ def _linked(source: str) -> str:
     """Return the title of a document, with a link to it, and its first sentence, or nothing."""
     if not source:
         return ""
-    title, sentence = _about((ROOT / source).read_text(encoding="utf-8"))
+    title, sentence = _title_and_readers((ROOT / source).read_text(encoding="utf-8"))
     link = f"[{title}]({Path(os.path.relpath(source, 'docs')).as_posix()})"
     return f"{link}<br>{sentence}" if sentence else link
 
 
-def _about(text: str) -> tuple[str, str]:
+def _title_and_readers(text: str) -> tuple[str, str]:
     """Return the title of a document, and the sentence that says who reads it, and for what."""
     _, _, body = f"\n{text}".partition("\n# ")
     title, *paragraphs = body.split("\n\n")
@@ -185,12 +185,12 @@ DOCUMENTS: dict[str, Callable[[], str]] = {
 def criteria() -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return its head and its rows."""
     rows: list[tuple[str, ...]] = [
-        (f"`{name}`", kind.meaning, ", ".join(_takes(kind))) for name, kind in KINDS.items()
+        (f"`{name}`", kind.meaning, ", ".join(_key_list(kind))) for name, kind in KINDS.items()
     ]
     return ("criterion", "met if", "takes"), rows
 
 
-def _takes(kind: Kind) -> list[str]:
+def _key_list(kind: Kind) -> list[str]:
     """Return the keys, with their defaults where these say something."""
     found = ["`at`"] if kind.places else []
     if kind.words:

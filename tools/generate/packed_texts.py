@@ -41,8 +41,8 @@ def packed(texts: Sequence[str]) -> Packed:
     common = _most_common(rows)
     candidates = []
     for _ in range(ROUNDS):
-        pairs, shorter = _paired(rows, common)
-        candidates.append(Packed(common, pairs, _halved(shorter, common)))
+        pairs, shorter = _pair_codes(rows, common)
+        candidates.append(Packed(common, pairs, _split_halves(shorter, common)))
         common = _most_common(shorter)
     return min(candidates, key=lambda each: each.size)
 
@@ -85,7 +85,7 @@ def _most_common(rows: Sequence[Sequence[int]]) -> tuple[int, ...]:
     return (END, *sorted(most))
 
 
-def _paired(
+def _pair_codes(
     rows: Sequence[Sequence[int]], common: Sequence[int]
 ) -> tuple[list[Pair], list[list[int]]]:
     """Return pairs, and the texts with their codes."""
@@ -97,7 +97,7 @@ def _paired(
         return 1 if code in common else 2
 
     while len(pairs) < FIRST_LETTER - 1:
-        uses = Counter(pair for row in made for pair in _apart(row) if END not in pair)
+        uses = Counter(pair for row in made for pair in _row_pairs(row) if END not in pair)
         possible = [
             (count * (halves(pair[0]) + halves(pair[1]) - 2), pair)
             for pair, count in uses.items()
@@ -109,11 +109,11 @@ def _paired(
         code = 1 + len(pairs)
         depths[code] = 1 + max(depths.get(each, 0) for each in pair)
         pairs.append(pair)
-        made = [_replaced(row, pair, code) for row in made]
+        made = [_replace_pair(row, pair, code) for row in made]
     return pairs, made
 
 
-def _halved(rows: Sequence[Sequence[int]], common: Sequence[int]) -> bytes:
+def _split_halves(rows: Sequence[Sequence[int]], common: Sequence[int]) -> bytes:
     """Return codes as bytes: the high half of each comes first."""
     halves: list[int] = []
     for code in (code for row in rows for code in row):
@@ -123,7 +123,7 @@ def _halved(rows: Sequence[Sequence[int]], common: Sequence[int]) -> bytes:
     return bytes(16 * high + low for high, low in zip(halves[::2], halves[1::2], strict=True))
 
 
-def _apart(row: Sequence[int]) -> list[Pair]:
+def _row_pairs(row: Sequence[int]) -> list[Pair]:
     """Return the pairs of a row; of a letter three times in a row there is one."""
     found: list[Pair] = []
     is_free = True
@@ -134,7 +134,7 @@ def _apart(row: Sequence[int]) -> list[Pair]:
     return found
 
 
-def _replaced(row: Sequence[int], pair: Pair, code: int) -> list[int]:
+def _replace_pair(row: Sequence[int], pair: Pair, code: int) -> list[int]:
     made: list[int] = []
     for letter in row:
         if made and (made[-1], letter) == pair:

@@ -37,12 +37,14 @@ def wiring_pages(command: str, is_kept: bool = False) -> dict[str, Callable[[], 
         found[f"docs/{language}/wiring/{name}.md"] = partial(
             _page, command, name, language, is_kept
         )
-        found[f"{picture}.{language}.svg"] = partial(_drawn, drawing_of, name, language)
-        found[f"{picture}.finished.{language}.svg"] = partial(_drawn, finished_of, name, language)
+        found[f"{picture}.{language}.svg"] = partial(_draw_page, drawing_of, name, language)
+        found[f"{picture}.finished.{language}.svg"] = partial(
+            _draw_page, finished_of, name, language
+        )
     return found
 
 
-def _drawn(draw: Callable[[Plan], str], name: str, language: str) -> str:
+def _draw_page(draw: Callable[[Plan], str], name: str, language: str) -> str:
     return draw(plan_of(robots.load(name), language))
 
 

@@ -127,9 +127,9 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
         for document in found
         if document.sources[SOURCE] in built or (root / document.sources[SOURCE]).is_file()
     ]
-    return [document._replace(sources=_with(built, document.sources)) for document in there]
+    return [document._replace(sources=_with_built(built, document.sources)) for document in there]
 
 
-def _with(built: Collection[str], kept: dict[str, str]) -> dict[str, str]:
+def _with_built(built: Collection[str], kept: dict[str, str]) -> dict[str, str]:
     names = {language: name_in(language, kept[SOURCE]) for language in languages()}
     return {value: name for value, name in names.items() if value in kept or name in built}

@@ -89,12 +89,14 @@ def page(source: str, on: Shelf, place: Place | None = None) -> str:
     for number, part in enumerate(_FENCED.split(text)):
         is_code = number % 2 == 1
         found.append(
-            part if is_code else _LINK.sub(lambda link: _led(link, source, here, on), part)
+            part
+            if is_code
+            else _LINK.sub(lambda link: _resolved_link(link, source, here, on), part)
         )
     return "".join(found)
 
 
-def _led(link: re.Match[str], source: str, here: Place, on: Shelf) -> str:
+def _resolved_link(link: re.Match[str], source: str, here: Place, on: Shelf) -> str:
     """Return a link of a document as the page has it."""
     mark, text, path, anchor = link.group(1), link.group(2), link.group(3), link.group(4) or ""
     if not path or ":" in path:
@@ -106,17 +108,17 @@ def _led(link: re.Match[str], source: str, here: Place, on: Shelf) -> str:
     if there is not None and there.language == here.language:
         return f"[{text}]({way(here.name, there.name)}.md{anchor})"
     if there is not None:
-        return _plain(text, way(here.address, there.address) + anchor)
+        return _outside_link(text, way(here.address, there.address) + anchor)
     if not on.has(target):
         raise CannotMake(f"{source}: {path}")
     if mark:
         on.pictures.add(target)
         return f"![{text}](/{FILES}/{target})"
     on.files.add(target)
-    return _plain(text, way(here.address, f"{FILES}/{target}"))
+    return _outside_link(text, way(here.address, f"{FILES}/{target}"))
 
 
-def _plain(text: str, address: str) -> str:
+def _outside_link(text: str, address: str) -> str:
     """Return a link that Sphinx leaves as it is: it leads out of this half of the site."""
     return f'<a href="{escape(address)}">{text}</a>'
 

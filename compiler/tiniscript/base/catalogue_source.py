@@ -155,7 +155,7 @@ def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
             table = next(iter(value), table)
         at = end
     if not problems and not again:
-        problems = [(line, f"this is no TOML: {said}") for line, said in _whole(text)]
+        problems = [(line, f"this is no TOML: {said}") for line, said in _toml_problems(text)]
     return sorted([*found.values(), *again], key=lambda row: row.line), above, problems
 
 
@@ -192,7 +192,7 @@ def _parsed(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
         return {}, (int(at[1]) - 1 if at else 0, _PLACE.sub("", str(error)))
 
 
-def _whole(text: str) -> list[Problem]:
+def _toml_problems(text: str) -> list[Problem]:
     """Return what is no TOML of a file each of whose rows is."""
     _, why = _parsed(text)
     return [(why[0] + 1, why[1])] if why else []

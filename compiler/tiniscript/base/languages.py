@@ -50,15 +50,15 @@ class ByLanguage(dict[str, T]):
     in the first language, as the catalogue `names` translates it."""
 
     def __missing__(self, language: str) -> T:
-        return _named(self.get(SOURCE) or next(iter(self.values())), language)
+        return _with_name(self.get(SOURCE) or next(iter(self.values())), language)
 
     def __repr__(self) -> str:
         return f"ByLanguage({super().__repr__()})"
 
 
-def _named(name: T, language: str) -> T:
+def _with_name(name: T, language: str) -> T:
     if isinstance(name, dict):
-        return {key: _named(value, language) for key, value in name.items()}  # type: ignore[return-value]
+        return {key: _with_name(value, language) for key, value in name.items()}  # type: ignore[return-value]
     return found("names", name, language) or name  # type: ignore[arg-type, return-value]
 
 
@@ -90,16 +90,16 @@ def table(language: str, name: str) -> str:
 
 def about(language: str) -> Language:
     """Return what a language says of itself."""
-    return _about(language if language in languages() else SOURCE)
+    return _load_language(language if language in languages() else SOURCE)
 
 
 @cache
-def _about(language: str) -> Language:
+def _load_language(language: str) -> Language:
     path = FOLDER / language / ITSELF
-    return Language(*_kept(path.with_suffix(KEPT), [path], lambda: _said(language)))
+    return Language(*_cached(path.with_suffix(KEPT), [path], lambda: _catalogue_texts(language)))
 
 
-def _said(language: str) -> tuple[Any, ...]:
+def _catalogue_texts(language: str) -> tuple[Any, ...]:
     from tiniscript.base.translations import read_language
 
     found = read_language(FOLDER / language / ITSELF)
@@ -155,7 +155,7 @@ def catalogue(name: str, language: str) -> Texts:
         if not is_clone():
             return {}
     beside = (own.with_name(each) for each in (SEEN, ITSELF))
-    found: Texts = _kept(path, [*files(name, language), *beside], lambda: texts(name, language))
+    found: Texts = _cached(path, [*files(name, language), *beside], lambda: texts(name, language))
     return found
 
 
@@ -180,7 +180,7 @@ def entries(name: str, language: str) -> Catalogue:
     return joined(english, name, own, seen, read_language(path.with_name(ITSELF)))
 
 
-def _kept(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
+def _cached(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
     """Return what is kept in a file if no source is newer, else make it, and keep it."""
     if _is_fresh(path, sources):
         with suppress(ValueError, EOFError, TypeError, OSError):  # half a file
@@ -195,7 +195,7 @@ def _kept(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
 
 def forget() -> None:
     """Read all languages again when they are next asked for: their folder is another one now."""
-    for lru_cache_wrapper in (languages, catalogue, _about):
+    for lru_cache_wrapper in (languages, catalogue, _load_language):
         lru_cache_wrapper.cache_clear()
 
 
@@ -205,7 +205,7 @@ def kept_files() -> dict[str, bytes]:
     made: dict[str, Any] = {}
     for language in languages():
         made |= {f"{language}/{name}": texts(name, language) for name in names}
-        made[f"{language}/{ITSELF.removesuffix('.toml')}"] = _said(language)
+        made[f"{language}/{ITSELF.removesuffix('.toml')}"] = _catalogue_texts(language)
     return {name + KEPT: marshal.dumps(value, KEPT_FORM) for name, value in made.items()}
 
 

@@ -47,7 +47,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _main(arguments: list[str]) -> int:
-    _mend_streams()
+    _repair_streams()
     language = language_of(arguments)
     try:
         code = _verb(arguments, language)
@@ -82,7 +82,7 @@ def _is_left_pipe(failure: OSError) -> bool:
         return False
 
 
-def _mend_streams() -> None:
+def _repair_streams() -> None:
     """Replace closed standard streams, and accept any character."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:

@@ -147,10 +147,14 @@ class _Marker:
         except NoWebAssembly as why:
             raise not_installed("virtual_needs_wasmtime", why) from None
         return Mark(
-            given.name, outcome.verdict, outcome.seed, self._said(outcome.findings), outcome.run
+            given.name,
+            outcome.verdict,
+            outcome.seed,
+            self._finding_rows(outcome.findings),
+            outcome.run,
         )
 
-    def _said(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
+    def _finding_rows(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
         return tuple((finding.kind, sentence(finding, self.language)) for finding in findings)
 
     def _mistakes(self, compiled: Compiled) -> Iterable[tuple[str, str]]:
@@ -239,7 +243,7 @@ def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: s
 def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> None:
     """Print a row for each program: its name, the verdict, and the first sentence."""
     rows = [
-        (inputs.shown(mark.name), text(f"verdict_{mark.verdict}", language), _first(mark))
+        (inputs.shown(mark.name), text(f"verdict_{mark.verdict}", language), _first_error(mark))
         for mark in marks
     ]
     wide = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
@@ -263,7 +267,7 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
     print(count.format(passed=passed, all=programs, number=number))
 
 
-def _first(mark: Mark) -> str:
+def _first_error(mark: Mark) -> str:
     sentence = printable(mark.said[0][1], 300) if mark.said else ""
     return f"[{mark.seed}] {sentence}" if mark.seed else sentence
 

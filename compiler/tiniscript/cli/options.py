@@ -47,9 +47,9 @@ class Options(ArgumentParser):
         self.language = language
         self.table = of_verb(command)
         for option in self.table:
-            self._take(option)
+            self._add_option(option)
 
-    def _take(self, option: Option) -> None:
+    def _add_option(self, option: Option) -> None:
         if option.is_argument:
             self.add_argument(option.name, nargs="*" if option.repeats else "?")
         elif option.kind is None:

@@ -49,7 +49,7 @@ class Named(NamedTuple):
 
 def check(options: Namespace, language: str) -> None:
     """Refuse impossible outputs before anything is done. Raises CommandError."""
-    outputs = list(_written(options))
+    outputs = list(_output_paths(options))
     if not outputs:
         return
     found = [_identity(output) for output in outputs]
@@ -96,7 +96,7 @@ def real_name(program: str) -> str:
     return program
 
 
-def _written(options: Namespace) -> Iterator[Named]:
+def _output_paths(options: Namespace) -> Iterator[Named]:
     values = vars(options)
     for dest, (label, _) in WRITES.items():
         path = values.get(dest)
@@ -158,13 +158,13 @@ def _identity(named: Named, may_be_device: bool = False) -> tuple[object, ...] |
         folder, name = os.path.split(os.path.realpath(named.path))
         with suppress(OSError):
             stat_result = os.stat(folder)  # noqa: PTH116 - a name that no file can have gets no Path
-            return stat_result.st_dev, stat_result.st_ino, _folded(name)
+            return stat_result.st_dev, stat_result.st_ino, _path_key(name)
     except (OSError, ValueError):  # opening it reports the reason
         pass
     return None
 
 
-def _folded(name: str) -> str:
+def _path_key(name: str) -> str:
     """Return a key that is the same for all names that a file system may treat as one."""
     if name.isascii():
         return name.lower()

@@ -36,10 +36,10 @@ PLAIN = {**dict(zip(*_SAME_WIDTH, strict=True)), **_WORDS}
 
 def register() -> None:
     """Make the handler known to Python's streams."""
-    codecs.register_error(NAME, _plain)
+    codecs.register_error(NAME, _replacement)
 
 
-def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
+def _replacement(error: UnicodeError) -> tuple[str | bytes, int]:
     if isinstance(error, UnicodeEncodeError):
         end = error.start + 1
         found = PLAIN.get(error.object[error.start : end])

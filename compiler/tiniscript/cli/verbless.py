@@ -48,19 +48,23 @@ def _now(command: str, words: list[str], language: str) -> str:
 
 def meant(name: str) -> str:
     """Return the command that somebody means with a word that is no verb, or nothing."""
-    called = (each for each in (*COMMANDS, "--version") if _plain(name) in _elsewhere(each).split())
+    called = (
+        each
+        for each in (*COMMANDS, "--version")
+        if _unaccented(name) in _names_in_languages(each).split()
+    )
     suggestion = next(called, None) or nearest(name, (*VERBS, *WAS)) or ""
     return typed(WAS.get(suggestion, suggestion))
 
 
 def is_help(name: str) -> bool:
     """Whether a word is what help is called in a language: `tsc ayuda`."""
-    return _plain(name) in _elsewhere("help").split()
+    return _unaccented(name) in _names_in_languages("help").split()
 
 
-def _elsewhere(verb: str) -> str:
+def _names_in_languages(verb: str) -> str:
     """Return what the same is called elsewhere, in each language."""
-    return " ".join(_plain(said_of(verb, "words", language)) for language in languages())
+    return " ".join(_unaccented(said_of(verb, "words", language)) for language in languages())
 
 
 def refuse_program(name: str) -> None:
@@ -121,12 +125,12 @@ def _weights(verb: str) -> dict[str, int]:
     weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | said("ends"), 1)
     weights |= dict.fromkeys(said("says"), 2)
     weights |= dict.fromkeys(said("summary"), 4)
-    weights |= dict.fromkeys(_stems(_elsewhere(verb)), 6)
+    weights |= dict.fromkeys(_stems(_names_in_languages(verb)), 6)
     return weights | dict.fromkeys(_stems(verb), 12)
 
 
 def _stems(text: str) -> set[str]:
-    words = re.findall("[a-z]+", _plain(text))
+    words = re.findall("[a-z]+", _unaccented(text))
     said = (word for word in words if len(word) >= SHORTEST and word not in _idle())
     return {word.removesuffix("s")[:STEM] for word in said}  # port and ports are one
 
@@ -137,6 +141,6 @@ def _idle() -> frozenset[str]:
     return frozenset(word for language in languages() for word in said("idle", language).split())
 
 
-def _plain(text: str) -> str:
+def _unaccented(text: str) -> str:
     """Return a text in small letters without accents."""
     return re.sub("[\u0300-\u036f]", "", unicodedata.normalize("NFD", text.casefold()))

@@ -67,10 +67,10 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     if end > start:
         end_line, last_column = source.position(end - 1)
         end_column = last_column + 1
-    fix = _filled(f"{number}/try", diagnostic.values, lang)
+    fix = _format_text(f"{number}/try", diagnostic.values, lang)
     for gap in _BESIDE:
         if diagnostic.values.get(gap):
-            fix = _filled(f"label/{gap}", {**diagnostic.values, "fix": fix}, lang)
+            fix = _format_text(f"label/{gap}", {**diagnostic.values, "fix": fix}, lang)
     return Message(
         number,
         "mistake" if diagnostic.is_mistake else "warning",
@@ -78,7 +78,7 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
         column,
         end_line,
         end_column,
-        _filled(f"{number}/message", diagnostic.values, lang),
+        _format_text(f"{number}/message", diagnostic.values, lang),
         fix,
     )
 
@@ -162,11 +162,11 @@ def _texts(key: str, lang: str) -> Iterator[str]:
 def names_found(diagnostic: Diagnostic) -> bool:
     """Whether a message says what was found, as it stands in the text."""
     key = f"{diagnostic.code.number}/message"
-    chosen = _chosen(key, diagnostic.values, languages.SOURCE)
+    chosen = _first_filled_text(key, diagnostic.values, languages.SOURCE)
     return ("", "found") in _GAP.findall(chosen)
 
 
-def _chosen(key: str, values: Mapping[str, str], lang: str) -> str:
+def _first_filled_text(key: str, values: Mapping[str, str], lang: str) -> str:
     """Return the first text whose gaps all have a value, else the last one."""
     chosen = ""
     for chosen in _texts(key, lang):
@@ -175,8 +175,8 @@ def _chosen(key: str, values: Mapping[str, str], lang: str) -> str:
     return chosen
 
 
-def _filled(key: str, values: Mapping[str, str], lang: str) -> str:
-    chosen = _chosen(key, values, lang)
+def _format_text(key: str, values: Mapping[str, str], lang: str) -> str:
+    chosen = _first_filled_text(key, values, lang)
 
     def gap(match: re.Match[str]) -> str:
         longest = FIX_CHARACTERS if match[2] in ("fix", "right", "whole") else VALUE_CHARACTERS

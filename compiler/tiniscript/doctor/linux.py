@@ -17,7 +17,7 @@ def inspect_linux(system: System) -> Computer:
         tuple(system.ports()),
         tuple(_adapters(system)) if system.names(USB) else None,
         bluetooth,
-        _paired(system) if bluetooth == ON else (),
+        _paired_devices(system) if bluetooth == ON else (),
         frozenset(OF_INTEREST & set(_programs(system).values())),
     )
 
@@ -52,7 +52,7 @@ def _bluetooth(system: System) -> str:
     return ON
 
 
-def _paired(system: System) -> tuple[str, ...] | None:
+def _paired_devices(system: System) -> tuple[str, ...] | None:
     """Return the names of paired devices; newer and older bluetoothctl are asked differently."""
     for words in (("devices", "Paired"), ("paired-devices",)):
         said = system.output("bluetoothctl", *words)

@@ -84,15 +84,15 @@ def _paragraph(lines: list[str]) -> list[Block]:
 
 def printed(page: str) -> str:
     """Return what is printed of a page."""
-    return _of(page, {"print": ""})
+    return _section(page, {"print": ""})
 
 
 def beside_simulator(page: str) -> str:
     """Return what is read of a page in the studio; a hint is a paragraph that begins with HINT."""
-    return _of(page, {"page": "", "hint": HINT})
+    return _section(page, {"page": "", "hint": HINT})
 
 
-def _of(page: str, kept: dict[str, str]) -> str:
+def _section(page: str, kept: dict[str, str]) -> str:
     found = []
     for line in page.split("\n"):
         mark = MARK.match(line)

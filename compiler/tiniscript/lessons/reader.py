@@ -61,7 +61,7 @@ def read(text: str, world: World, name: str) -> Lesson:
         titles = _labels(title)
         title.finish()
         robot = root.choice("robot", robots.names())
-        known = _known(robots.load(robot or robots.names()[0]))
+        known = _known_words(robots.load(robot or robots.names()[0]))
         lesson = Lesson(
             shown(name),
             robot,
@@ -102,12 +102,12 @@ def _answer(table: Table, is_wrong: bool) -> Answer:
     if len(program) > PROGRAM_CHARACTERS:
         table.complain("label_bad", "program", most=str(PROGRAM_CHARACTERS))
     labels = _labels(table)
-    said = _said(table.table("says", 'says = { key = "still" }')) if is_wrong else {}
+    said = _sentences(table.table("says", 'says = { key = "still" }')) if is_wrong else {}
     table.finish()
     return Answer(program, labels, said)
 
 
-def _said(says: Table) -> dict[str, str]:
+def _sentences(says: Table) -> dict[str, str]:
     """Return in each language the sentence of a finding: its key, its values, and its place.
 
     That one is `place`, or a text in each language.
@@ -176,7 +176,7 @@ def _span(table: Table, key: str, most: int) -> tuple[float, float]:
     return low / ONE, high / ONE
 
 
-def _known(robot: Robot) -> dict[str, tuple[str, ...]]:
+def _known_words(robot: Robot) -> dict[str, tuple[str, ...]]:
     """Return what a criterion may name, by `Kind.words`."""
     sensors = tuple(device.name for device in robot.kit.sensors)
     return {
@@ -222,7 +222,7 @@ def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]])
     words: tuple[str, ...] = ()
     if kind.words in WHATS:
         if kind.words == "switch" or table.has("what"):
-            words = _what(table, known[kind.words])
+            words = _asked_device(table, known[kind.words])
     elif kind.words:
         words = _words(table, known[kind.words])
     table.finish()
@@ -236,7 +236,7 @@ def _number(table: Table, what: Number) -> float:
     return table.number(what.key, low, high, f"{what.key} = {what.low:g}") / ONE
 
 
-def _what(table: Table, names: tuple[str, ...]) -> tuple[str, ...]:
+def _asked_device(table: Table, names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the device that a criterion asks for."""
     found = table.text("what", 'what = "LED"')
     if found is None or found in names:

@@ -47,13 +47,13 @@ ul.checks li::before { content: "\\2610"; display: inline-block; width: 1.33em; 
 BLANKS = ("names", "robot", "date")
 
 
-def _said(language: str, key: str) -> str:
+def _sheet_text(language: str, key: str) -> str:
     return languages.text("lessons", f"sheet/{key}", language)
 
 
 def sheet(page: str, lesson: Lesson, is_teachers: bool, language: str) -> str:
     """Return the page of pupils or of teachers. `page` is its Markdown."""
-    said = partial(_said, language)
+    said = partial(_sheet_text, language)
     found = blocks(page)
     title = lesson.titles[language]
     parts = [_html(block) for block in found]

@@ -129,7 +129,7 @@ def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
         if span is not None and lacks(need, robot)
     ]
     if asks_remote and not has_remote(robot):
-        lacking.append(_no_remote(compiled, robot))
+        lacking.append(_remote_missing(compiled, robot))
     if not lacking:
         return compiled
     return compiled._replace(
@@ -137,7 +137,7 @@ def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
     )
 
 
-def _no_remote(compiled: Compiled, robot: Robot) -> codes.Diagnostic:
+def _remote_missing(compiled: Compiled, robot: Robot) -> codes.Diagnostic:
     """Return the mistake of a program that asks a remote control which the robot does not have."""
     from tiniscript.bytecode.disassembly import devices_of, rows
 

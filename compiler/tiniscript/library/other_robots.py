@@ -38,11 +38,11 @@ def naming_robots(
     """
     if not any(diagnostic.code in (*_UNKNOWN, OTHER_ROBOT) for diagnostic in diagnostics):
         return diagnostics
-    found = named_among(_others(), diagnostics, text, robot.name, robot.kit)
-    return found if is_chosen else [_told(diagnostic, text) for diagnostic in found]
+    found = named_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
+    return found if is_chosen else [_with_robot_names(diagnostic, text) for diagnostic in found]
 
 
-def _told(diagnostic: Diagnostic, text: str) -> Diagnostic:
+def _with_robot_names(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a hint to a robot that comes with tsc with what the program needs to name it."""
     first = diagnostic.values.get("first")
     if diagnostic.code is not OTHER_ROBOT or first not in robots.names():
@@ -99,7 +99,7 @@ def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
     return bool(words) and any(words & set(robot.kit.names) for _, robot in given.profiles())
 
 
-def _others() -> dict[str, Kit]:
+def _other_kits() -> dict[str, Kit]:
     """Return the known kits, by the name or the path of their robots."""
     others: dict[str, Kit] = {}
     for name in robots.names():

@@ -72,7 +72,7 @@ class KeyFile(KeyRing):
 
         Raises BadKeys, and TooManyKeys where keys that are there would go for it.
         """
-        with self._alone():
+        with self._locked():
             before = self.all()
             given = {key.place: key for key in known_seals(keys, before)}
             rest = [key for key in before if key.is_pending or key.place not in given]
@@ -83,19 +83,19 @@ class KeyFile(KeyRing):
 
     def forget(self, robot: int) -> None:
         """Take the keys of a robot out of the file. Raises BadKeys."""
-        with self._alone():
+        with self._locked():
             self._write([key for key in self.all() if key.id != robot])
 
     def accept(self, robot: int) -> None:
         """Let a robot answer where another one did, or with its name. Raises BadKeys."""
         try:
-            met_robots.accept(self._met, robot)
+            met_robots.accept(self._met_robots_path, robot)
         except OSError as failure:
             raise BadKeys(failure.strerror or str(failure)) from None
 
     # -- as a KeyRing: where the file cannot be read there is no key ------------------------------
 
-    def _kept(self) -> list[RobotKey]:
+    def _load_keys(self) -> list[RobotKey]:
         with suppress(BadKeys):
             robot_keys = self.all()
             return (
@@ -106,22 +106,22 @@ class KeyFile(KeyRing):
         return []
 
     @property
-    def _met(self) -> Path:
+    def _met_robots_path(self) -> Path:
         return self.path.with_name("robots.json")
 
     def robot_at(self, place: str) -> int | None:
-        return met_robots.met(self._met).places.get(place)
+        return met_robots.met(self._met_robots_path).places.get(place)
 
     def meet(self, place: str, robot: int) -> None:
         if not self._is_for_virtual:
-            met_robots.meet(self._met, place, robot)
+            met_robots.meet(self._met_robots_path, place, robot)
 
     def accepts(self, robot: int) -> bool:
-        return self._accepts_all or robot in met_robots.met(self._met).accepted
+        return self._accepts_all or robot in met_robots.met(self._met_robots_path).accepted
 
     def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         try:
-            with self._alone():
+            with self._locked():
                 before = self.all()
                 after = change(before)
                 if after != before:
@@ -131,7 +131,7 @@ class KeyFile(KeyRing):
         return True
 
     @contextmanager
-    def _alone(self) -> Iterator[None]:
+    def _locked(self) -> Iterator[None]:
         """No other thread and no other process changes the file. Raises BadKeys."""
         with _LOCK:
             try:

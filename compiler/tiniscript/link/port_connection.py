@@ -174,7 +174,7 @@ class PortConnection(LinkConnection):
             while not self._is_closing:
                 with self._news:
                     data = self.session.poll(self._now_ms())
-                    self._tell()
+                    self._notify()
                 if data:
                     self._write(data)
                 heard = self._read()
@@ -182,7 +182,7 @@ class PortConnection(LinkConnection):
                     with self._news:
                         self.heard += len(heard)
                         self.session.receive(heard, self._now_ms())
-                        self._tell()
+                        self._notify()
         except (OSError, TypeError) as why:  # TypeError: from pyserial, if the port is closed
             self._end(str(why))
         except Exception as bug:
@@ -207,7 +207,7 @@ class PortConnection(LinkConnection):
         with suppress(serial.SerialTimeoutException):  # counts as lost: the session sends it again
             self._port.write(data)
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         """Pass events and outcomes on to the waiting thread and to the listener."""
         time_ms = self._now_ms()
         told = [(time_ms, event) for event in self.session.events()]

@@ -85,7 +85,7 @@ class RemoteControl:
         self._held.clear()
         self._said, self._unanswered = NOTHING, 0
         self._take_asked()
-        self._tell(Reply(status))
+        self._take_reply(Reply(status))
 
     @property
     def newest(self) -> Pressed:
@@ -135,12 +135,12 @@ class RemoteControl:
         """Take the robot's answer. One that takes no keys is not told of them again."""
         self._unanswered = 0
         if outcome.status == OK:
-            self._tell(Reply(OK, 0, EmptyReply()))
+            self._take_reply(Reply(OK, 0, EmptyReply()))
             return
         self._held.clear()
         self._said = NOTHING
         self._take_asked()
-        self._tell(Reply(outcome.status, outcome.detail))
+        self._take_reply(Reply(outcome.status, outcome.detail))
 
     def hear(self) -> None:
         """An earlier word was answered."""
@@ -148,13 +148,13 @@ class RemoteControl:
 
     def miss(self) -> None:
         """No answer has come in time."""
-        self._tell(Reply(LOST))
+        self._take_reply(Reply(LOST))
 
     def _take_asked(self) -> None:
         self._sent += self._asked.values()
         self._asked.clear()
 
-    def _tell(self, reply: Reply[EmptyReply]) -> None:
+    def _take_reply(self, reply: Reply[EmptyReply]) -> None:
         for pending_request in self._sent:
             pending_request.outcome = reply
         self._sent.clear()

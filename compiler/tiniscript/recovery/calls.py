@@ -58,14 +58,16 @@ def _calls(body: str, start: int) -> Iterator[_Call]:
         word = WORDS.get(match[1].upper())
         if word is not None and word.arguments:
             span = Span(start + match.start(), start + match.end())
-            yield _Call(word, _parted(match[2]), span, match[0])
+            yield _Call(word, _split_values(match[2]), span, match[0])
 
 
-def _parted(values: str) -> list[str]:
+def _split_values(values: str) -> list[str]:
     return [each.strip() for each in _COMMA.split(values)]
 
 
-def _told(call: _Call, code: codes.Code, fix: str, is_sure: bool, **values: str) -> Diagnostic:
+def _call_diagnostic(
+    call: _Call, code: codes.Code, fix: str, is_sure: bool, **values: str
+) -> Diagnostic:
     repair = Repair((Edit(call.span, fix),), is_sure)
     return Diagnostic(code, call.span, {**values, "fix": fix}, call.span, repair)
 
@@ -83,7 +85,9 @@ def _unit_apart(call: _Call) -> Diagnostic | None:
         return None
     first, second = (word for word, its in UNIT_OF.items() if its == unit)
     fix = call.with_values([f"{values[0]} {unit}", *values[1:]])
-    return _told(call, codes.UNIT_PLACE, fix, True, found=unit, first=first, second=second)
+    return _call_diagnostic(
+        call, codes.UNIT_PLACE, fix, True, found=unit, first=first, second=second
+    )
 
 
 def _thousands(call: _Call) -> Diagnostic | None:
@@ -93,7 +97,7 @@ def _thousands(call: _Call) -> Diagnostic | None:
         return None
     joined = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
     inside = joined.partition("(")[2].rpartition(")")[0]
-    values = _parted(inside)
+    values = _split_values(inside)
     is_of_time = any(
         argument.unit == "s" and value not in call.values
         for argument, value in zip(wanted, values, strict=False)
@@ -101,7 +105,7 @@ def _thousands(call: _Call) -> Diagnostic | None:
     if len(values) != len(wanted) or is_of_time:
         return None
     fix = call.with_values(values)
-    return _told(call, codes.BAD_NUMBER, fix, True, found=found[0])
+    return _call_diagnostic(call, codes.BAD_NUMBER, fix, True, found=found[0])
 
 
 def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
@@ -116,7 +120,7 @@ def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
     fix = f"{call.with_values(powers)};W({time})"
     fix += "" if text[call.span.end :].strip() else ";S"
     values = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
-    return _told(call, codes.ARGUMENT_COUNT, fix, False, **values)
+    return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **values)
 
 
 # -- what is shown of a call that nothing reads ---------------------------------------------------
@@ -141,7 +145,7 @@ def own_example(text: str) -> str:
 def likely_word(word: str, text: str) -> str:
     """Return the word of a call that an unknown one may be by its letters and its values."""
     call = _ANY_CALL.fullmatch(text)
-    values = _parted(call[1]) if call else []
+    values = _split_values(call[1]) if call else []
     numbers = [number for number in map(_NUMBER.match, values) if number]
     if not values or len(numbers) != len(values):
         return ""

@@ -50,16 +50,16 @@ def counters(source: Source) -> list[Diagnostic]:
     ends = Counter(b.text for row in rows for a, b in pairwise(row) if _is_end(a, b, b.text))
     start = 0
     for row, own, line in zip(rows, found, source.text.split("\n"), strict=True):
-        spans = _spans(row, start)
+        spans = _counter_spans(row, start)
         for each in own:
             in_header = [it.text for it in row[each.start : each.end]].count(each.name)
             is_used = words[each.name] > in_header + ends[each.name]
             if is_used or any(said_of(it.text, "each") for it in row[each.start : each.end]):
                 span = Span(spans[each.start].start, spans[each.end - 1].end)
                 told.append(
-                    _told(
+                    _counter_diagnostic(
                         span,
-                        _said(source, spans[each.start : each.begun]),
+                        _spans_text(source, spans[each.start : each.begun]),
                         "LOOP",
                         _loop(each, is_used),
                     )
@@ -67,18 +67,18 @@ def counters(source: Source) -> list[Diagnostic]:
         for k, (end, name) in enumerate(pairwise(row)):
             if name.text in names and _is_end(end, name, name.text):
                 span = Span(spans[k].start, spans[k + 1].end)
-                told.append(_told(span, source[span], "END_LOOP", "END_LOOP"))
+                told.append(_counter_diagnostic(span, source[span], "END_LOOP", "END_LOOP"))
         start += len(line) + 1
     return told
 
 
-def _told(span: Span, found: str, right: str, fix: str) -> Diagnostic:
+def _counter_diagnostic(span: Span, found: str, right: str, fix: str) -> Diagnostic:
     code: Code = codes.OTHER_LANGUAGE
     values = {"found": found, "right": right, "fix": fix, "usage": WORDS[right].usage}
     return Diagnostic(code, span, values, span, Repair((Edit(span, fix),), False))
 
 
-def _said(source: Source, spans: Sequence[Span]) -> str:
+def _spans_text(source: Source, spans: Sequence[Span]) -> str:
     return source[Span(spans[0].start, spans[-1].end)].partition("(")[0].strip()
 
 
@@ -88,7 +88,7 @@ def _loop(counter: _Counter, is_used: bool) -> str:
     return f"{name} = {before};{loop};{name} = {name} + 1" if is_used else loop
 
 
-def _spans(row: Sequence[Lexeme], start: int) -> list[Span]:
+def _counter_spans(row: Sequence[Lexeme], start: int) -> list[Span]:
     found = []
     for token in row:
         start += width(token)

@@ -44,7 +44,9 @@ def meant_in(
     if not told and meant.is_whole:
         misplaced = [each for each in diagnostics if each.code in rows.MISPLACED]
         said_of_it = misplaced or [each for each in diagnostics if each.is_mistake]
-        return [_moved(each, written, meant, recovery.kit) for each in said_of_it][:1]
+        return [_moved_lines_diagnostic(each, written, meant, recovery.kit) for each in said_of_it][
+            :1
+        ]
     if not told:
         return []
     told_of = [(each, _diagnostic(each, meant, diagnostics)) for each in told]
@@ -53,17 +55,19 @@ def meant_in(
         kept = [] if is_sure else keeps_all([own for _, own in told_of], source.text, recovery.kit)
         told_of = [it for it, is_kept in zip(told_of, kept, strict=False) if is_kept]
     others = [each for other in recovery.others for each in explained(written, other)]
-    return [_either(_carried(own, source.text), each, others) for each, own in told_of]
+    return [
+        _with_rival(_with_carried_unit(own, source.text), each, others) for each, own in told_of
+    ]
 
 
-def _carried(diagnostic: Diagnostic, text: str) -> Diagnostic:
+def _with_carried_unit(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a mistake of a unit in a variable; moves that take the value get it: `carried`."""
     set_to = (
         _SET.fullmatch(diagnostic.values.get("fix", "")) if diagnostic.code is codes.UNIT else None
     )
     unit = _UNIT.search(diagnostic.values.get("found", ""))
-    way = _way(unit[0]) if unit else ""
-    uses = [*_uses(set_to[1], way).finditer(text)] if set_to and way else []
+    way = _unit_word(unit[0]) if unit else ""
+    uses = [*_move_pattern(set_to[1], way).finditer(text)] if set_to and way else []
     uses = uses or [
         use
         for head, use, _ in _in_bodies(text, text)
@@ -81,7 +85,9 @@ def _carried(diagnostic: Diagnostic, text: str) -> Diagnostic:
     return diagnostic._replace(values={**diagnostic.values, "carried": carried}, repair=repair)
 
 
-def _either(diagnostic: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
+def _with_rival(
+    diagnostic: Diagnostic, told: Explanation, others: Sequence[Explanation]
+) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
     fixes = (each.fix for each in others if each.place == told.place)
     other = next((fix for fix in fixes if fix and fix != told.fix), "")
@@ -140,11 +146,13 @@ def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
     return code, values
 
 
-def _moved(diagnostic: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnostic:
+def _moved_lines_diagnostic(
+    diagnostic: Diagnostic, text: str, meant: Candidate, kit: Kit
+) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
     made = _with_units(text, meant.text)
     lost = [each for each in difference(text, made, kit).lost
-            if (unit := _UNIT.search(each)) and _way(unit[0])]  # fmt: skip
+            if (unit := _UNIT.search(each)) and _unit_word(unit[0])]  # fmt: skip
     values = {**diagnostic.values, "whole": in_one_line(made), "lost": ", ".join(lost)}
     if diagnostic.code is codes.WRONG_END:
         values |= {"swapped": diagnostic.values["right"], "apart": ""}
@@ -163,13 +171,13 @@ def _moved(diagnostic: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Dia
 # -- units that stand in a variable, or in the brackets of a DEF -----------------------------------
 
 
-def _way(unit: str) -> str:
+def _unit_word(unit: str) -> str:
     """Return the word for a unit behind the first value of a move, "" where none is."""
     said = said_of(plain(unit), "unit")
     return next((way for way, its in WAYS.items() if said and its.unit == said[0]), "")
 
 
-def _uses(name: str, way: str) -> re.Pattern[str]:
+def _move_pattern(name: str, way: str) -> re.Pattern[str]:
     """Return the pattern of the moves that go so much of a unit, and have none."""
     moves = "|".join(move for move in MOVES if UNIT_OF[move] == way)
     return re.compile(rf"(?i)\b(?:{moves})\s*\(\s*{name}(?P<unit>)\s*,[^();\n]*\)")
@@ -180,8 +188,10 @@ def _in_bodies(written: str, meant: str) -> Iterator[tuple[Span, re.Match[str], 
     for head in _HEAD.finditer(written):
         body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant)
         for each in _VALUE.finditer(written, head.start("values"), head.end()):
-            way = _way(each[2])
-            for use in _uses(each[1], way).finditer(meant, *body.span()) if body and way else ():
+            way = _unit_word(each[2])
+            for use in (
+                _move_pattern(each[1], way).finditer(meant, *body.span()) if body and way else ()
+            ):
                 yield Span(*each.span()), use, way
 
 

@@ -94,29 +94,29 @@ class _Part:
             for piece in _PIECE.finditer(_HUMP.sub(" ", source)):
                 humps = len(_HUMP.findall(source[: piece.end()]))
                 at = start + piece.start() - min(humps, piece.start())
-                yield from _parted(plain(piece[0]), at if humps else start + piece.start())
+                yield from _split_key(plain(piece[0]), at if humps else start + piece.start())
 
     def told(self, is_inside: bool) -> Iterator[Diagnostic]:
         """Give what is told of an instruction, which is inside a block or not."""
-        if order := self._given():
+        if order := self._assigned_key():
             yield self._order(*order, "IF" if is_inside else "WHEN")
             return
-        asks = (k for k, each in enumerate(self.pieces) if self._meant(each) in ASKING)
+        asks = (k for k, each in enumerate(self.pieces) if self._key_of(each) in ASKING)
         k = next(asks, len(self.pieces))
         while k < len(self.pieces):
             key = self._key(k) or self._side(k)
             if key is not None:
-                yield from self._said(key)
+                yield from self._key_diagnostics(key)
             k = key.end if key else k + 1
 
-    def _meant(self, piece: _Piece) -> str:
+    def _key_of(self, piece: _Piece) -> str:
         return self.names.meant(piece.word) if piece.word.isalpha() else ""
 
     def _span(self, key: _Key) -> Span:
         first, last = self.pieces[key.first], self.pieces[key.end - 1]
         return Span(self.at + first.span.start, self.at + last.span.end)
 
-    def _said(self, key: _Key) -> Iterator[Diagnostic]:
+    def _key_diagnostics(self, key: _Key) -> Iterator[Diagnostic]:
         span = self._span(key)
         found = self.text[span.start - self.at : span.end - self.at]
         if not key.right:
@@ -128,7 +128,7 @@ class _Part:
 
     # -- an order that is given to a key ----------------------------------------------------------
 
-    def _given(self) -> tuple[_Key, str] | None:
+    def _assigned_key(self) -> tuple[_Key, str] | None:
         key = self._key(0) if self.pieces else None
         if key is None or not key.right:
             return None
@@ -153,20 +153,20 @@ class _Part:
 
     def _key(self, k: int) -> _Key | None:
         """Return the key that pieces from one on say: its side goes before it or behind it."""
-        begun = self._while(k, lambda it: it.isalpha() and _says(it, *_LINKS))
+        begun = self._while(k, lambda it: it.isalpha() and _is_key_word(it, *_LINKS))
         side = _side(self._word(begun))
         at = (
-            self._while(begun + 1, lambda it: _says(it, "the", "of") or it == "_")
+            self._while(begun + 1, lambda it: _is_key_word(it, "the", "of") or it == "_")
             if side
             else begun
         )
         if not _is_key(self._word(at)):
             return None
-        end = self._while(at, lambda it: _is_key(it) or _says(it, "the", "of"))
+        end = self._while(at, lambda it: _is_key(it) or _is_key_word(it, "the", "of"))
         end = self._while(at, _is_key) if self._word(end) in ("A", "B") else end
         signs: list[str] = []
         if not side:
-            behind = self._while(end, lambda it: it in _EQUAL or _says(it, *_LINKS))
+            behind = self._while(end, lambda it: it in _EQUAL or _is_key_word(it, *_LINKS))
             letters = (n for n in range(end, behind + 1) if self._word(n) in ("A", "B"))
             side = _side(self._word(behind))
             last = behind if side else next(letters, None)
@@ -179,25 +179,29 @@ class _Part:
                 return None
             is_compared = bool({*signs} & {"=", "==", "_"}) and self._word(behind) not in ("", ")")
             end = (last if last is not None else behind if is_compared else end - 1) + 1
-        closing = self._while(end, lambda it: it in ('"', "'") or _says(it, "is", "the", "pressed"))
-        end = closing if self._says_pressed(end, closing) or '"' in signs or "'" in signs else end
+        closing = self._while(
+            end, lambda it: it in ('"', "'") or _is_key_word(it, "is", "the", "pressed")
+        )
+        end = (
+            closing if self._mentions_pressed(end, closing) or '"' in signs or "'" in signs else end
+        )
         if "(" in signs and self._word(end) == ")":
             end += 1
         is_not = bool({*signs} & {"<>", "!="})
         if self._word(end) in ("=", "==") and self._word(end + 1) in ("0", "1"):
             is_not, end = self._word(end + 1) == "0", end + 2
-        first = k if self._says_pressed(k, begun) else begun
+        first = k if self._mentions_pressed(k, begun) else begun
         before = self.pieces[k - 1] if k else _Piece("", Span(0, 0))
-        if before.word == "(" or self._meant(before) in ASKING:
+        if before.word == "(" or self._key_of(before) in ASKING:
             first = k  # with its article
         return _Key(first, end, f"{'NOT ' if is_not else ''}KEY_{side}" if side else "")
 
     def _side(self, k: int) -> _Key | None:
         """Return the key that a side alone says, which nothing else is asked with: `WHEN(UP)`."""
         side = _side(self._word(k))
-        end = self._while(k + 1, lambda it: _says(it, "is", "pressed"))
+        end = self._while(k + 1, lambda it: _is_key_word(it, "is", "pressed"))
         is_alone = self._word(k - 1) == "(" and self._word(end) == ")"
-        is_upright = side in ("UP", "DOWN") or self._says_pressed(k + 1, end)
+        is_upright = side in ("UP", "DOWN") or self._mentions_pressed(k + 1, end)
         return _Key(k, end, f"KEY_{side}") if side and is_alone and is_upright else None
 
     def _word(self, k: int) -> str:
@@ -208,11 +212,11 @@ class _Part:
             k += 1
         return k
 
-    def _says_pressed(self, start: int, end: int) -> bool:
-        return any(_says(self._word(k), "pressed") for k in range(start, end))
+    def _mentions_pressed(self, start: int, end: int) -> bool:
+        return any(_is_key_word(self._word(k), "pressed") for k in range(start, end))
 
 
-def _says(word: str, *kinds: str) -> bool:
+def _is_key_word(word: str, *kinds: str) -> bool:
     return bool(said_of(word, *kinds)) and not {word, concept_of(word)} & {*WORDS, *ASKING}
 
 
@@ -237,7 +241,7 @@ def _words() -> tuple[str, ...]:
     return tuple(word for word in lexicon() if _is_key(word) and word.isascii())
 
 
-def _parted(word: str, start: int) -> Iterator[_Piece]:
+def _split_key(word: str, start: int) -> Iterator[_Piece]:
     """Give a word, in two where a key and its side are glued: `KEYUP`."""
     for key, ends in product(_words(), (str.removeprefix, str.removesuffix)):
         rest = ends(word, key)

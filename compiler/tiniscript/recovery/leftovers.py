@@ -94,7 +94,7 @@ def _words(row: str, start: int, names: Names, tasks: Set[str]) -> Iterator[Diag
         tokens = lexemes(part[0])
         if not 1 < len(tokens) <= 1 + _MOST or tokens[0].text not in _ALONE:
             continue
-        if all(it.text in tasks or _says_nothing(it, names) for it in tokens[1:]):
+        if all(it.text in tasks or _is_filler(it, names) for it in tokens[1:]):
             end = start + part.start() + len(part[0].rstrip())
             begin = start + part.start() + part[0].index(tokens[0].source or "")
             begin += len(tokens[0].source or "")
@@ -105,7 +105,7 @@ def _words(row: str, start: int, names: Names, tasks: Set[str]) -> Iterator[Diag
             yield Diagnostic(codes.WORDS_AFTER, span, values, span, repair)
 
 
-def _says_nothing(token: Lexeme, names: Names) -> bool:
+def _is_filler(token: Lexeme, names: Names) -> bool:
     """Whether a token is a word that is no order, no name and no part of a sentence."""
     word = token.text
     if token.kind is not WORD or word in WORDS or names.is_name(word) or names.meant(word):

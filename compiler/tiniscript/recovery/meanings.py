@@ -239,9 +239,10 @@ class _OfLine(NamedTuple):
 
 @lru_cache(REMEMBERED)
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
-    begun, counted, left = _begun_in(line)
+    begun, counted, left = _block_counts(line)
     found = _OfLine(
-        set(), set(), set(), set(), {}, set(), begun, _alone_in(line), _compared_in(line), counted,
+        set(), set(), set(), set(), {}, set(), begun, _standalone_words(line),
+        _compared_words(line), counted,
         left,
     )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
@@ -289,14 +290,14 @@ def _logo_names(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
     return names if {*signs} == {":"} and len(signs) == len(names) else ()
 
 
-def _alone_in(line: tuple[Lexeme, ...]) -> set[str]:
+def _standalone_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that stand alone between separators."""
     around = (";", *texts(line), ";")
     triples = zip(around, around[1:], around[2:], strict=False)
     return {word for before, word, after in triples if before in ";|" and after == ";"}
 
 
-def _compared_in(line: tuple[Lexeme, ...]) -> set[str]:
+def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that are compared with a number, as nothing but a value is."""
     rows = [*zip(line, line[1:], line[2:], line[3:], strict=False)]
     alone = {
@@ -483,7 +484,7 @@ class Names:
         return classes
 
 
-def _begun_in(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
+def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
     """Return what a line says of orders that begin blocks, and how many headers lack an end."""
     found: dict[str, str] = {}
     counted: list[str] = []

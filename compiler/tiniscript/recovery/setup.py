@@ -59,7 +59,7 @@ def setup(text: str) -> Diagnostic | None:
     is_own = head in ("SI", "SB")
     is_begun = is_own and (not rest or sign in rows.BARS)
     is_apart = match.end() > match.end("head")
-    if SEAL in line[end:] or not (is_begun or _begins(rest, sign, is_apart)):
+    if SEAL in line[end:] or not (is_begun or _begins_instruction(rest, sign, is_apart)):
         return None
     head_meant = head if is_own else "SI"
     fix = head_meant + "|"
@@ -74,7 +74,7 @@ def setup(text: str) -> Diagnostic | None:
     return Diagnostic(codes.SETUP_NEEDS_BAR, span, said, None, Repair(tuple(edits), is_sure))
 
 
-def _begins(rest: str, sign: str, is_apart: bool) -> bool:
+def _begins_instruction(rest: str, sign: str, is_apart: bool) -> bool:
     """Whether an instruction begins, and no condition; a sign before it says that by itself."""
     match = re.match(r"([^\W\d]\w*)\s*(\(|=|;|$)?", rest)
     if match is None:

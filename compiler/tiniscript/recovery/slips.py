@@ -200,7 +200,7 @@ def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
 # -- what was found, where a code knows better than the first difference ------------------------
 
 
-def _foreign(slip: Slip) -> Slip:
+def _foreign_words(slip: Slip) -> Slip:
     """A word of another language, with what belongs to it: `bot.forward`, FOR of `FOR I = 1 TO`."""
     old, start, found, right = slip.old, slip.start, slip.found, slip.right
     with_next = old[start : start + len(found) + 1]
@@ -227,7 +227,7 @@ def _is_counting(token: Lexeme) -> bool:
     return meant_by(token.text) == "LOOP" or bool(said_of(token.text, "count", "each"))
 
 
-def _torn(slip: Slip) -> Slip:
+def _split_number(slip: Slip) -> Slip:
     """A number in two pieces: the sign that goes, and the piece after it."""
     end = slip.start + len(slip.found)
     return slip if slip.right else slip._replace(found=slip.old[end - 1 : end + 1])
@@ -265,7 +265,7 @@ def _whole_sign(slip: Slip) -> Slip:
 
 
 _EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
-    codes.OTHER_LANGUAGE: _foreign, codes.BAD_NUMBER: _torn, codes.UNIT: _measured,
+    codes.OTHER_LANGUAGE: _foreign_words, codes.BAD_NUMBER: _split_number, codes.UNIT: _measured,
     codes.QUESTION_AFTER: _header, codes.OTHER_ASSIGNMENT: _sign_alone,
     codes.OTHER_SIGN: _whole_sign,
 }  # fmt: skip
@@ -277,7 +277,7 @@ _EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
 def found_in(slip: Slip) -> str:
     """Return what is wrong, as it was written: all of the instruction where a sign is missing."""
     code, found = slip.code, slip.found
-    if _lacks_after(slip):
+    if _has_gap(slip):
         return written(slip.old[slip.start : slip.start + 1])
     is_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
     is_all = code is codes.REPEATED or (code is codes.OTHER_SIGN and not slip.right)
@@ -291,7 +291,7 @@ def found_in(slip: Slip) -> str:
     return was
 
 
-def _lacks_after(slip: Slip) -> bool:
+def _has_gap(slip: Slip) -> bool:
     """Whether something is missing between two words, which are named."""
     is_between = slip.code in (codes.MISSING_VALUE, codes.MISSING_SIGN)
     return is_between and not slip.found and slip.start > 0
@@ -299,7 +299,7 @@ def _lacks_after(slip: Slip) -> bool:
 
 def right_of(slip: Slip) -> str:
     """Return how that is written in TiniScript."""
-    shown = _shown(slip)
+    shown = _changed_text(slip)
     now = laid_out(slip.right) or shown
     now = shown if now == SOME_END and shown in ENDED else now  # of a block, whose end is known
     if slip.code is codes.OTHER_LANGUAGE:
@@ -317,7 +317,7 @@ def _word_in(text: str) -> str:
 
 def before_it(slip: Slip) -> str:
     """Return what is right of the instruction before the slip."""
-    if _lacks_after(slip):
+    if _has_gap(slip):
         return written(slip.old[slip.start - 1 : slip.start])
     kept = written(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
     if slip.code is codes.HEADER_SEPARATOR and (not kept or lexemes(kept)[0].text not in OF_BLOCKS):
@@ -326,7 +326,7 @@ def before_it(slip: Slip) -> str:
     return kept
 
 
-def _shown(slip: Slip) -> str:
+def _changed_text(slip: Slip) -> str:
     """Return the instructions that a change makes."""
     return ";".join(laid_out(part) for part in slip.parts) or laid_out(slip.line)
 
@@ -334,7 +334,7 @@ def _shown(slip: Slip) -> str:
 def fix_of(slip: Slip) -> str:
     """Return what is offered: those instructions, or `SI|` alone where its sign was another."""
     right = right_of(slip) if slip.code is codes.OTHER_SIGN else ""
-    return f"{right}|" if right in ("SI", "SB") else _shown(slip)
+    return f"{right}|" if right in ("SI", "SB") else _changed_text(slip)
 
 
 def _word(slip: Slip) -> str:
@@ -345,15 +345,15 @@ def _word(slip: Slip) -> str:
 
 
 def _first_word(slip: Slip) -> str:
-    return _known(slip.now)
+    return _known_word(slip.now)
 
 
-def _known(tokens: Sequence[Lexeme]) -> str:
+def _known_word(tokens: Sequence[Lexeme]) -> str:
     words = [token.text for token in tokens if token.kind is WORD]
     return next((word for word in words if word in WORDS), "".join(words[:1]))
 
 
-def _called(slip: Slip) -> str:
+def _called_word(slip: Slip) -> str:
     """The word before the empty brackets."""
     after = texts(slip.old[slip.start :])
     if "(" not in after[slip.start == 0 :]:
@@ -368,7 +368,7 @@ def _grouping(slip: Slip) -> str:
     return next((lexeme.text for lexeme in slip.new if lexeme.text in ("LOOP", "WHILE", "IF")), "")
 
 
-def _accented(slip: Slip) -> str:
+def _accented_word(slip: Slip) -> str:
     """The word of the language that has an accent, nothing for a name."""
     return next((lexeme.text for lexeme in slip.old[slip.start :][:1] if lexeme.text in WORDS), "")
 
@@ -381,14 +381,15 @@ def _opened(slip: Slip) -> str:
     return _first_word(slip)
 
 
-def _from_there(slip: Slip) -> str:
+def _rest_of_line(slip: Slip) -> str:
     told = slip.old[slip.start :]
-    return _known(told[2:] if texts(told[1:2]) == ("=",) else told)  # `Y = SIDE(3)`
+    return _known_word(told[2:] if texts(told[1:2]) == ("=",) else told)  # `Y = SIDE(3)`
 
 
 _WORD_OF: dict[Code, Callable[[Slip], str]] = {
-    codes.EMPTY_BRACKETS: _called, codes.GROUPED: _grouping, codes.BAD_NAME: _accented,
-    codes.MISSING_OPEN: _opened, codes.NO_VALUE: _from_there, codes.NO_BRACKETS_HERE: _from_there,
+    codes.EMPTY_BRACKETS: _called_word, codes.GROUPED: _grouping, codes.BAD_NAME: _accented_word,
+    codes.MISSING_OPEN: _opened, codes.NO_VALUE: _rest_of_line,
+    codes.NO_BRACKETS_HERE: _rest_of_line,
 }  # fmt: skip
 
 
@@ -405,7 +406,7 @@ def _letter(slip: Slip) -> str:
     return letters.pop() if len(letters) == 1 else ""
 
 
-def _takes(slip: Slip) -> str:
+def _usage_if_longer(slip: Slip) -> str:
     """Return the usage, where what is offered has more numbers than were written."""
     given, needed = (sum(lexeme.kind is NUMBER for lexeme in it) for it in (slip.was, slip.now))
     word = WORDS.get(right_of(slip))  # `avanza 2 s 3 veces`: F
@@ -415,7 +416,7 @@ def _takes(slip: Slip) -> str:
 
 _VALUES: dict[str, Callable[[Slip], str]] = {
     "found": found_in, "right": right_of, "before": before_it, "word": _word, "usage": _usage,
-    "fix": fix_of, "example": fix_of, "letter": _letter, "takes": _takes,
+    "fix": fix_of, "example": fix_of, "letter": _letter, "takes": _usage_if_longer,
 }  # fmt: skip
 
 

@@ -128,7 +128,7 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
         if "~" not in body and not is_right:
             for part in islice(_parts(body, start, Around(text, names, depth, above)), left):
                 left -= 1
-                each = _told(part)
+                each = _suggestion_for(part)
                 if each and not (told and overlap([told[-1].passed], [each.passed])):
                     told.append(each)
         found += told
@@ -162,7 +162,7 @@ def _parts(body: str, start: int, around: Around) -> Iterator[_Words]:
         while 0 < len(tokens) <= lines.LONGEST:
             size = whole(tokens, names)
             rest = tokens[size:]
-            if not size and (found := _said_call(tokens, names)):
+            if not size and (found := _spoken_call(tokens, names)):
                 yield _Words(around, at, tokens, found[0], before, found[1])
                 break
             if not size or not rest:
@@ -191,7 +191,7 @@ def holding(place: Place) -> Iterator[tuple[Row, Gaps]]:
                 yield row, gaps
 
 
-def _told(part: _Words) -> Suggestion | None:
+def _suggestion_for(part: _Words) -> Suggestion | None:
     if len(part.row) > LONGEST or not part.is_aside():
         return None
     for row, gaps in holding(part):
@@ -222,7 +222,7 @@ class _Words(Trailing):
         return {"before": shortened(self.call), "words": shortened(self.words), "fix": ""}
 
     def several(self, name: str, gaps: Gaps) -> Mapping[str, str]:
-        return _worded(gaps)
+        return _worded_condition(gaps)
 
 
 def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
@@ -249,7 +249,7 @@ def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
     return Suggestion(found, Edit(part.behind, fix or " " * (part.behind.end - part.behind.start)))
 
 
-def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
+def _spoken_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
     """Return the call that words before a condition say, and how many they are."""
     meant = [names.meant(token.text, NEAR) for token in tokens]
     asks = next((k for k in range(1, len(tokens)) if meant[k] in ("IF", "WHILE")), 0)
@@ -331,7 +331,7 @@ class Gaps(dict[str, str]):
         return number
 
 
-def _all(gaps: Gaps, times: str) -> str:
+def _loop_over_all(gaps: Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
     part, before = gaps.part, [each for each in gaps.part.before if each]
     is_known = len(before) == len(part.before) <= _FARTHEST
@@ -347,13 +347,13 @@ def _all(gaps: Gaps, times: str) -> str:
     return ";".join((f"LOOP({times})", *orders, BLOCK_ENDS["LOOP"]))
 
 
-def _worded(gaps: Gaps) -> dict[str, str]:
+def _worded_condition(gaps: Gaps) -> dict[str, str]:
     """What the words of a condition ask."""
     row, names = gaps.tokens("s"), gaps.part.names
     is_bare = [each.text for each in gaps.from_on("s")[len(row) :][:1]] != [")"]
     is_order = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
     is_order |= is_bare and any("|@start|" in names.label(each) for each in row)
-    is_read = is_order or bool(_asked(gaps, "s"))
+    is_read = is_order or bool(_condition_tokens(gaps, "s"))
     found = None if is_read else worded(row, names)
     if found is None:
         raise NoGap
@@ -372,19 +372,21 @@ def _measured(gaps: Gaps) -> str:
     return (worded(words, gaps.part.names) or {}).get("asked", "") if is_said else ""
 
 
-def _alone(gaps: Gaps) -> str:
+def _lone_condition(gaps: Gaps) -> str:
     """A condition that stands alone, and sets nothing."""
     signs = {token.text for token in gaps.tokens("s")}
-    return laid_out(_asked(gaps, "s")) if signs & {*COMPARISONS} - {"="} else ""
+    return laid_out(_condition_tokens(gaps, "s")) if signs & {*COMPARISONS} - {"="} else ""
 
 
-def _then(gaps: Gaps) -> str:
+def _consequence(gaps: Gaps) -> str:
     """What is done: the words from a capture on where they are right, else the orders they say."""
     words, names = gaps.from_on("w"), gaps.part.names
-    return _rest(gaps, "w") if lines.is_right(words, names) else written(orders(words, names))
+    return (
+        _rest_of_words(gaps, "w") if lines.is_right(words, names) else written(orders(words, names))
+    )
 
 
-def _free(gaps: Gaps) -> str:
+def _free_name(gaps: Gaps) -> str:
     """A name that may get the value before it, which is no other name."""
     names, name = gaps.part.names, plain(gaps["x"])
     is_name = all(token.kind is WORD for token in gaps.tokens("v"))
@@ -417,7 +419,7 @@ def _loop(gaps: Gaps) -> str:
     return f"LOOP({number});{gaps.part.call};{BLOCK_ENDS['LOOP']}" if is_often else ""
 
 
-def _with(gaps: Gaps, value: re.Match[str] | None, new: str) -> str:
+def _with_value(gaps: Gaps, value: re.Match[str] | None, new: str) -> str:
     """The call with another value, of which the old one is a part; nothing where it is the same."""
     new = value.expand(new) if value else ""
     if value is None or value[1] == new:
@@ -425,18 +427,18 @@ def _with(gaps: Gaps, value: re.Match[str] | None, new: str) -> str:
     return f"{gaps.part.call[: value.start(1)]}{new}{gaps.part.call[value.end(1) :]}"
 
 
-def _paced(gaps: Gaps) -> str:
+def _with_power(gaps: Gaps) -> str:
     """The call with another power."""
     number = gaps["n"]
-    return _with(gaps, gaps.part.power, number) if 9 < float(number) <= 100 else ""
+    return _with_value(gaps, gaps.part.power, number) if 9 < float(number) <= 100 else ""
 
 
-def _asked(gaps: Gaps, name: str = "q") -> list[Lexeme]:
+def _condition_tokens(gaps: Gaps, name: str = "q") -> list[Lexeme]:
     """The condition that words ask, in words of the language; nothing where they ask none."""
     return [] if gaps.part.is_asked else condition_in(gaps.tokens(name), gaps.part.names)
 
 
-def _shown(gaps: Gaps) -> str:
+def _shown_word(gaps: Gaps) -> str:
     """A word to show, which is no letter and like no name of the program."""
     word = gaps["s"]
     names = gaps.part.names
@@ -444,7 +446,7 @@ def _shown(gaps: Gaps) -> str:
     return "" if is_name or plain(word) in names.in_brackets else word
 
 
-def _rest(gaps: Gaps, name: str) -> str:
+def _rest_of_words(gaps: Gaps, name: str) -> str:
     """The words from a capture on."""
     start, end = gaps.span(name)
     return gaps.part.text[gaps.part.spans[start].start : gaps.part.place.end] if start < end else ""
@@ -471,9 +473,10 @@ def _note(gaps: Gaps) -> str:
 
 _GAPS: dict[str, Callable[[Gaps], str]] = {
     "above": lambda gaps: ["", *gaps.part.before][-1] or "",
-    "all": lambda gaps: _all(gaps, gaps["n?"]), "often": lambda gaps: _all(gaps, "4"),
-    "endless": lambda gaps: _all(gaps, "FOREVER"),
-    "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)),
+    "all": lambda gaps: _loop_over_all(gaps, gaps["n?"]),
+    "often": lambda gaps: _loop_over_all(gaps, "4"),
+    "endless": lambda gaps: _loop_over_all(gaps, "FOREVER"),
+    "more": lambda gaps: _loop_over_all(gaps, str(int(gaps["n"]) + 1)),
     "said": lambda gaps: gaps.part.words.strip(" ,:"),
     "head": lambda gaps: gaps.meant("h"), "called": lambda gaps: gaps.meant("w"),
     "block": lambda gaps: gaps.meant("g"), "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
@@ -482,20 +485,22 @@ _GAPS: dict[str, Callable[[Gaps], str]] = {
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "next": lambda gaps: WORDS[plain(gaps["s"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
-    "measured": _measured, "alone": _alone, "then": _then, "free": _free, "loop": _loop,
-    "by_way": lambda gaps: _with(gaps, gaps.part.time, rf"\1 {UNIT_OF[gaps.part.own]}"),
+    "measured": _measured, "alone": _lone_condition, "then": _consequence, "free": _free_name,
+    "loop": _loop,
+    "by_way": lambda gaps: _with_value(gaps, gaps.part.time, rf"\1 {UNIT_OF[gaps.part.own]}"),
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
-    "end": lambda gaps: "" if _asked(gaps, "s") else BLOCK_ENDS[gaps.meant("g")],
-    "shown": _shown, "note": _note,
+    "end": lambda gaps: "" if _condition_tokens(gaps, "s") else BLOCK_ENDS[gaps.meant("g")],
+    "shown": _shown_word, "note": _note,
     "other": lambda gaps: re.sub(r"^\w+", OTHER_WAY[gaps.part.own], gaps.part.call),
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
-    "longer": lambda gaps: _with(gaps, gaps.part.time, gaps["n"]), "paced": _paced,
-    "question": lambda gaps: laid_out(_asked(gaps)),
-    "contrary": lambda gaps: laid_out(rewrites.negated(it)) if (it := _asked(gaps)) else "",
+    "longer": lambda gaps: _with_value(gaps, gaps.part.time, gaps["n"]), "paced": _with_power,
+    "question": lambda gaps: laid_out(_condition_tokens(gaps)),
+    "contrary": lambda gaps:
+        laid_out(rewrites.negated(it)) if (it := _condition_tokens(gaps)) else "",
     "made_up": lambda gaps: made_up(_calls(gaps.part)),
-    "until": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),
-    "behind": lambda gaps: _rest(gaps, "w"), "orders": _orders,
+    "until": lambda gaps: f" {_rest_of_words(gaps, 't')}".rstrip(),
+    "behind": lambda gaps: _rest_of_words(gaps, "w"), "orders": _orders,
     "sensors": lambda gaps: ", ".join(gaps.part.names.measuring),
     "distance": lambda gaps: "DISTANCE" if "DISTANCE" in gaps.part.names.sensors else "",
 }  # fmt: skip

@@ -149,7 +149,7 @@ def _leftovers(wrong: Wrong) -> Findings:
     return _with_edits(leftovers(wrong.source, wrong.kit))
 
 
-def _other_beginning(wrong: Wrong) -> Findings:
+def _wrong_start(wrong: Wrong) -> Findings:
     """Return that another word stands in the place of `SI|` (`setup`); the rest is read with SI."""
     begun = other_word(wrong.source, wrong.diagnostics)
     if begun is None:
@@ -158,7 +158,7 @@ def _other_beginning(wrong: Wrong) -> Findings:
     return Findings(told, [Edit(begun.span, "SI")])
 
 
-def _meant_surely(wrong: Wrong) -> Findings:
+def _sure_findings(wrong: Wrong) -> Findings:
     """Return what is wrong with a text that is read wholly and surely (`search`, `findings`)."""
     recovery = wrong.recovery
     if recovery is None:
@@ -174,7 +174,7 @@ def _words_after(wrong: Wrong) -> Findings:
     return Findings([each.diagnostic for each in after], [each.passed for each in after])
 
 
-def _guessed(wrong: Wrong) -> Findings:
+def _likely_findings(wrong: Wrong) -> Findings:
     """Return what is wrong with the lines that are read, if not surely (`search`, `findings`)."""
     recovery = wrong.recovery
     if recovery is None:
@@ -194,8 +194,8 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 # Laws of their own come before what a search finds surely, and what it guesses comes last.
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _labels, _beginning, _keys, _calls, _counters, _frame, _other_beginning, _meant_surely,
-    _leftovers, _words_after, _guessed, _words_of_blocks,
+    _labels, _beginning, _keys, _calls, _counters, _frame, _wrong_start, _sure_findings,
+    _leftovers, _words_after, _likely_findings, _words_of_blocks,
 )  # fmt: skip
 
 
@@ -215,16 +215,18 @@ def moved_back(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) ->
     for edit in edits:
         if edit.text.endswith("(TRUE)") and "TRUE" not in (was := source[edit.span].strip()):
             values = {name: text.replace(edit.text, was) for name, text in values.items()}
-    place = diagnostic.place and _before(diagnostic.place, edits)
+    place = diagnostic.place and _original_span(diagnostic.place, edits)
     repair = diagnostic.repair
     if repair is not None:
-        own = tuple(Edit(_before(edit.span, edits), edit.text) for edit in repair.edits)
+        own = tuple(Edit(_original_span(edit.span, edits), edit.text) for edit in repair.edits)
         passed = [edit for edit in edits if edit.text.isspace()]  # words that nothing may drop
         repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
-    return Diagnostic(diagnostic.code, _before(diagnostic.span, edits), values, place, repair)
+    return Diagnostic(
+        diagnostic.code, _original_span(diagnostic.span, edits), values, place, repair
+    )
 
 
-def _before(span: Span, edits: Sequence[Edit]) -> Span:
+def _original_span(span: Span, edits: Sequence[Edit]) -> Span:
     """Return where a span of the text with edits stood before them; all of one it begins in."""
     start = end = shift = 0
     for edit in sorted(edits):

@@ -104,7 +104,7 @@ def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> l
     diagnostics = text.with_name(diagnostics)
     told: list[Diagnostic] = []
     for each in diagnostics[:_MANY]:
-        told.append((_told(Usage(text, each)) if each.repair is None else None) or each)
+        told.append((_usage_diagnostic(Usage(text, each)) if each.repair is None else None) or each)
     parts = [it for it in told if it.values.get("part")]
     if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
         part = {"part": parts[0].values["part"]}
@@ -178,7 +178,7 @@ class _Text:
         ]
 
 
-def _told(place: Usage) -> Diagnostic | None:
+def _usage_diagnostic(place: Usage) -> Diagnostic | None:
     """Return what the first row that holds tells of a place, None where there is none."""
     return next((place.told(row, gaps) for row, gaps in holding(place)), None)
 
@@ -289,7 +289,7 @@ class Usage:
         told = Diagnostic(code, span, values, place, repair)
         if "again" not in row.how:
             return told
-        return _told(Usage(self.around, told)) or told
+        return _usage_diagnostic(Usage(self.around, told)) or told
 
     def values(self) -> dict[str, str]:
         """Return what is said before the gaps of a row are filled."""
@@ -521,7 +521,7 @@ class Usage:
         """Return each place where a word is meant as a name: S of `F(S, 80)`, not S alone."""
         word, _, _, is_def, _, _ = self.other_name
         tokens = scan(self.text).tokens
-        places = range(len(tokens)) if word in SINCE else _meant_as_name(tokens, word, is_def)
+        places = range(len(tokens)) if word in SINCE else _words_as_names(tokens, word, is_def)
         return [
             tokens[k].span for k in places
             if tokens[k].text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
@@ -574,7 +574,7 @@ class _OtherName(NamedTuple):
     is_everywhere: bool
 
 
-def _meant_as_name(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
+def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
     """Give the places where a word of the language is meant as the name of a DEF, or a variable.
 
     A DEF is called where its name stands alone, but not in its own body.
@@ -638,12 +638,12 @@ def _usage(word: str) -> str:
 # -- gaps -----------------------------------------------------------------------------------------
 
 
-def _named_by(gaps: Gaps) -> str:
+def _intended_word(gaps: Gaps) -> str:
     """The word that means what is written in its place."""
-    return _usage_at(gaps).named(_right(gaps), _usage_at(gaps).meant)
+    return _usage_at(gaps).named(_offered_word(gaps), _usage_at(gaps).meant)
 
 
-def _right(gaps: Gaps) -> str:
+def _offered_word(gaps: Gaps) -> str:
     """The word that what is offered begins with."""
     return re.split("[(;]", gaps.filled["fix"])[0]
 
@@ -662,7 +662,7 @@ def _order(gaps: Gaps) -> str:
     return said[0].text if len(said) == 1 and not said[0].is_side_free else ""
 
 
-def _several(gaps: Gaps, is_sided: bool) -> str:
+def _spoken_orders(gaps: Gaps, is_sided: bool) -> str:
     """The orders that words say; `is_sided`: of one nobody says which way it turns."""
     said = _usage_at(gaps).orders
     is_free = any(each.is_side_free for each in said)
@@ -675,14 +675,14 @@ def _other_orders(gaps: Gaps) -> set[str]:
     return {its for word, its in said if not said_of(word, "right")} - {"L", "R", "B", "S"}
 
 
-def _endless(gaps: Gaps) -> str:
+def _forever_word(gaps: Gaps) -> str:
     """The word for FOREVER, where words say no order."""
     usage = _usage_at(gaps)
     endless = (each for each in usage.words if usage.names.meant(each) == "FOREVER")
     return "" if usage.meant else next(endless, "")
 
 
-def _word_said(gaps: Gaps) -> str:
+def _foreign_word(gaps: Gaps) -> str:
     """The word of another language that begins an instruction, or says one."""
     usage = _usage_at(gaps)
     return next(filter(usage.names.meant, (*usage.words[:1], usage.meant)), "")
@@ -690,7 +690,7 @@ def _word_said(gaps: Gaps) -> str:
 
 def _concept(gaps: Gaps) -> str:
     """The word of the language that it means."""
-    found, word = _usage_at(gaps), _word_said(gaps)
+    found, word = _usage_at(gaps), _foreign_word(gaps)
     concept = found.names.meant(word)
     is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
     is_among = concept == "S" and {*found.ordered.values()} != {"S"}  # `ve para adelante`
@@ -722,7 +722,7 @@ def _own_example(gaps: Gaps) -> str:
     return example if lines.is_right(lexemes(example.split("; ")[-1]), usage.names) else ""
 
 
-def _often(gaps: Gaps) -> str:
+def _loop_of_repeated(gaps: Gaps) -> str:
     """The loop of a word that stands several times."""
     own = _usage_at(gaps).own
     return f"LOOP({own.times});{own.name};END_LOOP" if own.times > 1 else ""
@@ -740,7 +740,7 @@ def _end(gaps: Gaps) -> str:
     return next(named, "") or usage.around.end_at(usage.piece.start)
 
 
-def _done(gaps: Gaps) -> str:
+def _method_call(gaps: Gaps) -> str:
     """What a part of a thing does, if that is a call: WRITE of `servo.write`."""
     thing, _, done = plain(gaps.place.text[slice(*_member(_usage_at(gaps)))]).rpartition(".")
     right = "" if said_of(thing, "device") else gaps.place.names.meant(done)
@@ -773,25 +773,25 @@ def _without_seconds(gaps: Gaps) -> str:
     return source[Span(piece.start, _end_of_value(usage))] + source[Span(span.end, piece.end)]
 
 
-def _no_value(gaps: Gaps, is_unit: bool) -> _NoValue | None:
+def _missing_value(gaps: Gaps, is_unit: bool) -> _NoValue | None:
     found = _usage_at(gaps).no_value
     return found if found and bool(found.unit) is is_unit else None
 
 
 def _number_said(gaps: Gaps) -> str:
     """A number with a unit that values have, or with that of a way."""
-    said = _no_value(gaps, is_unit=True)
+    said = _missing_value(gaps, is_unit=True)
     is_own = said is not None and (said.unit == said.argument.unit or bool(said.right))
     here = _usage_at(gaps).source[_usage_at(gaps).found.span]
     return f"{said.number} {here}" if said and is_own else ""
 
 
-def _way_said(gaps: Gaps) -> str:
-    said = _no_value(gaps, is_unit=True)
+def _spoken_direction(gaps: Gaps) -> str:
+    said = _missing_value(gaps, is_unit=True)
     return said.right if said and said.unit != said.argument.unit else ""
 
 
-def _foreign(gaps: Gaps) -> str:
+def _other_robots_word(gaps: Gaps) -> str:
     """A word with values that this robot does not have: whoever writes it wants the word."""
     usage = _usage_at(gaps)
     word = "".join(usage.words[:1])
@@ -806,7 +806,7 @@ def _in_words(gaps: Gaps) -> str:
     return "" if {*usage.words} <= own else usage.header()
 
 
-def _in_dark(gaps: Gaps) -> str:
+def _worded_header(gaps: Gaps) -> str:
     """The header of a name that asks something in words: DARK of `X > 5 OR DARK`."""
     usage = _usage_at(gaps)
     name = plain(usage.source[usage.found.span])
@@ -825,7 +825,7 @@ def _endless_move(gaps: Gaps) -> str:
     return f"{said[:start]}FOREVER{said[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
 
 
-def _forever_first(gaps: Gaps) -> str:
+def _swapped_forever(gaps: Gaps) -> str:
     """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
     match = _FOREVER_BEHIND.fullmatch(_usage_at(gaps).source[_usage_at(gaps).piece])
     if match is None:
@@ -834,7 +834,7 @@ def _forever_first(gaps: Gaps) -> str:
     return f"{match[1].upper()}(FOREVER, {match[2].strip()}){until}"
 
 
-def _asked_behind(gaps: Gaps) -> str:
+def _until_with_move(gaps: Gaps) -> str:
     """An UNTIL with the move that it lacks."""
     usage = _usage_at(gaps)
     asked = re.match(r"\s*(\([^()\n]+\))", usage.text[usage.found.span.start + 5 :])
@@ -848,7 +848,7 @@ def _arm(gaps: Gaps) -> str:
     return arm if arm == "ELSE" and len(usage.row) == 2 else ""
 
 
-def _begun_again(gaps: Gaps) -> str:
+def _second_start(gaps: Gaps) -> str:
     """A beginning in the midst of a program, with its bar."""
     usage = _usage_at(gaps)
     is_bar = usage.behind_it.lstrip()[:1] == "|"
@@ -857,7 +857,7 @@ def _begun_again(gaps: Gaps) -> str:
 
 def _question_begun(gaps: Gaps) -> str:
     """IF, where SI has no bar behind it."""
-    return "IF" if _begun_again(gaps) == "SI" else ""
+    return "IF" if _second_start(gaps) == "SI" else ""
 
 
 def _saying_button(gaps: Gaps) -> str:
@@ -866,7 +866,7 @@ def _saying_button(gaps: Gaps) -> str:
     return word if word == "S8" or concept_of(word) == "BUTTON" else ""
 
 
-def _skipped(gaps: Gaps) -> str:
+def _guarded_if(gaps: Gaps) -> str:
     """An IF that leaves out what follows its BREAK, which no loop is around."""
     usage = _usage_at(gaps)
     match = usage.matched(_BREAK)
@@ -889,14 +889,14 @@ def _two_digits(gaps: Gaps) -> str:
     return around if re.fullmatch("[0-9]:[0-9]", around) else ""
 
 
-def _quoted(usage: Usage) -> Span:
+def _quoted_span(usage: Usage) -> Span:
     """Return the place from a quotation mark to the next one of its line."""
     start, end = usage.found.span
     closed = re.compile(rf"[^\n]*?{usage.text[start:end]}").match(usage.text, end)
     return Span(start, closed.end() if closed else end)
 
 
-def _dotted(usage: Usage) -> Span:
+def _dotted_span(usage: Usage) -> Span:
     match = usage.matched(_DOTS)
     return Span(*match.span("here")) if match else usage.found.span
 
@@ -918,11 +918,11 @@ def _later_rows(gaps: Gaps) -> list[str]:
     return [str(usage.source.position(place)[0]) for place in places]
 
 
-def _one(lines: Sequence[str]) -> str:
+def _single_line(lines: Sequence[str]) -> str:
     return lines[0] if len(lines) == 1 else ""
 
 
-def _many(lines: Sequence[str]) -> str:
+def _line_list(lines: Sequence[str]) -> str:
     return "" if len(lines) == 1 else ", ".join(lines)
 
 
@@ -934,35 +934,35 @@ def _times_in_line(gaps: Gaps) -> str:
 def _words_behind(gaps: Gaps) -> str:
     """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
     usage = _usage_at(gaps)
-    said = usage.source[_behind(usage)]
+    said = usage.source[_following_span(usage)]
     right = lines.right(lexemes(said), usage.names)
     return shortened(said) if isinstance(right, Failure) and right.at == 0 else ""
 
 
-def _behind(usage: Usage) -> Span:
+def _following_span(usage: Usage) -> Span:
     return Span(usage.found.span.start, usage.piece.end)
 
 
-def _plain_letters(gaps: Gaps) -> str:
+def _unaccented_name(gaps: Gaps) -> str:
     """A name in the letters that a name has, which the language knows."""
     right, concept = _usage_at(gaps).letters
     return right if concept in WORDS or _usage_at(gaps).names.has(concept) else ""
 
 
-def _called_here(gaps: Gaps) -> str:
+def _called_name(gaps: Gaps) -> str:
     usage = _usage_at(gaps)
     is_call = usage.behind_it.lstrip(" ").startswith("(")
     return usage.source[usage.found.span].upper() if is_call else ""
 
 
-def _said_first(gaps: Gaps) -> str:
+def _leading_filler(gaps: Gaps) -> str:
     """A word that says nothing, or the button, and begins an instruction."""
     found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     is_said = said_of(right, "filler") or found.is_button(right)
     return right if found.is_first and is_said else ""
 
 
-def _cased(gaps: Gaps) -> str:
+def _in_capitals(gaps: Gaps) -> str:
     found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     return right if found.source[found.found.span].isupper() else right.capitalize()
 
@@ -977,14 +977,15 @@ def _usage_at(gaps: Gaps) -> Usage:
     return gaps.place
 
 
-def _of(get: Callable[[Usage], str | None]) -> Callable[[Gaps], str]:
+def _gap_of(get: Callable[[Usage], str | None]) -> Callable[[Gaps], str]:
     return lambda gaps: get(_usage_at(gaps)) or ""
 
 
 # Where a row tells what it says, but where it was found.
 _PLACES: dict[str, Callable[[Usage], Span]] = {
-    "here": lambda it: it.piece, "behind": _behind, "member": _member, "quoted": _quoted,
-    "dots": _dotted,
+    "here": lambda it: it.piece, "behind": _following_span, "member": _member,
+    "quoted": _quoted_span,
+    "dots": _dotted_span,
     "first": lambda it: Span(it.piece.start, it.piece.start + len(it.words[0])),
     "amount": _amount_place,
 }  # fmt: skip
@@ -997,75 +998,79 @@ _SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
 }  # fmt: skip
 GAPS: dict[str, Callable[[Gaps], str]] = {
-    "said": _of(lambda it: it.source[it.piece]), "here": _of(lambda it: it.source[it.found.span]),
-    "first": _of(lambda it: it.signs[0]), "sign": _of(lambda it: it.signs[1]),
-    "step": _of(lambda it: it.signs[1][0]), "number": _of(lambda it: it.number),
-    "found": _of(lambda it: it.found.values["found"]),
-    "word": _of(lambda it: it.found.values["word"]),
-    "right": _right, "named": _named_by,
-    "named_first": lambda gaps: _usage_at(gaps).named(_right(gaps), _usage_at(gaps).signs[0]),
-    "usage": lambda gaps: _usage(_right(gaps)),
-    "takes": lambda gaps: _usage(_right(gaps)) if _usage_at(gaps).orders[0].samples else "",
-    "block": _block, "order": _order, "sided": lambda gaps: _several(gaps, is_sided=True),
-    "several": lambda gaps: _several(gaps, is_sided=False),
-    "made_up": _of(lambda it: made_up(it.orders)), "endless": _endless,
+    "said": _gap_of(lambda it: it.source[it.piece]),
+    "here": _gap_of(lambda it: it.source[it.found.span]),
+    "first": _gap_of(lambda it: it.signs[0]), "sign": _gap_of(lambda it: it.signs[1]),
+    "step": _gap_of(lambda it: it.signs[1][0]), "number": _gap_of(lambda it: it.number),
+    "found": _gap_of(lambda it: it.found.values["found"]),
+    "word": _gap_of(lambda it: it.found.values["word"]),
+    "right": _offered_word, "named": _intended_word,
+    "named_first": lambda gaps: _usage_at(gaps).named(_offered_word(gaps),
+        _usage_at(gaps).signs[0]),
+    "usage": lambda gaps: _usage(_offered_word(gaps)),
+    "takes": lambda gaps: _usage(_offered_word(gaps)) if _usage_at(gaps).orders[0].samples else "",
+    "block": _block, "order": _order, "sided": lambda gaps: _spoken_orders(gaps, is_sided=True),
+    "several": lambda gaps: _spoken_orders(gaps, is_sided=False),
+    "made_up": _gap_of(lambda it: made_up(it.orders)), "endless": _forever_word,
     "others": lambda gaps: ", ".join(_other_orders(gaps)),
-    "way": _of(lambda it: it.turn.way), "angle": _of(lambda it: it.turn.angle),
-    "side": _of(lambda it: {"L": "left", "R": "right"}.get(it.turn.way)),
-    "turned": _of(lambda it: it.turn.values), "way_usage": _of(lambda it: _usage(it.turn.way)),
-    "word_said": _word_said, "concept": _concept, "asking": lambda gaps: _asking(_concept(gaps)),
+    "way": _gap_of(lambda it: it.turn.way), "angle": _gap_of(lambda it: it.turn.angle),
+    "side": _gap_of(lambda it: {"L": "left", "R": "right"}.get(it.turn.way)),
+    "turned": _gap_of(lambda it: it.turn.values),
+    "way_usage": _gap_of(lambda it: _usage(it.turn.way)),
+    "word_said": _foreign_word, "concept": _concept, "asking": lambda gaps: _asking(_concept(gaps)),
     "concept_alone": lambda gaps: _concept_alone(gaps, is_numbered=False),
     "concept_numbered": lambda gaps: _concept_alone(gaps, is_numbered=True),
     "concept_usage": lambda gaps: _usage_at(gaps).usage(_concept(gaps)), "variable": _variable,
-    "often_taught": _of(lambda it: "LOOP" * it.own.is_often),
-    "taught": _of(lambda it: it.own.taught),
-    "untaught": _of(lambda it: it.own.name * it.own.is_taught), "often": _often,
-    "likely": _of(lambda it: likely_word(it.signs[0], it.source[it.piece])),
-    "plus": _of(lambda it: "-" if f"-{it.number}" in "".join(it.signs) else "+"),
+    "often_taught": _gap_of(lambda it: "LOOP" * it.own.is_often),
+    "taught": _gap_of(lambda it: it.own.taught),
+    "untaught": _gap_of(lambda it: it.own.name * it.own.is_taught), "often": _loop_of_repeated,
+    "likely": _gap_of(lambda it: likely_word(it.signs[0], it.source[it.piece])),
+    "plus": _gap_of(lambda it: "-" if f"-{it.number}" in "".join(it.signs) else "+"),
     "own_example": _own_example,
-    "own": _own_name, "end": _end, "done": _done,
-    "done_usage": lambda gaps: _usage_at(gaps).usage(_done(gaps)),
-    "member": _of(lambda it: it.text[slice(*_member(it))]),
-    "bare_asking": _of(lambda it: _asking(it.found.values["word"])),
-    "bare_example": _of(lambda it: WORDS[it.meant].example
+    "own": _own_name, "end": _end, "done": _method_call,
+    "done_usage": lambda gaps: _usage_at(gaps).usage(_method_call(gaps)),
+    "member": _gap_of(lambda it: it.text[slice(*_member(it))]),
+    "bare_asking": _gap_of(lambda it: _asking(it.found.values["word"])),
+    "bare_example": _gap_of(lambda it: WORDS[it.meant].example
                         if len(it.row) == 1 and it.meant in WORDS and WORDS[it.meant].arguments
                         else ""),
-    "bare_usage": _of(lambda it: it.usage(it.found.values["word"])),
-    "first_usage": _of(lambda it: it.usage(it.signs[0])),
+    "bare_usage": _gap_of(lambda it: it.usage(it.found.values["word"])),
+    "first_usage": _gap_of(lambda it: it.usage(it.signs[0])),
     "unit": _unit_behind, "without_seconds": _without_seconds, "number_said": _number_said,
-    "way_said": _way_said,
-    "value_name": lambda gaps: it.argument.name if (it := _no_value(gaps, True)) else "",
-    "wanted": lambda gaps: _WANTED[it.argument.unit] if (it := _no_value(gaps, True)) else "",
-    "extra": lambda gaps: it.found if (it := _no_value(gaps, False)) else "",
-    "value_found": _of(lambda it: it.no_value and it.no_value.found),
-    "value_word": _of(lambda it: it.no_value and it.no_value.word.text),
-    "value_usage": _of(lambda it: it.no_value and it.no_value.word.usage),
-    "foreign": _foreign, "in_words": _in_words, "in_dark": _in_dark,
-    "amount": _of(lambda it: it.amount.get("amount")),
-    "endless_move": _endless_move, "forever_first": _forever_first, "asked_behind": _asked_behind,
-    "arm": _arm, "begun_again": _begun_again, "question_begun": _question_begun,
-    "twice": lambda gaps: _begun_again(gaps) if _usage_at(gaps).around.begun == "SB" else "",
-    "named_endless": lambda gaps: _usage_at(gaps).named("LOOP", _endless(gaps)),
-    "instead": _of(lambda it: it.around.begun), "saying_button": _saying_button,
-    "skipped": _skipped, "part": _part_of_when, "two_digits": _two_digits,
-    "sign_means": _of(lambda it: concept_of(it.source[it.found.span])),
-    "sign_usage": _of(lambda it: _usage(concept_of(it.source[it.found.span]) or "")),
-    "everywhere": _of(lambda it: it.other_name.right if it.other_name.is_everywhere else ""),
-    "since": _of(lambda it: SINCE.get(it.other_name.word)),
+    "way_said": _spoken_direction,
+    "value_name": lambda gaps: it.argument.name if (it := _missing_value(gaps, True)) else "",
+    "wanted": lambda gaps: _WANTED[it.argument.unit] if (it := _missing_value(gaps, True)) else "",
+    "extra": lambda gaps: it.found if (it := _missing_value(gaps, False)) else "",
+    "value_found": _gap_of(lambda it: it.no_value and it.no_value.found),
+    "value_word": _gap_of(lambda it: it.no_value and it.no_value.word.text),
+    "value_usage": _gap_of(lambda it: it.no_value and it.no_value.word.usage),
+    "foreign": _other_robots_word, "in_words": _in_words, "in_dark": _worded_header,
+    "amount": _gap_of(lambda it: it.amount.get("amount")),
+    "endless_move": _endless_move, "forever_first": _swapped_forever,
+    "asked_behind": _until_with_move,
+    "arm": _arm, "begun_again": _second_start, "question_begun": _question_begun,
+    "twice": lambda gaps: _second_start(gaps) if _usage_at(gaps).around.begun == "SB" else "",
+    "named_endless": lambda gaps: _usage_at(gaps).named("LOOP", _forever_word(gaps)),
+    "instead": _gap_of(lambda it: it.around.begun), "saying_button": _saying_button,
+    "skipped": _guarded_if, "part": _part_of_when, "two_digits": _two_digits,
+    "sign_means": _gap_of(lambda it: concept_of(it.source[it.found.span])),
+    "sign_usage": _gap_of(lambda it: _usage(concept_of(it.source[it.found.span]) or "")),
+    "everywhere": _gap_of(lambda it: it.other_name.right if it.other_name.is_everywhere else ""),
+    "since": _gap_of(lambda it: SINCE.get(it.other_name.word)),
     "name_line": lambda gaps: "".join(_other_rows(gaps)[:1]),
-    "name_lines": lambda gaps: _many(_other_rows(gaps)), "name_times": _times_in_line,
-    "name_right": _of(lambda it: it.other_name.suggestion or it.other_name.right),
-    "time_right": _of(lambda it: it.other_name.right
+    "name_lines": lambda gaps: _line_list(_other_rows(gaps)), "name_times": _times_in_line,
+    "name_right": _gap_of(lambda it: it.other_name.suggestion or it.other_name.right),
+    "time_right": _gap_of(lambda it: it.other_name.right
                       if it.other_name.is_set and it.other_name.is_set[1] else ""),
-    "clock": _of(lambda it: it.other_name.right
+    "clock": _gap_of(lambda it: it.other_name.right
                  if it.other_name.is_set and not it.other_name.is_set[1] else ""),
-    "time_line": lambda gaps: _one(_later_rows(gaps)),
-    "time_lines": lambda gaps: _many(_later_rows(gaps)),
-    "note": _of(lambda it: "/*" if it.text.startswith("/*", it.found.span.start) else ""),
-    "sensor": _of(lambda it: it.function if it.function in it.names.sensors else ""),
-    "input": _of(lambda it: it.function if said_of(it.function, "input") else ""),
-    "words_behind": _words_behind, "before": _of(lambda it: it.found.values["before"]),
-    "plain_letters": _plain_letters, "letters_mean": _of(lambda it: it.letters[1]),
-    "letters_usage": _of(lambda it: it.usage(it.letters[1])), "called_here": _called_here,
-    "said_first": _said_first, "cased": _cased,
+    "time_line": lambda gaps: _single_line(_later_rows(gaps)),
+    "time_lines": lambda gaps: _line_list(_later_rows(gaps)),
+    "note": _gap_of(lambda it: "/*" if it.text.startswith("/*", it.found.span.start) else ""),
+    "sensor": _gap_of(lambda it: it.function if it.function in it.names.sensors else ""),
+    "input": _gap_of(lambda it: it.function if said_of(it.function, "input") else ""),
+    "words_behind": _words_behind, "before": _gap_of(lambda it: it.found.values["before"]),
+    "plain_letters": _unaccented_name, "letters_mean": _gap_of(lambda it: it.letters[1]),
+    "letters_usage": _gap_of(lambda it: it.usage(it.letters[1])), "called_here": _called_name,
+    "said_first": _leading_filler, "cased": _in_capitals,
 }  # fmt: skip

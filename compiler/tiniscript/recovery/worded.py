@@ -33,16 +33,18 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     is_compared = any(lexeme.text == "=" for lexeme in row)  # `DISTANCE = NEAR`
     row = [lexeme for lexeme in row if lexeme.text != "="]
     texts = [lexeme.text for lexeme in row]
-    if both := _compared(row, names):
+    if both := _mixed_condition(row, names):
         return both
     is_condition = any(text in ("AND", "OR") for text in texts)  # of the language itself
     has_number = any(lexeme.kind is NUMBER for lexeme in row)  # `COLOR = 3` is no `> 3`
-    if is_condition or (is_compared and (has_number or not _said(texts, names) & _ASKED)):
+    if is_condition or (
+        is_compared and (has_number or not _mentioned_words(texts, names) & _ASKED)
+    ):
         return None
-    if joint := _joint(texts, names):
+    if joint := _joining_word(texts, names):
         return {"question": "", "joint": joint}
     texts, number = _measured(row, names)
-    said = _said(texts, names)
+    said = _mentioned_words(texts, names)
     numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
     own = [text for text in texts if names.is_name(text) and text != number]
     if [number] == texts != [row[-1].text] or (number and not own and said == {"little"}):
@@ -70,21 +72,23 @@ def sensors_of(word: str, names: Names) -> list[str]:
     return [] if names.is_name(word) else [name for name in found if name in names.asked]
 
 
-def _said(texts: Sequence[str], names: Names) -> set[str]:
+def _mentioned_words(texts: Sequence[str], names: Names) -> set[str]:
     said = [text for text in texts if not names.is_name(text)]
     return {kind for kind in _KINDS for text in said if said_of(text, kind)}
 
 
-def _joint(texts: Sequence[str], names: Names) -> str:
+def _joining_word(texts: Sequence[str], names: Names) -> str:
     """Return AND or OR, if two conditions are joined and each is in words."""
     joints = [said_of(text, "and") or said_of(text, "or") for text in texts]
     places = [k for k, text in enumerate(texts) if joints[k] and not names.is_name(text)]
     pieces = [texts[a + 1 : b] for a, b in pairwise((-1, *places, len(texts)))]
-    are_asking = all(_said(piece, names) & {"ahead", "light", "none"} for piece in pieces)
+    are_asking = all(
+        _mentioned_words(piece, names) & {"ahead", "light", "none"} for piece in pieces
+    )
     return joints[places[0]][0].upper() if places and are_asking else ""
 
 
-def _compared(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
+def _mixed_condition(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
     """Return what is asked where words are joined with a comparison: `DISTANCE < 10 o hay luz`."""
     places = [k for k, lexeme in enumerate(row) if _joint_of(lexeme.text, names)]
     pieces = [row[a + 1 : b] for a, b in pairwise((-1, *places, len(row)))]
@@ -111,7 +115,7 @@ def _joint_of(text: str, names: Names) -> str:
 def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
     """Return the words without units, and their number in centimetres or of light, "" for none."""
     texts = [lexeme.text for lexeme in row]
-    is_near = bool(_said(texts, names) & {"ahead", "none"})
+    is_near = bool(_mentioned_words(texts, names) & {"ahead", "none"})
     for k, text in enumerate(texts):
         unit = said_of(texts[k + 1], "unit") if k + 1 < len(texts) else ()
         without = [*texts[: k + 1], *texts[k + 2 :]] if unit else texts

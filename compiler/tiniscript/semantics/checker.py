@@ -229,7 +229,7 @@ class _Checker(Scope):
         names = [its.name.upper() for its in word.arguments]
         given = dict(zip(names, arguments, strict=True))
         for instruction in parse(Source(word.stands_for)).program.body:
-            _CHECKS[type(instruction)](self, _placed(instruction, span, given), made)
+            _CHECKS[type(instruction)](self, _relocated(instruction, span, given), made)
 
     def way(self, node: ast.Command, unit: ast.Part) -> None:
         """Check the unit of a move, and whether the robot's speed is known."""
@@ -499,7 +499,7 @@ class _Checker(Scope):
         self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls = was
 
 
-def _placed(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
+def _relocated(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
     """Return a part of a tree at another place, with what was given for the names in it."""
     if isinstance(node, Span):
         return span
@@ -508,7 +508,7 @@ def _placed(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
     if isinstance(node, ast.Argument) and node.expression[0].value in given:
         return given[str(node.expression[0].value)]
     if isinstance(node, tuple):
-        parts = [_placed(part, span, given) for part in node]
+        parts = [_relocated(part, span, given) for part in node]
         return type(node)(*parts) if hasattr(node, "_fields") else tuple(parts)
     return node
 

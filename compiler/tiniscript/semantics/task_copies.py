@@ -16,7 +16,7 @@ from tiniscript.semantics import ir
 
 def separated(program: ir.Program) -> ir.Program:
     """Return a program that does the same, in which no two tasks share a DEF's values."""
-    reached = _reached(program)
+    reached = _reachable_defs(program)
     owns = _owning(program)
     procedures: list[ir.Procedure] = []
     variables = list(program.variables)
@@ -27,7 +27,7 @@ def separated(program: ir.Program) -> ir.Program:
             for its in maps:
                 its.calls[k] = len(procedures)
             # one that no task shares keeps its variables, and calls what its task calls
-            procedures.append(_copied(procedure, maps[its_tasks[0] if its_tasks else 0]))
+            procedures.append(_copy_procedure(procedure, maps[its_tasks[0] if its_tasks else 0]))
             continue
         for task in its_tasks:
             its = maps[task]
@@ -36,7 +36,7 @@ def separated(program: ir.Program) -> ir.Program:
                     its.variables[variable] = len(variables)
                     variables.append(program.variables[variable])
             its.calls[k] = len(procedures)
-            procedures.append(_copied(procedure, its))
+            procedures.append(_copy_procedure(procedure, its))
         for its in maps:  # of a DEF that nobody calls: it calls the first copy
             its.calls.setdefault(k, maps[its_tasks[0]].calls[k])
     main, *others = maps
@@ -62,7 +62,7 @@ class Excess(NamedTuple):
 
 def excess(program: ir.Program) -> Excess | None:
     """Return the DEF whose copies a machine has no room for, if there is one."""
-    owns, reached = _owning(program), _reached(program)
+    owns, reached = _owning(program), _reachable_defs(program)
     variables, defs = len(program.variables), len(program.procedures)
     for k, procedure in enumerate(program.procedures):
         its_tasks = tuple(task for task, found in enumerate(reached) if k in found)
@@ -78,7 +78,7 @@ def excess(program: ir.Program) -> Excess | None:
 
 def users(program: ir.Program) -> list[int]:
     """Return how many tasks reach each DEF."""
-    reached = _reached(program)
+    reached = _reachable_defs(program)
     return [sum(k in found for found in reached) for k in range(len(program.procedures))]
 
 
@@ -89,7 +89,7 @@ class _Numbers(NamedTuple):
     variables: dict[int, int]
 
 
-def _reached(program: ir.Program) -> list[set[int]]:
+def _reachable_defs(program: ir.Program) -> list[set[int]]:
     """Return the DEFs that each task reaches, the main task first."""
     found = []
     for body in (program.body, *(task.body for task in program.tasks)):
@@ -109,7 +109,7 @@ def _owning(program: ir.Program) -> list[bool]:
     return found
 
 
-def _copied(procedure: ir.Procedure, its: _Numbers) -> ir.Procedure:
+def _copy_procedure(procedure: ir.Procedure, its: _Numbers) -> ir.Procedure:
     values = tuple(its.variables.get(value, value) for value in procedure.values)
     return procedure._replace(body=_body(procedure.body, its), values=values)
 

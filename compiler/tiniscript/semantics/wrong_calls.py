@@ -105,7 +105,7 @@ class WrongCalls:
         values = {
             "usage": word.usage,
             "example": "" if texts else word.example,
-            **_said_of_count(texts, word, _UNTIL.search(source[span])),
+            **_count_values(texts, word, _UNTIL.search(source[span])),
             **self._as_way(texts, word),
             "wanted": str(len(word.arguments)),
             "found": str(len(arguments)),
@@ -299,7 +299,7 @@ def _is_note(text: str) -> bool:
     return _is_whole(text) >= _LOW_TONE and _is_whole(text) % _ROUND != 0
 
 
-def _said_of_count(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
+def _count_values(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
     """Return what is said of a wrong number of values: `power` of F(80) is F(2, 80), `spare` of
     F(2, 80, 5) is F(2, 80).
 

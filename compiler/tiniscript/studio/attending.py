@@ -125,7 +125,7 @@ class Attending:
     def attend(self, link: RobotLink, limit_s: float = LOOK_S) -> None:
         """Pass on what waits, and tell what is new."""
         if self._wants_stop:
-            self._take(link.news())  # no earlier stop confirms this one
+            self._apply_news(link.news())  # no earlier stop confirms this one
         self.stop_if_wanted(link.stop)
         with self._lock:
             asked, self._asked = self._asked, []
@@ -141,7 +141,7 @@ class Attending:
             except BadRequest:
                 self._runs.pop(request["id"], None)
                 self.tell([{"id": request["id"], "failure": "bad_request"}])
-        self._take(link.news(limit_s))
+        self._apply_news(link.news(limit_s))
         if self.is_attended:
             self._is_silent = False
         elif link.has_run and not self._is_silent:
@@ -162,7 +162,7 @@ class Attending:
         self.stops = max(self.stops, stops)
         self._wants_stop = True
 
-    def _take(self, news: list[Json]) -> None:
+    def _apply_news(self, news: list[Json]) -> None:
         with self._lock:
             for each in news:
                 stops = self._runs.pop(each["id"], 0) if "id" in each else 0

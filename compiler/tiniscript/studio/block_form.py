@@ -94,11 +94,11 @@ def beginning(form: Form, most: int) -> Form:
     """Return a form with no more than so many blocks, and a last one that says that there were."""
     if size_of(form) <= most:
         return form
-    body, _ = _first(form.body, most - 1)
+    body, _ = _first_blocks(form.body, most - 1)
     return form._replace(body=body, loose=())
 
 
-def _first(blocks: tuple[Block, ...], most: int) -> tuple[tuple[Block, ...], int]:
+def _first_blocks(blocks: tuple[Block, ...], most: int) -> tuple[tuple[Block, ...], int]:
     """Return the first blocks and how many more may follow; -1 if some are left out."""
     found: list[Block] = []
     for block in blocks:
@@ -107,7 +107,7 @@ def _first(blocks: tuple[Block, ...], most: int) -> tuple[tuple[Block, ...], int
             return (*found, LEFT_OUT), -1
         bodies = []
         for each in block.bodies:
-            body, most = _first(each, most) if most >= 0 else ((), most)
+            body, most = _first_blocks(each, most) if most >= 0 else ((), most)
             bodies.append(body)
         found.append(block._replace(bodies=tuple(bodies)))
         if most < 0:

@@ -79,7 +79,8 @@ def check(data: bytes, robot: str, language: str) -> Checked:
         return Checked(b"", 0, findings, (), (), (), "", profile.name, names_robot)
     variables = tuple(map(Variable, compiled.program.variables, compiled.yes_no))
     places = source_map.made(compiled)
-    return Checked(compiled.image, len(compiled.code), findings, places.places, _shows(places),
+    return Checked(compiled.image, len(compiled.code), findings, places.places,
+        _show_places(places),
                    variables, compiled.program.start, profile.name, names_robot,
                    _remote(compiled, profile.kit))  # fmt: skip
 
@@ -90,7 +91,7 @@ def _remote(compiled: Compiled, kit: Kit) -> tuple[str, ...]:
     return tuple(device.name for k, device in enumerate(REMOTE) if k in read)
 
 
-def _shows(places: source_map.Map) -> tuple[tuple[int, Show], ...]:
+def _show_places(places: source_map.Map) -> tuple[tuple[int, Show], ...]:
     shows = Shows(places)
     found = ((place.offset, shows.at(place.offset)) for place in places.places)
     return tuple((offset, show) for offset, show in found if show)

@@ -118,7 +118,7 @@ class Keeper:
             return None
         except (OSError, ValueError, RecursionError):
             with suppress(OSError):
-                path().replace(_aside())
+                path().replace(_unread_path())
             return None
         when_s = found.get("kept_s")
         return Kept(found, type(when_s) is int and time() - when_s <= SAME_LESSON_S)
@@ -148,7 +148,7 @@ def path() -> Path:
     return settings_folder() / "class.json"
 
 
-def _aside() -> Path:
+def _unread_path() -> Path:
     return path().with_name("class.unread.json")
 
 
@@ -160,6 +160,6 @@ def _write(of_class: Json) -> None:
 
 def forget() -> None:
     """Delete what is kept of a class that is over."""
-    for each in (path(), _aside()):
+    for each in (path(), _unread_path()):
         with suppress(OSError):
             each.unlink()

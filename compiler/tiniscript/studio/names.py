@@ -46,10 +46,10 @@ def free_name(wanted: str, taken: Iterable[str]) -> str:
 
 def _looks(name: str) -> set[str]:
     """Return what a name looks like, as it is and in small letters."""
-    return {_folded(name), _folded(name.casefold())}
+    return {_case_folded(name), _case_folded(name.casefold())}
 
 
-def _folded(text: str) -> str:
+def _case_folded(text: str) -> str:
     """Return the same text for all that look the same, as Unicode's standard 39 folds it."""
     table = _table()
     text = _UNSEEN.sub("", text)

@@ -70,7 +70,7 @@ def steps(number: int, language: str) -> list[dict[str, Any]]:
                 found[-1][0].append(block)
     found[0][0][:0] = before
     return [
-        {"blocks": [_shown(part) for part in parts], "hint": " ".join(hints)}
+        {"blocks": [_without_blanks(part) for part in parts], "hint": " ".join(hints)}
         for parts, hints in found
     ]
 
@@ -93,7 +93,7 @@ def taught(number: int, language: str) -> list[str]:
     return sorted(found | {KIND_OF[word] for word in words & WORDS.keys() & KIND_OF.keys()})
 
 
-def _shown(block: Block) -> dict[str, Any]:
+def _without_blanks(block: Block) -> dict[str, Any]:
     """Return a block without the blanks that are filled in on paper."""
     rows = [[row.removesuffix(" ____") for row in each] for each in block.rows]
     return {"kind": block.kind, "rows": rows}
@@ -152,13 +152,15 @@ class Check:
         program failed: 0 for none. `run` is what to see of it then: in which world, and until when.
         """
         if self._marking is None:
-            return self._said(MISTAKES, 0)
+            return self._verdict_json(MISTAKES, 0)
         outcome = self._marking.go(most_ms)
         if outcome is None:
-            return self._said("", self._marking.seed)
-        return self._said(outcome.verdict, outcome.seed, outcome)
+            return self._verdict_json("", self._marking.seed)
+        return self._verdict_json(outcome.verdict, outcome.seed, outcome)
 
-    def _said(self, verdict: str, seed: int, outcome: Outcome | None = None) -> dict[str, Any]:
+    def _verdict_json(
+        self, verdict: str, seed: int, outcome: Outcome | None = None
+    ) -> dict[str, Any]:
         findings = outcome.findings if outcome is not None else ()
         said = [sentence(finding, self._language) for finding in findings]
         run = None

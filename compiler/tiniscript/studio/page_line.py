@@ -45,7 +45,7 @@ class PageKeys(KeyRing):
             self.settle(key)
         return len(given)
 
-    def _kept(self) -> list[RobotKey]:
+    def _stored_keys(self) -> list[RobotKey]:
         return self.keys
 
     def accepts(self, robot: int) -> bool:

@@ -252,19 +252,19 @@ class Played(Simulation):
         for _ in range(duration_ms):
             if self._is_over:
                 return
-            self._pass()
+            self._replace_readings()
             super()._go(1)
-            self._pass()
+            self._replace_readings()
             started_ms = self.robot.started_ms or 0
             is_late = self.robot.now_ms - started_ms >= self._until_ms()
             has_more = len(self._virtual) > len(self.recording.rows)
             has_ended = self.robot.started_ms is not None and not self.robot.is_running
             if is_late or has_more or has_ended:
                 if self.parting is None:
-                    self.parting = self._compared()
+                    self.parting = self._compare_runs()
                 return self._end()
 
-    def _pass(self) -> None:
+    def _replace_readings(self) -> None:
         """At each SHOW the sensor that it shows has the reading that the robot has shown."""
         self._listen()
         while self.held_at is not None:
@@ -332,7 +332,7 @@ class Played(Simulation):
         late_ms = said[0].ms - told[0].ms
         return recording.end_ms + late_ms + _off_ms(recording.end_ms + late_ms)
 
-    def _compared(self) -> Parting:
+    def _compare_runs(self) -> Parting:
         rows = self.recording.rows
         told = [row for row in rows if _is_told(row)]
         virtual = [row for row in self._virtual if _is_told(row)]

@@ -166,13 +166,13 @@ def read(data: bytes) -> Recording:
     """Return the recording in a file. Raises BadRecording."""
     if len(data) > MOST_BYTES:
         raise BadRecording("too_long")
-    lines = _decoded(data).rstrip("\r\n").split("\n")
+    lines = _decode_text(data).rstrip("\r\n").split("\n")
     fields = _parsed(lines[0], 1, dict)
     if OLDER in fields:
         raise BadRecording("older")
     if HEAD in fields and fields[HEAD] != VERSION:
         raise BadRecording("other_version" if type(fields[HEAD]) is int else "unreadable")
-    found = _begun(fields)
+    found = _parse_header(fields)
     rows: list[Row] = []
     for number, each in enumerate(lines[1:], 2):
         if rows and rows[-1].event == END:
@@ -190,7 +190,7 @@ def read(data: bytes) -> Recording:
     return found._replace(rows=tuple(rows[:-1]), end_ms=rows[-1].ms)
 
 
-def _begun(fields: dict[str, Any]) -> Recording:
+def _parse_header(fields: dict[str, Any]) -> Recording:
     """Return what the first line says. Raises BadRecording."""
     text, robot, of = fields.get("text"), fields.get("robot"), fields.get("of")
     seed = fields.get("seed", 1)
@@ -214,7 +214,7 @@ def _begun(fields: dict[str, Any]) -> Recording:
     return Recording(
         of=of, text=text, robot=robot, kit=kit, program=int(fields["program"], 16), rows=(),
         end_ms=0, world=world_in(fields.get("world")) if is_virtual else None, seed=seed,
-        told=_told(fields.get("told"), robots.load(robot)) if is_virtual else {},
+        told=_parse_readings(fields.get("told"), robots.load(robot)) if is_virtual else {},
         is_by_button=not is_virtual and fields.get("is_by_button") is True, version=fields["tsc"],
     )  # fmt: skip
 
@@ -240,7 +240,7 @@ def kept(world: World) -> tuple[World, str | Form]:
     return world_in(form), form
 
 
-def _told(found: object, robot: Robot) -> dict[int, list[int]]:
+def _parse_readings(found: object, robot: Robot) -> dict[int, list[int]]:
     """Return the readings that single sensors gave one after the other."""
     numbers = {device.name: k for k, device in enumerate(robot.kit.readings) if device.name}
     told: dict[int, list[int]] = {}
@@ -271,7 +271,7 @@ def _row(written_row: str, number: int, of: str) -> Row:
     return row
 
 
-def _decoded(data: bytes) -> str:
+def _decode_text(data: bytes) -> str:
     """Return the text of a file, also as PowerShell and Notepad write it."""
     is_wide = data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
     return data.decode("utf-16" if is_wide else "utf-8-sig", "replace")

@@ -109,7 +109,7 @@ class RobotLink:
             raise BadRequest
         make = _MAKERS[do](request)
         limit_ms = whole(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
-        refused = self._refused(request) if "image" in request else None
+        refused = self._refusal_of(request) if "image" in request else None
         if refused is not None:
             self._answers.append({"id": number, **self._failure(refused)})
             return
@@ -150,7 +150,7 @@ class RobotLink:
             reply = each.pending.outcome
             if reply and reply.status == OK and isinstance(reply.values, ReceiptReply):
                 if each.is_program:
-                    self._program_run = self._known(reply.values.run)
+                    self._program_run = self._known_run(reply.values.run)
         return [{"id": each.number, **self._answer(each.pending)} for each in over]
 
     def _follow(self, event: Event) -> None:
@@ -158,12 +158,12 @@ class RobotLink:
         one without a number may be that of a run before. Another run that begins ends it, too: what
         the page leaves to be stopped is its own."""
         if event.name == "STARTED":
-            begun = self._known(event.run)
+            begun = self._known_run(event.run)
             if self._begun == self._run != begun:
                 self._run = None
             self._begun, self._over = begun, None
         elif event.name in ("DONE", "FAULT"):
-            self._over = self._known(event.run)
+            self._over = self._known_run(event.run)
         elif event.name == "STOPPED":
             self._over = self._begun
         if event.name in ("LOST", "RESTARTED") or (
@@ -171,12 +171,12 @@ class RobotLink:
         ):
             self._run = None
 
-    def _known(self, number: int) -> _Run:
+    def _known_run(self, number: int) -> _Run:
         return _Run(self._connection.boot, number)
 
     # -- requests ---------------------------------------------------------------------------------
 
-    def _refused(self, request: Json) -> Reply[Any] | None:
+    def _refusal_of(self, request: Json) -> Reply[Any] | None:
         """Return the refusal of a program of another kit, before any byte is sent."""
         robot = self._connection.robot
         if robot is None:
@@ -190,7 +190,7 @@ class RobotLink:
             return self._failure(reply)
         values = reply.values
         if isinstance(values, ReceiptReply):
-            run = self._known(values.run)
+            run = self._known_run(values.run)
             if pending.starts and run != self._over:
                 self._run = run
             return {
@@ -234,7 +234,7 @@ class RobotLink:
         elif event.name == "STARTED":
             found["program"] = f"{event.program:08x}"
             # no line, and nobody else's
-            found["is_program"] = self._known(event.run) == self._program_run
+            found["is_program"] = self._known_run(event.run) == self._program_run
         elif event.name not in ("DONE", "RESTARTED", "LOST"):
             return []  # who else uses the port is no news for a page
         return [found]

@@ -123,7 +123,7 @@ def files(folder: Path | None = None) -> dict[str, File]:
     """Return the files of the page, which is built, by their names."""
     folder = folder or PAGE
     return {
-        path.name: _tagged(path.read_bytes(), TYPES[path.suffix])
+        path.name: _with_etag(path.read_bytes(), TYPES[path.suffix])
         for path in folder.iterdir()
         if path.suffix in TYPES and path.name != building.STAMP
     }
@@ -134,9 +134,9 @@ def with_firmware(page: dict[str, File]) -> dict[str, File]:
     found = dict(page)
     brought = [*ready.files(), *ready.images()]
     for each in brought:
-        found[each.path.name] = _tagged(each.path.read_bytes(), TYPES[each.path.suffix])
+        found[each.path.name] = _with_etag(each.path.read_bytes(), TYPES[each.path.suffix])
     rows = [{"title": each.title, "board": each.board, "file": each.path.name} for each in brought]
-    found[FIRMWARE] = _tagged(json.dumps(rows).encode(), TYPES[".json"])
+    found[FIRMWARE] = _with_etag(json.dumps(rows).encode(), TYPES[".json"])
     return found
 
 
@@ -148,11 +148,11 @@ def for_class(page: dict[str, File]) -> dict[str, File]:
         if name == FIRST:
             data = data.replace(HTML, HTML + b" data-class", 1)
         packed = gzip.compress(data, 6, mtime=0)
-        found[name] = _tagged(data, file.kind, packed if len(packed) < len(data) else b"")
+        found[name] = _with_etag(data, file.kind, packed if len(packed) < len(data) else b"")
     return found
 
 
-def _tagged(data: bytes, kind: str, packed: bytes = b"") -> File:
+def _with_etag(data: bytes, kind: str, packed: bytes = b"") -> File:
     return File(data, kind, f'"{hashlib.sha256(data).hexdigest()[:32]}"', packed)
 
 

@@ -48,11 +48,11 @@ class _Log:
         while True:
             found = self.connection.event()
             if found is not None:
-                self._tell(*found)
+                self._print_event(*found)
             if self.search is not None and self.search.outcome is not None:
                 self._look_again()
 
-    def _tell(self, time_ms: int, event: Event) -> None:
+    def _print_event(self, time_ms: int, event: Event) -> None:
         if event.name == "JOINED" or event.name == "LEFT":
             self._say(event.name, event.name.lower(), verb=event.verb.decode())
         elif event.name == "STARTED":

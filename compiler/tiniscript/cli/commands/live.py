@@ -45,7 +45,7 @@ def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
 
     known = Known(robot.kit)
-    if line is not None and line != "-" and not _may_be_done(line, known, robot, options):
+    if line is not None and line != "-" and not _is_runnable(line, known, robot, options):
         return 1
     with Connection(options, robot, language) as connection:
         talk = Repl(connection, known, options)
@@ -59,7 +59,7 @@ def run(options: Namespace, language: str) -> int:
         return talk.do(line, is_last=True)
 
 
-def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
+def _is_runnable(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
     language: str = options.language
     if options.robot is None:
@@ -190,8 +190,8 @@ class Repl:
         if simulator is not None:
             simulator.watch()
         try:
-            while not self._says_time_over():
-                self._tell_meanwhile(remote_keys.LOOK_S)
+            while not self._report_time_limit():
+                self._print_pending_events(remote_keys.LOOK_S)
                 self.remote.look()
             return 0
         except KeyboardInterrupt:
@@ -202,14 +202,14 @@ class Repl:
         lines = (line.rstrip("\r\n") for line in file)
         for line in lines:
             if line.strip():
-                if self._says_time_over():
+                if self._report_time_limit():
                     return 0
                 code = self.do(self.whole(line, lambda: next(lines, None)))
                 if code or self.connection.is_time_over:
                     return code
         return 0
 
-    def _says_time_over(self) -> bool:
+    def _report_time_limit(self) -> bool:
         """Whether a virtual robot's time limit has passed between two lines; prints so then."""
         if self.connection.is_time_over:
             say("time_over", self.language)
@@ -230,7 +230,7 @@ class Repl:
         self.connection.say("live_hello")
         with _history(self.known):
             while True:
-                self._tell_meanwhile()
+                self._print_pending_events()
                 try:
                     line = self.whole(input(PROMPT), lambda: input(MORE))
                 except EOFError:
@@ -239,9 +239,9 @@ class Repl:
                 except KeyboardInterrupt:
                     self._stop()
                     continue
-                if self._says_time_over():
+                if self._report_time_limit():
                     return 0
-                self._tell_meanwhile()
+                self._print_pending_events()
                 request = requested(line, self.known)
                 if request == LEAVE:
                     return 0
@@ -267,7 +267,7 @@ class Repl:
         except CommandError as failure:
             print(failure.sentence(self.language), file=sys.stderr)
 
-    def _tell_meanwhile(self, limit_s: float = 0) -> None:
+    def _print_pending_events(self, limit_s: float = 0) -> None:
         """Print the robot's events since the last line.
 
         The next line reports a lost robot, if it is still lost.

@@ -35,10 +35,10 @@ def run(options: Namespace, language: str) -> int:
         return _SetUp(wire, options, wanted, language, begun).run()
     except OSError:
         code = _end(sure("port_gone")._replace(of="module"), language)
-        print(_left(begun, language))
+        print(_speed_after_abort(begun, language))
         return code
     except KeyboardInterrupt:
-        raise CommandError(2, "module_stopped", left=_left(begun, language)) from None
+        raise CommandError(2, "module_stopped", left=_speed_after_abort(begun, language)) from None
     finally:
         wire.close()
 
@@ -49,7 +49,7 @@ def _end(finding: Finding, language: str) -> int:
     return 3 if finding.is_wrong else 0
 
 
-def _left(begun: list[Step], language: str) -> str:
+def _speed_after_abort(begun: list[Step], language: str) -> str:
     """Return what is known of the speed of a module whose set-up was broken off."""
     if not begun:
         return text("module_left_nothing", language)
@@ -127,7 +127,7 @@ class _SetUp:
         outcomes: list[Outcome] = []
         if not self.options.dry_run:
             self.begun += [step for step in plan if step.what == BAUD]
-            outcomes = set_up.done(self.wire, module, plan, self._tell)
+            outcomes = set_up.done(self.wire, module, plan, self._print_outcome)
         else:
             self._show(plan)
         is_done = all(outcome.how in GOOD for outcome in outcomes)
@@ -174,7 +174,7 @@ class _SetUp:
             commands = self._text("module_plan_or").join(step.commands)
             print(f"{what}: " + self._text("module_plan", commands=commands))
 
-    def _tell(self, outcome: Outcome) -> None:
+    def _print_outcome(self, outcome: Outcome) -> None:
         step, how, said = outcome
         name = self._text(f"module_what_{step.what}", value=step.value)
         if step.what == BAUD and how == DONE:

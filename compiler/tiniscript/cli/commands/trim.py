@@ -20,7 +20,7 @@ from tiniscript.link.trim import MOST_PACE, Pace, Trim, told
 
 
 def run(options: Namespace, language: str) -> int:
-    given = _given(options, language)
+    given = _trim_options(options, language)
     with connected(options, language) as connection:
         connection.meet()
         before = told(connection.ask(lambda session: session.trim()).values)
@@ -50,7 +50,7 @@ def _changed(before: Trim, given: dict[str, Any], is_reset: bool) -> Trim:
     return (Trim() if is_reset else before)._replace(**given)
 
 
-def _given(options: Namespace, language: str) -> dict[str, Any]:
+def _trim_options(options: Namespace, language: str) -> dict[str, Any]:
     """Return the fields of a trim that the options set."""
     found: dict[str, Any] = {}
     for option, name in (

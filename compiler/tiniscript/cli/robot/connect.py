@@ -87,7 +87,7 @@ class Connection(Client):
         baud = baud_of(options, robot, language)
         self._is_meeting = False
         self.simulator: CommandSimulator | None = None  # a virtual robot for this command alone
-        found = _chosen(options, language)
+        found = _select_port(options, language)
         if found == VIRTUAL:
             from tiniscript.cli.robot.simulator import CommandSimulator
 
@@ -356,7 +356,7 @@ def remember_profile(options: Namespace, robot: Robot, kit: int) -> None:
     given.remember(name, kit)
 
 
-def _chosen(options: Namespace, language: str) -> str:
+def _select_port(options: Namespace, language: str) -> str:
     """Return the port of `--port`, else the last used one, else the one that the user chooses.
 
     A port is not chosen because a robot answers on it: it may be another group's robot. A running
@@ -389,7 +389,7 @@ def _chosen(options: Namespace, language: str) -> str:
                 3, "which_virtual", known=", ".join(each.address for each in virtual)
             )
         raise CommandError(3, "which_port_or_virtual" if can_bring else "which_port")
-    return _asked(language, can_bring, virtual)
+    return _ask_port(language, can_bring, virtual)
 
 
 def about_port(listed: ListedPort, language: str) -> str:
@@ -409,7 +409,7 @@ def about_virtual(running: directory.Running, language: str) -> str:
     return f"{running.name}: {said}" if running.name else said
 
 
-def _asked(language: str, can_bring: bool, virtual: list[directory.Running]) -> str:
+def _ask_port(language: str, can_bring: bool, virtual: list[directory.Running]) -> str:
     """Let the person choose a port, or one of the virtual robots."""
     names = known_ports.known().names
     from tiniscript.link import ports

@@ -42,14 +42,18 @@ def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, .
     statements = begins(ready.image.code)
     found = []
     for line in lines:
-        places = [_first(place, statements) for place in ready.places.places if place.line >= line]
+        places = [
+            _first_statement(place, statements)
+            for place in ready.places.places
+            if place.line >= line
+        ]
         if not places:
             raise CommandError(1, "break_nowhere", line=str(line))
         found.append(min(places))
     return tuple(sorted(set(found)))
 
 
-def _first(place: MapLocation, statements: Sequence[int]) -> int:
+def _first_statement(place: MapLocation, statements: Sequence[int]) -> int:
     return next((at for at in statements if at >= place.offset), statements[-1])
 
 
@@ -88,11 +92,11 @@ class Debugger:
         if event.name != "HALTED":
             return False
         place = self.map.at(event.at)
-        is_inside = place is not None and _first(place, self.statements) != event.at
+        is_inside = place is not None and _first_statement(place, self.statements) != event.at
         if self.is_stepping and is_inside:  # of one instruction of the text
             self._resume(RESUME_STEP)
             return True
-        self._tell(event.at, event.task, place)
+        self._print_halt(event.at, event.task, place)
         self.is_halted = True
         if not self.has_keys:
             self._resume(RESUME_GO)
@@ -110,7 +114,7 @@ class Debugger:
         self.is_halted, self.is_stepping = False, how == RESUME_STEP
         self.connection.ask(lambda session: session.resume(how))
 
-    def _tell(self, at: int, task: int, place: MapLocation | None) -> None:
+    def _print_halt(self, at: int, task: int, place: MapLocation | None) -> None:
         language = self.printer.language
         variables = self._variables()
         tasks = self._tasks(task)

@@ -111,7 +111,7 @@ def in_use(is_virtual: bool = False) -> list[str]:
         names = [robot.address, *([robot.terminal] if robot.terminal else [])]
         through = [port for port in names if same_for_all(port) in held]
         found.append(through[0] if through else robot.address)  # one robot, one port
-    return _once(found)
+    return _unique_ports(found)
 
 
 def alive() -> list[Registration]:
@@ -130,8 +130,8 @@ def ports_to_stop(is_virtual: bool = False) -> list[str]:
     """
     found = in_use(is_virtual)
     last = None if is_virtual else opening.last_port()
-    return _once([*found, *([last] if last is not None else [])])
+    return _unique_ports([*found, *([last] if last is not None else [])])
 
 
-def _once(ports: Iterable[str]) -> list[str]:
+def _unique_ports(ports: Iterable[str]) -> list[str]:
     return list({same_for_all(port): port for port in ports}.values())

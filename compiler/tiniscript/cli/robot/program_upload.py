@@ -175,7 +175,7 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
                 return RunMonitor(connection, printer).stop_in_time()
             if found is None:
                 continue
-            _mind(connection, found[1], saving.program)
+            _check_event(connection, found[1], saving.program)
             if found[1].name != "STARTED":
                 printer.tell(*found)
             code = ended(found[1], None)
@@ -183,7 +183,7 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
                 return code
 
 
-def _mind(connection: Connection, event: Event, program: int) -> None:
+def _check_event(connection: Connection, event: Event, program: int) -> None:
     """Raise CommandError if the robot is lost or has another program."""
     if event.name == "LOST":
         raise CommandError(3, "link_lost", port=shown(connection.port))

@@ -126,13 +126,13 @@ def sentence(parting: Parting, started_ms: int, language: str) -> str:
     return text(f"replay_{parting.what}", language).format(
         count=parting.agreed,
         place=place.format(line=parting.line),
-        robot=_told(parting.robot, started_ms, language),
-        virtual=_told(parting.virtual, started_ms, language),
+        robot=_row_text(parting.robot, started_ms, language),
+        virtual=_row_text(parting.virtual, started_ms, language),
         sensor=parting.sensor,
     )
 
 
-def _told(row: Row | None, started_ms: int, language: str) -> str:
+def _row_text(row: Row | None, started_ms: int, language: str) -> str:
     if row is None:
         return text("replay_nothing", language)
     what = row.event.removeprefix("SHOW ")

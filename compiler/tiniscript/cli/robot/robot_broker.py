@@ -93,7 +93,9 @@ def use(connection: Connection, broker: BrokerSettings | None, options: Namespac
     if broker is None:
         connection.say("broker_off")
         return
-    wifi_reply = awaited(partial(_told, connection), lambda reply: _state(reply) != "SEARCHING")
+    wifi_reply = awaited(
+        partial(_broker_state, connection), lambda reply: _state(reply) != "SEARCHING"
+    )
     tell(connection, wifi_reply, broker.name.decode(), _class_command(options))
 
 
@@ -145,7 +147,7 @@ def _state(wifi_reply: WifiReply) -> str:
     return "SEARCHING" if state in NOT_BEGUN else state
 
 
-def _told(connection: Connection) -> WifiReply:
+def _broker_state(connection: Connection) -> WifiReply:
     return connection.ask(lambda session: session.broker()).values
 
 

@@ -164,10 +164,12 @@ class CommandSimulator(SimulatorThread):
         if self.options.plot is not None:
             simulator_options.draw_picture(self.options, self.robot, self.language)
         is_json = getattr(self.options, "json", False)
-        said = simulator_options.summary(self.options, self.robot, self.language, self._driven_ms())
+        said = simulator_options.summary(
+            self.options, self.robot, self.language, self._driving_ms()
+        )
         print(said, file=sys.stderr if is_json else sys.stdout, flush=True)
 
-    def _driven_ms(self) -> int:
+    def _driving_ms(self) -> int:
         """Return the time from the start of the first program to the end of the last one."""
         started_ms, ended_ms = self.robot.started_ms, self.robot.ended_ms
         if started_ms is None:

@@ -89,7 +89,7 @@ class Statements:
             if len(padded) <= WIDEST:
                 plain = padded
             else:
-                self.lines.append(f"{indent}// {_shortened(beside, WIDEST - len(indent) - 3)}")
+                self.lines.append(f"{indent}// {_truncated(beside, WIDEST - len(indent) - 3)}")
         self.lines.append(plain)
 
     def said(self, start: int) -> str:
@@ -335,7 +335,7 @@ def harmless(text: str) -> str:
     return printable(text).replace("??/", "?? /").rstrip("\\ ")
 
 
-def _shortened(text: str, most: int) -> str:
+def _truncated(text: str, most: int) -> str:
     return text if len(text) <= most else text[: most - 1] + "…"
 
 

@@ -316,7 +316,7 @@ class _Sketch:
         baud = str(self.robot.board.baud)
         lines = ["// " + row if row else "//" for row in rows]
         for key in limits:
-            lines += _wrapped(self.says(key, baud=baud), "// - ", "//   ")
+            lines += _wrap(self.says(key, baud=baud), "// - ", "//   ")
         return "\n".join(lines) + "\n"
 
     def constants(self) -> str:
@@ -372,7 +372,7 @@ class _Sketch:
         return self.says(key)
 
     def commented(self, note: str, code: str) -> str:
-        comment = "\n".join(_wrapped(note, "// ", "// ")) + "\n" if note else ""
+        comment = "\n".join(_wrap(note, "// ", "// ")) + "\n" if note else ""
         return f"{comment}{code}\n"
 
     def filled(self, text: str) -> str:
@@ -400,5 +400,5 @@ def _heading(text: str) -> str:
     return f"// {'-' * 4} {text} {'-' * max(4, 90 - len(text))}\n"
 
 
-def _wrapped(text: str, first: str, other: str) -> list[str]:
+def _wrap(text: str, first: str, other: str) -> list[str]:
     return wrap(text, WIDEST, initial_indent=first, subsequent_indent=other)

@@ -86,7 +86,7 @@ def done(
     for step in plan:
         outcome = _set(wire, module.dialect, step)
         if step.what == BAUD and outcome.how != REFUSED:
-            outcome = _at_its_speed(wire, module, outcome)
+            outcome = _check_speed(wire, module, outcome)
         outcomes.append(outcome)
         on_outcome(outcome)
         if outcome.how not in GOOD:
@@ -131,7 +131,7 @@ def _is_same(step: Step, dialect: Dialect, answer: str) -> bool:
     return now == step.value
 
 
-def _at_its_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
+def _check_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
     """Return whether the module is at its new speed, else at which one it is."""
     dialect, step = module.dialect, outcome.step
     baud = int(step.value)

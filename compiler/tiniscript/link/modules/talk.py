@@ -85,15 +85,15 @@ def _listens(wire: Wire) -> bytes | None:
     A module that waits for a silence must not hear more before that; one that waits for the end of
     a line has `AT` already when it comes.
     """
-    if _takes(ask(wire, "AT", b"", SLOW_ANSWER_MS)):
+    if _is_accepted(ask(wire, "AT", b"", SLOW_ANSWER_MS)):
         return b""
     said = ask(wire, "", CRLF, SLOW_ANSWER_MS)
     if is_error(said):  # it had half a command of before
         said = ask(wire, "AT", CRLF, ANSWER_MS)
-    return CRLF if _takes(said) else None
+    return CRLF if _is_accepted(said) else None
 
 
-def _takes(said: str) -> bool:
+def _is_accepted(said: str) -> bool:
     return "OK" in said.split()
 
 

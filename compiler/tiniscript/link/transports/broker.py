@@ -267,7 +267,7 @@ class Broker:
         except ssl.SSLError as why:
             raise PortError(errors.UNTRUSTED, str(why.reason or why)) from None
         except (OSError, ValueError) as why:
-            raise PortError(errors.UNREACHABLE, _said(why)) from None
+            raise PortError(errors.UNREACHABLE, _error_text(why)) from None
         self._client.loop_start()
         end_s = monotonic() + CONNECT_S
         with self._news:
@@ -360,5 +360,5 @@ class BrokerPort(PushedTransport):
         self.bring(data)
 
 
-def _said(why: Exception) -> str:
+def _error_text(why: Exception) -> str:
     return (why.strerror if isinstance(why, OSError) else None) or str(why)

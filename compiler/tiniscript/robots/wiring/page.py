@@ -45,7 +45,9 @@ def wire_rows(plan: Plan) -> list[tuple[str, ...]]:
             if end.wire:
                 colour = text(f"colour_{end.wire.colour}", language)
                 name = f"{end.wire.number} {colour}"
-                rows.append((name, end.wire.pin_name, part.title, end.name, _way(end, language)))
+                rows.append(
+                    (name, end.wire.pin_name, part.title, end.name, _route_text(end, language))
+                )
     if plan.has_lamp:
         lamp = text("part_lamp", language)
         on_board = text("on_board", language)
@@ -72,7 +74,7 @@ def rail_rows(plan: Plan) -> list[tuple[str, ...]]:
     return rows
 
 
-def _way(end: End, language: str) -> str:
+def _route_text(end: End, language: str) -> str:
     to_ground = "to_ground_pin" if end.beyond else "to_ground"
     pairs = (("series", end.series), ("beyond", end.beyond), (to_ground, end.to_ground))
     return "; ".join(text(key, language).format(value=value) for key, value in pairs if value)
@@ -96,17 +98,17 @@ class _Page:
             Block("heading", say("finished", robot=self.plan.robot)),
             Block("finished", say("finished_drawing")),
             Block("heading", say("need")),
-            Block("list", rows=_column(self._needs())),
+            Block("list", rows=_column(self._shopping_list())),
             Block("heading", say("wires")),
             Block("paragraph", say("wires_intro")),
             Block("ticks", rows=tuple(wire_rows(self.plan))),
             Block("heading", say("rails")),
             Block("paragraph", say("rails_intro")),
             Block("ticks", rows=tuple(rail_rows(self.plan))),
-            *(Block("paragraph", words) for words in self._others()),
+            *(Block("paragraph", words) for words in self._unconnected()),
             Block("list", rows=_column(self._power())),
             Block("heading", say("mind")),
-            Block("list", rows=_column(self._mind())),
+            Block("list", rows=_column(self._warnings())),
             Block("heading", say("bluetooth" if self.plan.has_radio else "usb")),
             Block("list", rows=_column(self._link())),
             Block("heading", say("check")),
@@ -114,7 +116,7 @@ class _Page:
             Block("paragraph", say("made_by", robot=self.plan.robot)),
         ]
 
-    def _needs(self) -> list[str]:
+    def _shopping_list(self) -> list[str]:
         found: dict[str, list[Part]] = {}
         for part in self.plan.parts:
             if part.shape.need:
@@ -134,7 +136,7 @@ class _Page:
         needs += [self.say("need_plate", size=size), self.say("need_power_bank")]
         return needs
 
-    def _others(self) -> list[str]:
+    def _unconnected(self) -> list[str]:
         """Return what is joined to no pin and no rail: motors, and what stays free."""
         said = []
         motors = self.plan.parts[0].shape.motors
@@ -168,7 +170,7 @@ class _Page:
         ends = self.plan.parts[0].ends
         return ", ".join(end.name for end in ends if end.to_ground == PULL_DOWN)
 
-    def _mind(self) -> list[str]:
+    def _warnings(self) -> list[str]:
         said = []
         if self._pull_downs():
             said.append(self.say("mind_floating", ends=self._pull_downs()))

@@ -88,7 +88,7 @@ class _Conditions:
         is_turned = op in _TURNED.get(move.direction, {}) and is_ahead
         if is_turned and not around.asked & _sensors(condition):
             turned = compared._replace(op=_TURNED[move.direction][op])
-            other = "" if answer_of(turned) else self._with(move, str(turned))
+            other = "" if answer_of(turned) else self._with_condition(move, str(turned))
             is_forward = move.direction == "F"
             number_is, repair = ("number", "fix") if is_forward else ("far", "away")
             values = {"sensor": device.name, number_is: as_text(number), repair: other}
@@ -97,7 +97,7 @@ class _Conditions:
             reached = "GE" if device is TIME else _REACHED.get(move.direction, "")
             written = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
             is_sure = bool(reached) and (is_ahead or device is TIME)
-            fix = self._with(move, written) if is_sure else ""
+            fix = self._with_condition(move, written) if is_sure else ""
             self._report_exact(compared, move.span, "UNTIL", fix)
 
     def _report_frozen_until(
@@ -110,10 +110,10 @@ class _Conditions:
         if held:
             values["sensor"] = held[name]
             asked = self._asking(condition, held, move.span, "UNTIL", move.direction)
-            values["fix"] = self._with(move, asked) if asked else ""
+            values["fix"] = self._with_condition(move, asked) if asked else ""
         self._look.report(codes.FROZEN_UNTIL, move.span, **values)
 
-    def _with(self, move: ir.Move, written: str) -> str:
+    def _with_condition(self, move: ir.Move, written: str) -> str:
         """Return a move as it is written, with another condition after UNTIL."""
         text = self._source[move.span]
         end = max((match.start() for match in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
@@ -206,7 +206,7 @@ class _Conditions:
         ]
         if len(sets) != 1 or self._look.variables.set_to[variable] != [sets[0].value]:
             return False
-        if all(term.op != "RANDOM" for term in sets[0].value) or _goes_once(loop):
+        if all(term.op != "RANDOM" for term in sets[0].value) or _runs_once(loop):
             return False
         term = ir.Term("VARIABLE", variable)
         is_only_shown = all(
@@ -219,7 +219,9 @@ class _Conditions:
         }
         others = [term for term in shown if term.op in _CHANGING or term.op == "VARIABLE"]
         is_before = sets[0].span.end <= loop.span.start
-        if not (is_before and is_only_shown and others == [term] and show in _each_round(loop)):
+        if not (
+            is_before and is_only_shown and others == [term] and show in _round_statements(loop)
+        ):
             return False
         name, said = self._program.variables[variable], self._source[sets[0].span]
         if not any(diagnostic.values.get("thrown") == name for diagnostic in self._look.found):
@@ -303,12 +305,12 @@ class _Conditions:
         return re.sub(r"[A-Za-z_]\w*", lambda it: held.get(it[0].upper(), it[0]), written)
 
 
-def _goes_once(loop: ir.Loop | ir.While) -> bool:
+def _runs_once(loop: ir.Loop | ir.While) -> bool:
     times = loop.times if isinstance(loop, ir.Loop) else None
     return known_value(times) == 1000
 
 
-def _each_round(loop: ir.Loop | ir.While) -> list[ir.Statement]:
+def _round_statements(loop: ir.Loop | ir.While) -> list[ir.Statement]:
     """Return the statements of a loop that no IF is around."""
     found: list[ir.Statement] = []
     rest: list[ir.Loop | ir.While] = [loop]

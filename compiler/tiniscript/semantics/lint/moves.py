@@ -122,7 +122,7 @@ class _LateConditions:
                     return  # it drives away from what is near
                 values = self._idle(stop, move, place, branch)
                 if values["fix"]:
-                    values |= self._instead(body, move, branch)
+                    values |= self._replacement_values(body, move, branch)
                 if place == "move" or not pauses:
                     self._look.report(codes.IDLE_STOP, stop.span, **values)
                 return
@@ -151,7 +151,7 @@ class _LateConditions:
             values["needless" if place == "move" else "behind"] = written
         return values
 
-    def _instead(self, body: ir.Body, move: ir.Move, branch: ir.If) -> dict[str, str]:
+    def _replacement_values(self, body: ir.Body, move: ir.Move, branch: ir.If) -> dict[str, str]:
         """Return what the move with its UNTIL takes the place of: all of it, or the move alone."""
         first, last = sorted((move.span, branch.span))
         begin, there, end = (
@@ -227,7 +227,7 @@ def report_unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
             continue
         rest = (body[at] for at in range(k + 1, len(body)))
         after = next((each for each in rest if not isinstance(each, _TAKE_NO_TIME)), None)
-        if isinstance(after, ir.If) and all(map(_takes_no_time, (after, *rest))):
+        if isinstance(after, ir.If) and all(map(_is_instant, (after, *rest))):
             after = None
         if isinstance(after, ir.Motors) and after[:2] == motors[:2]:
             continue  # they are set again to the same
@@ -245,14 +245,12 @@ def report_unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
         look.report(codes.UNSEEN_MOTORS, motors.span, **values)
 
 
-def _takes_no_time(statement: ir.Statement) -> bool:
+def _is_instant(statement: ir.Statement) -> bool:
     """Also an IF that is over at once, whatever the answer is."""
     if not isinstance(statement, ir.If):
         return isinstance(statement, _TAKE_NO_TIME)
     bodies = (statement.otherwise, *(arm.body for arm in statement.arms))
-    return all(
-        isinstance(each, ir.Stop) or _takes_no_time(each) for body in bodies for each in body
-    )
+    return all(isinstance(each, ir.Stop) or _is_instant(each) for body in bodies for each in body)
 
 
 def _is_still(motors: ir.Motors) -> bool:
