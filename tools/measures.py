@@ -47,11 +47,11 @@ def main() -> int:
 
 def arrows(graph: Graph) -> Graph:
     """Return which modules each module imports."""
-    found: Graph = {}
+    result: Graph = {}
     for name, targets in graph.items():
-        own = found.setdefault(_module(name), set())
+        own = result.setdefault(_module(name), set())
         own |= {_module(target) for target in targets} - {_module(name)}
-    return found
+    return result
 
 
 def direct(arrows: Graph) -> Graph:
@@ -102,8 +102,8 @@ def _words(tracked: list[Path]) -> int:
         if path.suffix == ".md" and not {path, *path.parents} & set(not_counted):
             text = path.read_text(encoding="utf-8")
             text = "" if text.startswith("<!-- Generated") else text
-            made = r"<!-- begin generated.*?<!-- end generated"
-            count += len(re.sub(made, "", text, flags=re.DOTALL).split())
+            result = r"<!-- begin generated.*?<!-- end generated"
+            count += len(re.sub(result, "", text, flags=re.DOTALL).split())
     return count
 
 
@@ -154,13 +154,13 @@ def circles(graph: Graph) -> set[frozenset[str]]:
 
 
 def _reachable(graph: Graph, start: str) -> set[str]:
-    found: set[str] = set()
+    result: set[str] = set()
     left = [start]
     while left:
-        new = graph[left.pop()] - found
-        found |= new
+        new = graph[left.pop()] - result
+        result |= new
         left += new
-    return found
+    return result
 
 
 if __name__ == "__main__":

@@ -104,8 +104,8 @@ def _ask_for_studio(python: Path) -> bool:
     try:
         completed = subprocess.run([str(python), "-c", MEGABYTES], capture_output=True, text=True)
         size = completed.stdout.strip()
-        said = f" ({size} MB)" if size not in ("", "0") else ""
-        return input(environment.in_language(SAID["studio"], size=said)).strip().lower() in YES
+        text = f" ({size} MB)" if size not in ("", "0") else ""
+        return input(environment.in_language(SAID["studio"], size=text)).strip().lower() in YES
     except (EOFError, KeyboardInterrupt):
         print()
         return False

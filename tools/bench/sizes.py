@@ -243,8 +243,8 @@ def _built(part: Part, use: str, chip: str) -> Size:
         _finished(
             "avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(made)
         )
-        said = _finished("avr-size", str(made))
-    text, data, bss = (int(word) for word in said.splitlines()[1].split()[:3])
+        sentence = _finished("avr-size", str(made))
+    text, data, bss = (int(word) for word in sentence.splitlines()[1].split()[:3])
     return Size(text + data, data + bss)
 
 
@@ -263,7 +263,7 @@ def main() -> int:
             print(missing(chip), file=sys.stderr)
             continue
         sizes = [size(part, chip) for part in SHOWN]
-        print(f"| {chip} |", " | ".join(f"{each.flash:,} | {each.ram}" for each in sizes), "|")
+        print(f"| {chip} |", " | ".join(f"{item.flash:,} | {item.ram}" for item in sizes), "|")
     return 0
 
 

@@ -144,7 +144,7 @@ class Busy:
     def together(self) -> int:
         """Return the cycles of a stop before which all comes that may: once, at its longest."""
         received = RECEIVED[self.chip.board]
-        spans = [each for each in self.chip.masked() if each.vector != received]
+        spans = [item for item in self.chip.masked() if item.vector != received]
         entries = {span.vector: span.cycles for span in spans if _is_before(span, received)}
         before = max(
             span.cycles + sum(entries[vector] for vector in entries if vector != span.vector)
@@ -181,9 +181,9 @@ def slowest(firmware: Path, robot: Robot, board: str, baud: int) -> Slowest:
 
 
 def summed_up(stopped: Busy) -> Slowest:
-    each = sorted(stopped.cycles)
+    item = sorted(stopped.cycles)
     return Slowest(
-        len(each), *map(_microseconds, (each[-1], each[len(each) // 2], stopped.together()))
+        len(item), *map(_microseconds, (item[-1], item[len(item) // 2], stopped.together()))
     )
 
 

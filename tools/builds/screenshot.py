@@ -93,7 +93,7 @@ def main(arguments: list[str] | None = None) -> int:
             take(language, scene, picture(language, scene))
             print(f"wrote {picture(language, scene).relative_to(ROOT)}")
         return 0
-    wrong = [why for each in product(LANGUAGES, SCENES) if (why := stale(*each))]
+    wrong = [why for item in product(LANGUAGES, SCENES) if (why := stale(*item))]
     for why in wrong:
         print(f"screenshot: {why}", file=sys.stderr)
     return 1 if wrong else 0
@@ -129,8 +129,8 @@ def take(language: str, scene: str, target: Path) -> None:
     if pages.wrong:
         raise SystemExit(f"the page said {pages.wrong[0]}")
     kept = PngInfo()
-    said = sorted({row.strip() for word in words for row in word.splitlines() if row.strip()})
-    kept.add_text(KEPT, json.dumps([each for each in said if is_said(each)]))
+    text = sorted({row.strip() for word in words for row in word.splitlines() if row.strip()})
+    kept.add_text(KEPT, json.dumps([item for item in text if is_said(item)]))
     _sheet(shots).quantize(COLOURS).save(target, optimize=True, pnginfo=kept)
 
 

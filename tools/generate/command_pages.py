@@ -29,8 +29,8 @@ def page(language: str, command: str, table: Table) -> str:
         *_overview(language, table),
     ]
     for verb in VERBS:
-        for each in (verb, *steps_of(verb)):
-            parts += _command(each, language, table)
+        for item in (verb, *steps_of(verb)):
+            parts += _command(item, language, table)
     return "\n\n".join(part.rstrip("\n") for part in parts if part) + "\n"
 
 

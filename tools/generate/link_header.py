@@ -235,7 +235,7 @@ def payloads(command: str) -> str:
     for event in events:
         tag = f'    name: Literal["{event.name}"] = "{event.name}"\n'
         parts.append(_type_definition(_event(event), event.meaning, event.reply, tag))
-    inside = "".join(f"    | {each}\n" for each in types)
+    inside = "".join(f"    | {item}\n" for item in types)
     entries = "".join(f'    "{reply.name}": {_reply(reply)},\n' for reply in replies)
     parts.append(
         f"SentReply = (\n{inside.replace('| ', '', 1)})\n"

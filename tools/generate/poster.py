@@ -121,7 +121,7 @@ def poster(language: str, form: str, command: str) -> str:
 
 
 def page(language: str) -> Page:
-    found: Page = [
+    page: Page = [
         Box(0, 0, paper.WIDTH, 64, BLUE),
         Line(LEFT, 34, 24, BOLD, WHITE, _poster_text("title", language)),
         Line(LEFT, 53, 10, SANS, WHITE, _poster_text("subtitle", language)),
@@ -133,19 +133,19 @@ def page(language: str) -> Page:
     row_pt = min(ROW_PT, room / sum(len(rows) for _, rows in groups))
     assert row_pt >= LEAST_ROW_PT, f"the page has room for {room / LEAST_ROW_PT:.0f} rows"
     for heading, rows in groups:
-        found.append(Line(LEFT, y + 15, 12, BOLD, BLUE, _poster_text(heading, language)))
+        page.append(Line(LEFT, y + 15, 12, BOLD, BLUE, _poster_text(heading, language)))
         y += HEAD_PT
         for number, (code, says) in enumerate(rows):
             assert len(code) <= CODE_SIGNS and len(says) <= SAYS_SIGNS, (code, says)
             shown += re.findall(r"[A-Z_]+", re.sub(r"\(.*?\)", "", code.replace(",", "")))
             shown += re.findall(r"\b(?:UNTIL|FOREVER|CM|DEG)\b", code)
             if number % 2 == 0:
-                found.append(Box(LEFT, y, RIGHT - LEFT, row_pt, PALE))
-            found.append(Line(CODE_X, y + (row_pt + 8.2) / 2, CODE_SIZE, MONO, BLACK, code))
-            found.append(Line(SAYS_X, y + (row_pt + 8.2) / 2, SAYS_SIZE, SANS, BLACK, says))
+                page.append(Box(LEFT, y, RIGHT - LEFT, row_pt, PALE))
+            page.append(Line(CODE_X, y + (row_pt + 8.2) / 2, CODE_SIZE, MONO, BLACK, code))
+            page.append(Line(SAYS_X, y + (row_pt + 8.2) / 2, SAYS_SIZE, SANS, BLACK, says))
             y += row_pt
         y += 2
     missing = {word.text for word in WORDS.values() if word.role.is_offered} - set(shown)
     assert not missing, f"the poster lacks {sorted(missing)}"
-    found.append(Line(LEFT, paper.HEIGHT - 16, 9, SANS, GREY, _poster_text("foot", language)))
-    return found
+    page.append(Line(LEFT, paper.HEIGHT - 16, 9, SANS, GREY, _poster_text("foot", language)))
+    return page

@@ -103,7 +103,7 @@ def texts(command: str) -> str:
             "",
             "#ifdef tiniscript_has_discs",
             "",
-            *(row for each in answered() for row in (*_tables(each, rows(each)), "")),
+            *(row for item in answered() for row in (*_tables(item, rows(item)), "")),
             "#else",
             "",
             "// An ATmega328P that reads text: what it never says is empty.",
@@ -111,8 +111,8 @@ def texts(command: str) -> str:
             "",
             *(
                 row
-                for each in answered()
-                for row in (*_tables(each, rows(each, is_small=True)), "")
+                for item in answered()
+                for row in (*_tables(item, rows(item, is_small=True)), "")
             ),
             "#endif",
             "",
@@ -132,8 +132,8 @@ def texts(command: str) -> str:
 
 def _table_function(function: str, table: str, at: str = "") -> list[str]:
     """Return a function that has a table of the robot's language."""
-    first, *others = (f"k{each.title()}{table}" for each in answered())
-    numbers = [language_number(each) for each in answered()[1:]]
+    first, *others = (f"k{item.title()}{table}" for item in answered())
+    numbers = [language_number(item) for item in answered()[1:]]
     pairs = zip(numbers, others, strict=True)
     choice = "".join(f"robot_language() == 0x{number:04x} ? {other} : " for number, other in pairs)
     choice += first

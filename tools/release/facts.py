@@ -64,13 +64,13 @@ def complaints(root: Path) -> Iterator[str]:
     yield from _check_tags(root, ours)
     yield from _check_changelog(root, ours)
     for name, pattern in _REPEATED.items():
-        found = _first_match(root / name, pattern)
-        if found != ours:
-            yield f"{name} has version {found or 'none'}; tiniscript/base/version.py has {ours}."
+        result = _first_match(root / name, pattern)
+        if result != ours:
+            yield f"{name} has version {result or 'none'}; tiniscript/base/version.py has {ours}."
     for name, pattern in _PEOPLE.items():
-        found = _first_match(root / name, pattern)
-        if found != PEOPLE:
-            yield f"{name} names {found or 'nobody'}, not {PEOPLE}."
+        result = _first_match(root / name, pattern)
+        if result != PEOPLE:
+            yield f"{name} names {result or 'nobody'}, not {PEOPLE}."
     if _first_match(root / "SECURITY.md", "(?m)^Contact: (.+)$") in ("", NO_CONTACT):
         yield "SECURITY.md does not say how to reach somebody: write an address after Contact."
     if not address(root):

@@ -47,13 +47,13 @@ def dead(folder: Path) -> list[str]:
     def wrong(path: Path, address: str, is_fetched: bool) -> str:
         return _link_problem(folder, path, address, is_fetched, pages)
 
-    found: list[str] = []
+    result: list[str] = []
     for path, page in pages.items():
         for address, is_fetched in page.links:
             is_here = address.startswith(("#", "?"))
             if why := wrong(path if is_here else path.parent / "*", address, is_fetched):
-                found.append(f"{path.relative_to(folder).as_posix()}: {address}: {why}")
-    return found
+                result.append(f"{path.relative_to(folder).as_posix()}: {address}: {why}")
+    return result
 
 
 def _read(path: Path) -> _Page:

@@ -46,7 +46,7 @@ def imports_of(source: bytes, name: str, is_package: bool, everywhere: bool) -> 
     skipped: set[ast.AST] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            skipped |= {each for part in node.body for each in ast.walk(part)}
+            skipped |= {item for part in node.body for item in ast.walk(part)}
         elif not everywhere and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             skipped |= set(ast.walk(node))
     imports: set[str] = set()
@@ -79,11 +79,11 @@ class Packer:
 
     def add(self, name: str) -> None:
         """Add a module and what it needs; a list, as nothing here recurses."""
-        wanted = [name]
-        while wanted:
-            name = wanted.pop()
+        expected = [name]
+        while expected:
+            name = expected.pop()
             for k in range(1, name.count(".") + 2):
-                wanted += self._pack_module(".".join(name.split(".")[:k]))
+                expected += self._pack_module(".".join(name.split(".")[:k]))
 
     def _pack_module(self, name: str) -> list[str]:
         parents = (name.rsplit(".", k)[0] for k in range(name.count(".") + 1))
@@ -122,8 +122,8 @@ def pyc(source: bytes, name: str) -> bytes:
     """Return the bytecode of a module, without docstrings and asserts."""
     code = _without_lines(compile(source, name, "exec", dont_inherit=True, optimize=2))
     digest = importlib.util.source_hash(source)
-    made = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
-    return bytes(made)
+    result = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
+    return bytes(result)
 
 
 def write(path: str, files: Files) -> None:

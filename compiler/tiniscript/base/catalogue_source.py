@@ -173,8 +173,8 @@ def _end(lines: list[str], at: int) -> int:
         if k > at and not quotes and (_is_head(lines[k]) or lines[k].strip()[:1] in ("", "#")):
             if _is_head(lines[k]) or not _parsed("".join(lines[at:k]))[1]:
                 return k
-        for each in _QUOTES.findall(lines[k]):
-            quotes = "" if quotes == each else quotes or each
+        for item in _QUOTES.findall(lines[k]):
+            quotes = "" if quotes == item else quotes or item
     return len(lines)
 
 
@@ -213,8 +213,8 @@ def load(path: Path) -> Catalogue:
     for row in read:
         notes = [row.table] * (bool(row.table) and not row.key.startswith(row.table))
         entries = []
-        for each in row.value if isinstance(row.value, list) else [row.value]:
-            form = each if isinstance(each, dict) else {"": each}
+        for item in row.value if isinstance(row.value, list) else [row.value]:
+            form = item if isinstance(item, dict) else {"": item}
             entries.append(entry := Entry(row.key, *_text(form), notes=notes, line=row.line))
             entry.is_same = "same" in form or _GAP.fullmatch(entry.english) is not None
             if not entry.is_same and "own" not in form:

@@ -65,16 +65,16 @@ def _with_name(name: T, language: str) -> T:
 @cache
 def languages() -> tuple[str, ...]:
     """Return the codes of all languages, the one that is translated first."""
-    found = (path.name for path in FOLDER.iterdir() if path.is_dir() and path.name[0] != "_")
-    return tuple(sorted(found, key=lambda code: (code != SOURCE, code)))
+    result = (path.name for path in FOLDER.iterdir() if path.is_dir() and path.name[0] != "_")
+    return tuple(sorted(result, key=lambda code: (code != SOURCE, code)))
 
 
 def find(name: str) -> str:
     """Return the language of a locale, `es_PE.UTF-8` or Windows' `Spanish_Peru`, else English."""
     code = name.lower().replace("-", "_").partition(".")[0].partition("@")[0]
-    for each in (code, code.partition("_")[0]):
-        if each in languages():
-            return each
+    for item in (code, code.partition("_")[0]):
+        if item in languages():
+            return item
     team = code.partition("_")[0]
     by_team = (
         {about(language).english_name.lower(): language for language in languages()} if team else {}
@@ -102,21 +102,21 @@ def _load_language(language: str) -> Language:
 def _catalogue_texts(language: str) -> tuple[Any, ...]:
     from tiniscript.base.translations import read_language
 
-    found = read_language(FOLDER / language / ITSELF)
-    return found.name, found.english_name, found.forms, found.form_of
+    result = read_language(FOLDER / language / ITSELF)
+    return result.name, result.english_name, result.forms, result.form_of
 
 
 def found(name: str, key: str, language: str) -> str | None:
     """Return a text of a catalogue, None where it has no such key, or one that counts."""
-    said = catalogue(name, language).get(key)
-    return said if isinstance(said, str) else None
+    text = catalogue(name, language).get(key)
+    return text if isinstance(text, str) else None
 
 
 def text(name: str, key: str, language: str) -> str:
     """Return a text of a catalogue."""
-    said = found(name, key, language)
-    if said is not None:
-        return said
+    result = found(name, key, language)
+    if result is not None:
+        return result
     raise KeyError(key)
 
 
@@ -139,9 +139,9 @@ def counted(name: str, key: str, count: int, language: str) -> str:
     """Return the form of a text with a plural that goes with a number."""
     forms = catalogue(name, language)[key]
     assert isinstance(forms, dict), key
-    said = about(language)
+    text = about(language)
     number = count if count < 100 else 100 + count % 100
-    return forms.get(said.forms[int(said.form_of[number])]) or forms["other"]
+    return forms.get(text.forms[int(text.form_of[number])]) or forms["other"]
 
 
 @cache
@@ -154,9 +154,9 @@ def catalogue(name: str, language: str) -> Texts:
             return catalogue(name, SOURCE)
         if not is_clone():
             return {}
-    beside = (own.with_name(each) for each in (SEEN, ITSELF))
-    found: Texts = _cached(path, [*files(name, language), *beside], lambda: texts(name, language))
-    return found
+    beside = (own.with_name(item) for item in (SEEN, ITSELF))
+    result: Texts = _cached(path, [*files(name, language), *beside], lambda: texts(name, language))
+    return result
 
 
 def texts(name: str, language: str) -> Texts:
@@ -187,10 +187,10 @@ def _cached(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any
             return marshal.loads(path.read_bytes())
     from tiniscript.base.files import replace
 
-    found = make()
+    result = make()
     with suppress(OSError, ValueError):  # a folder that nobody may write to, a full disk
-        replace(path, marshal.dumps(found, KEPT_FORM))
-    return found
+        replace(path, marshal.dumps(result, KEPT_FORM))
+    return result
 
 
 def forget() -> None:

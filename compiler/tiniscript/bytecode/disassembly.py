@@ -34,18 +34,18 @@ class Row(NamedTuple):
 
 def rows(code: bytes) -> list[Row]:
     """Return the instructions of `code`, verified or not; what is none stands alone."""
-    made = []
+    rows = []
     at = 0
     while at < len(code):
         op = op_at(code, at)
         if op is None or at + op.size > len(code):
             data = code[at : at + 1] if op is None else code[at:]
-            made.append(Row(at, data, None, ()))
+            rows.append(Row(at, data, None, ()))
         else:
             data = code[at : at + op.size]
-            made.append(Row(at, data, op, read_operands(op, code, at)))
+            rows.append(Row(at, data, op, read_operands(op, code, at)))
         at += len(data)
-    return made
+    return rows
 
 
 def disassemble(

@@ -134,9 +134,9 @@ def _verb(arguments: list[str], language: str) -> int:
         name = arguments[0]
         if name == "--lang" or name.startswith("--lang="):  # before the verb, too
             skip = 1 if "=" in name else 2
-            found = name[7:] if "=" in name else arguments[1] if len(arguments) > 1 else ""
-            if found not in LANGUAGE.choices:
-                raise bad_choice("--lang", LANGUAGE.choices, found, language)
+            result = name[7:] if "=" in name else arguments[1] if len(arguments) > 1 else ""
+            if result not in LANGUAGE.choices:
+                raise bad_choice("--lang", LANGUAGE.choices, result, language)
             rest = arguments[skip:]
             return _verb([*rest, *arguments[:skip]] if rest else [], language)
         if name not in VERBS:

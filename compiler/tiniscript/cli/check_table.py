@@ -35,7 +35,7 @@ class Row(NamedTuple):
 
     @property
     def mistakes(self) -> int:
-        return sum(each.severity == "mistake" for each in self.messages)
+        return sum(message.severity == "mistake" for message in self.messages)
 
     @property
     def warnings(self) -> int:

@@ -19,15 +19,15 @@ class CommandError(Exception):
         self.values = {name: _printable_value(value) for name, value in values.items()}
 
     def sentence(self, language: str) -> str:
-        said = text(self.key, language).format(**self.values)
+        result = text(self.key, language).format(**self.values)
         if self.values.get("near"):
             suggestion = text("did_you_mean", language).format(near=self.values["near"])
             try_it = f" {languages.text('messages', 'label/try', language)}  "
-            what, advice, example = said.rpartition(try_it)  # what was typed may have it, too
+            what, advice, example = result.rpartition(try_it)  # what was typed may have it, too
             return Said(
-                f"{what} {suggestion}{advice}{example}" if advice else f"{said} {suggestion}"
+                f"{what} {suggestion}{advice}{example}" if advice else f"{result} {suggestion}"
             )
-        return said
+        return result
 
     def plain(self, language: str) -> str:
         """Return the sentence without the name of the command, for a table or a list."""

@@ -175,7 +175,7 @@ def _columns(rows: Iterable[Row], left: int, width: int) -> Iterator[str]:
 
 
 def _paragraphs(text: str, width: int) -> str:
-    return "\n".join(line for each in text.split("\n") for line in _wrap(each, width))
+    return "\n".join(line for item in text.split("\n") for line in _wrap(item, width))
 
 
 def _wrap(text: str, width: int) -> list[str]:

@@ -121,9 +121,9 @@ class _Marker:
                 raise file.problem
             compiled = self.compiled(given)
         except CommandError as failure:
-            said = failure.plain(self.language)
-            said = said.replace(inputs.shown(file.name), inputs.shown(name))
-            return Mark(name, UNREADABLE, 0, (("", said),))
+            text = failure.plain(self.language)
+            text = text.replace(inputs.shown(file.name), inputs.shown(name))
+            return Mark(name, UNREADABLE, 0, (("", text),))
         return self.mark(given, compiled)
 
     def compiled(self, given: inputs.Input) -> Compiled:
@@ -160,10 +160,14 @@ class _Marker:
     def _mistakes(self, compiled: Compiled) -> Iterable[tuple[str, str]]:
         for diagnostic in compiled.diagnostics:
             if diagnostic.is_mistake:
-                said = message(diagnostic, compiled.source, self.language)
-                values = {"line": said.line, "task": "", "shown": said.message}
+                sentence = message(diagnostic, compiled.source, self.language)
+                values = {"line": sentence.line, "task": "", "shown": sentence.message}
                 line = text("fault_line", self.language).format(**values)
-                fix = text("lesson_try", self.language).format(fix=said.fix) if said.fix else ""
+                fix = (
+                    text("lesson_try", self.language).format(fix=sentence.fix)
+                    if sentence.fix
+                    else ""
+                )
                 yield "", f"{line}   {fix}".strip()
 
 
@@ -197,9 +201,9 @@ def _name_notes(marks: Sequence[Mark], options: Namespace, language: str) -> Non
     if len(notes) == len(marks):
         raise CommandError(2, "lesson_empty", file=inputs.shown(options.program))
     if notes:
-        said = text("lesson_notes", language)
+        sentence = text("lesson_notes", language)
         number = inputs.shown(options.number)
-        print(said.format(files=", ".join(notes), number=number), file=sys.stderr)
+        print(sentence.format(files=", ".join(notes), number=number), file=sys.stderr)
 
 
 def _is_note(file: ProgramFile) -> bool:

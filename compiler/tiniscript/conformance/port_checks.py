@@ -248,11 +248,11 @@ def _check_place(robot: WireRobot) -> tuple[str, ...]:
     before = robot.ask("PING", {"asks": b"?"})
     program = live(robot, WAIT_20).number("program")
     place = _rest_field(robot.ask("PING", {"asks": b"?"}), "place")
-    told = f"{int.from_bytes(place[:2], 'little')} of "
-    told += "what runs" if place[2:] == program.to_bytes(4, "little") else "something else"
+    message = f"{int.from_bytes(place[:2], 'little')} of "
+    message += "what runs" if place[2:] == program.to_bytes(4, "little") else "something else"
     return (
         "a place before" if _rest_field(before, "place") else "no place before",
-        told if len(place) == PLACE_BYTES else f"{len(place)} bytes of a place",
+        message if len(place) == PLACE_BYTES else f"{len(place)} bytes of a place",
         "a place unasked" if _rest_field(robot.ask("PING"), "place") else "no place unasked",
     )
 

@@ -205,10 +205,10 @@ class _InPlace:
             start = edit.span.start + shift
             shown += [Span(start, start + len(edit.text))] if edit in its else []
             shift += len(edit.text) - (edit.span.end - edit.span.start)
-        said = next(filter(None, map(diagnostic.values.get, _WRITTEN)), "")
-        begin = self.text.find(said, max(0, shown[0].start - len(said)))
+        text = next(filter(None, map(diagnostic.values.get, _WRITTEN)), "")
+        begin = self.text.find(text, max(0, shown[0].start - len(text)))
         if begin in range(shown[-1].end):
-            shown.append(Span(begin, begin + len(said)))
+            shown.append(Span(begin, begin + len(text)))
         return all(
             mistake.code.number in others or self._is_in_words(others, mistake.span.start)
             for mistake in self.mistakes
@@ -224,12 +224,12 @@ class _InPlace:
 def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
     """Return a diagnostic without the changes that it asks for, and without the words for them."""
     gaps = ("fix", "right") if diagnostic.repair else _GAPS.get(diagnostic.code, ("fix",))
-    said = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
-    gone = [said, "whole", "lines", "times"]
+    text = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
+    gone = [text, "whole", "lines", "times"]
     gone += ["line"] if diagnostic.code is not codes.WRONG_END else []  # of its header
     gone += ["right"] if diagnostic.code is codes.BRACES else []
     values = {gap: "" if gap in gone else value for gap, value in diagnostic.values.items()}
-    if said == "near":
+    if text == "near":
         values["meant"] = diagnostic.values["near"]  # what is asked may lead further
     return diagnostic._replace(values=values, repair=None)
 

@@ -85,7 +85,7 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
 
 def as_json(messages: Iterable[Message]) -> list[dict[str, object]]:
     """Return messages as the data that `--json` prints."""
-    return [each._asdict() for each in messages]
+    return [message._asdict() for message in messages]
 
 
 def as_text(message: Message, source: Source, lang: str, color: bool = False) -> str:
@@ -100,13 +100,13 @@ def as_text(message: Message, source: Source, lang: str, color: bool = False) ->
         shown, blanks, carets = _picture(line, message.column - 1, end)
         rows.append((label + shown).rstrip())
         rows.append(" " * (len(label) + blanks) + mark + "^" * carets + plain)
-    said = f"{_label('warns', lang)} {message.message}" if is_warning else message.message
+    text = f"{_label('warns', lang)} {message.message}" if is_warning else message.message
     code = f"   {dim}[{message.code}]{plain}"
     if not message.fix:
-        return "\n".join((*rows, said + code))
+        return "\n".join((*rows, text + code))
     fix = f"{_label('try', lang)}  {message.fix}"
-    fits = len(said) + len(fix) + len(message.code) <= ROW_CHARACTERS
-    rows += [f"{said}   {fix}{code}"] if fits else [said, fix + code]
+    fits = len(text) + len(fix) + len(message.code) <= ROW_CHARACTERS
+    rows += [f"{text}   {fix}{code}"] if fits else [text, fix + code]
     return "\n".join(rows)
 
 
@@ -153,10 +153,10 @@ def _texts(key: str, lang: str) -> Iterator[str]:
     """Yield the texts of which one is taken."""
     yield _text(key, lang)
     for number in count(2):
-        said = languages.found(CATALOGUE, f"{key}/{number}", lang)
-        if said is None:
+        text = languages.found(CATALOGUE, f"{key}/{number}", lang)
+        if text is None:
             return
-        yield said
+        yield text
 
 
 def names_found(diagnostic: Diagnostic) -> bool:

@@ -217,7 +217,7 @@ def _port_in_use(system: System, computer: Computer, port: str) -> Finding | Non
 
 def _is_listed(system: System, computer: Computer, port: str) -> bool:
     return is_address(port) or system.owner(port) is not None or any(
-        each.port.lower() == port.lower() for each in computer.ports
+        item.port.lower() == port.lower() for item in computer.ports
     )  # fmt: skip
 
 

@@ -166,11 +166,11 @@ def _versions(hello: HelloReply) -> list[Finding]:
 
 
 def _kit(hello: HelloReply, expected: Expected) -> list[Finding]:
-    found = expected.names(hello.kit)
+    result = expected.names(hello.kit)
     kit = f"{hello.kit:04x}"
     if expected.kit is not None and hello.kit != expected.kit:
-        return [sure("wrong_kit", kit=kit, robot=found or kit, expected=expected.name)]
-    if expected.kit is None and found is None:
+        return [sure("wrong_kit", kit=kit, robot=result or kit, expected=expected.name)]
+    if expected.kit is None and result is None:
         return [sure("unknown_kit", kit=kit)]
     return []
 

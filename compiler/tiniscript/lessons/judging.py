@@ -178,22 +178,22 @@ def _judge_distance(criterion: Criterion, task: Task) -> Finding | None:
 
 def _standstills(run: Run) -> list[tuple[int, int]]:
     """Return when the robot stood between two moves: from and to."""
-    found: list[tuple[int, int]] = []
+    result: list[tuple[int, int]] = []
     stopped_ms: int | None = None
     for ms, left, right in run.motors:
         if left or right:
             if stopped_ms is not None and ms > stopped_ms:
-                found.append((stopped_ms, ms))
+                result.append((stopped_ms, ms))
             stopped_ms = None
         elif stopped_ms is None:
             stopped_ms = ms
-    return found
+    return result
 
 
 def _pauses(criterion: Criterion, task: Task) -> Finding | None:
     least_s, times = criterion.numbers["at_least_seconds"], int(criterion.numbers["times"])
     stands = _standstills(task.run)
-    long = [each for each in stands if each[1] - each[0] >= least_s * 1000 - 1]
+    long = [item for item in stands if item[1] - item[0] >= least_s * 1000 - 1]
     if len(long) >= times:
         return _paused_at(criterion, task, long)
     values = {"least": f"{least_s:g}", "times": str(times), "found": str(len(long))}
@@ -316,9 +316,9 @@ def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
     if not run.shown:
         return Finding("shows", "shows/nothing", values)
     right = 0
-    for each in run.shown:
-        should = _should_show(each, what, wanted, run)
-        right += should is None or abs(each.value - should) <= slack
+    for item in run.shown:
+        should = _should_show(item, what, wanted, run)
+        right += should is None or abs(item.value - should) <= slack
     if right >= times:
         return None
     last = run.shown[-1]
@@ -369,7 +369,7 @@ def _beeps(criterion: Criterion, task: Task) -> Finding | None:
 def _blinks(criterion: Criterion, task: Task) -> Finding | None:
     run, (what,), times = task.run, criterion.words, int(criterion.numbers["times"])
     names = [device.name for device in run.robot.profile.kit.actuators]
-    switches = [each for each in run.switched if names[each.actuator] == what]
+    switches = [item for item in run.switched if names[item.actuator] == what]
     moving = sum(switch.is_moving for switch in switches)
     values = {"what": what, "times": str(times), "found": str(moving)}
     if moving >= times:

@@ -162,11 +162,11 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
     return questions[0] if questions else None
 
 
-def _at_start(asked: Question) -> Question:
+def _at_start(question: Question) -> Question:
     """Return a question that was to give something, with what it gave."""
-    if not asked.is_ever:
-        return asked
-    return asked._replace(is_ever=False, truth="FALSE" if asked.truth == "TRUE" else "TRUE")
+    if not question.is_ever:
+        return question
+    return question._replace(is_ever=False, truth="FALSE" if question.truth == "TRUE" else "TRUE")
 
 
 def _words(tokens: Sequence[Token], at: int) -> list[str]:

@@ -225,10 +225,10 @@ def _judge_distance_to_obstacle(criterion: Criterion, task: Task) -> Finding | N
 
 
 def _faces(criterion: Criterion, task: Task) -> Finding | None:
-    wanted = criterion.numbers["heading"]
+    expected = criterion.numbers["heading"]
     if task.mirrored:
-        wanted = -wanted
-    off = (_end(task.run).heading - wanted + 180) % 360 - 180
+        expected = -expected
+    off = (_end(task.run).heading - expected + 180) % 360 - 180
     if abs(off) <= criterion.numbers["within_degrees"]:
         return None
     key = "left" if off > 0 else "right"  # it looks too far to the left

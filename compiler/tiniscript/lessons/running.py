@@ -100,9 +100,9 @@ def run(image: Image, profile: Robot, lesson: Lesson, seed: int) -> Run:
 
     Raises WorldRefused where the robot does not fit into that world.
     """
-    found = Trial(image, profile, lesson, seed).go()
-    assert found is not None, "it goes on to the end"
-    return found
+    run = Trial(image, profile, lesson, seed).go()
+    assert run is not None, "it goes on to the end"
+    return run
 
 
 class Trial:

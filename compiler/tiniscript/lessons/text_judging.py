@@ -170,34 +170,34 @@ def _uncalled(words: Sequence[str]) -> list[str]:
         else:
             (bodies[name] if name else inside).add(word)
     called: set[str] = set()
-    found = inside & bodies.keys()
-    while found:
-        called |= found
-        found = set().union(*(bodies[each] for each in found)) & bodies.keys() - called
+    result = inside & bodies.keys()
+    while result:
+        called |= result
+        result = set().union(*(bodies[item] for item in result)) & bodies.keys() - called
     return [body for body in bodies if body not in called]
 
 
 def _loop_bodies(words: Sequence[str]) -> list[list[str]]:
     """Return what is inside of each LOOP that repeats: LOOP(1) and LOOP(0) do not."""
-    found: list[list[str]] = []
+    result: list[list[str]] = []
     open_loops: list[list[str]] = []
     for word in words:
         if ALIASES.get(word, word) == BLOCK_ENDS["LOOP"] and open_loops:
             inside = open_loops.pop()
             if inside[:1] not in (["0"], ["1"]):
-                found.append(inside)
+                result.append(inside)
         for inside in open_loops:
             inside.append(word)
         if word == "LOOP":
             open_loops.append([])
-    return found
+    return result
 
 
 def _moves(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     most, is_ahead = int(criterion.numbers["at_most"]), bool(criterion.numbers["ahead"])
-    found = kept.ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
-    values = {"found": str(found), "most": str(most)}
-    return Finding("moves", f"moves{'/ahead' * is_ahead}", values) if found > most else None
+    result = kept.ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
+    values = {"found": str(result), "most": str(most)}
+    return Finding("moves", f"moves{'/ahead' * is_ahead}", values) if result > most else None
 
 
 def without(word: str, text: str) -> str:

@@ -74,8 +74,10 @@ def shape_of(place: Place, world: World, mirrored: bool) -> list[Segment]:
     return [Segment(point, point)]
 
 
-def _with_part_moved(world: World, what: Variation, dx: float, dy: float, turn: float) -> World:
-    part, k = what.place.part, what.place.number - 1
+def _with_part_moved(
+    world: World, variation: Variation, dx: float, dy: float, turn: float
+) -> World:
+    part, k = variation.place.part, variation.place.number - 1
 
     def shifted(points: tuple[Point, ...]) -> tuple[Point, ...]:
         middle = _center(points)

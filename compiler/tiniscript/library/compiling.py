@@ -87,8 +87,8 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
 
 def _kit_in(text: str, kit: Kit) -> Kit:
     """Return the kit as a program has it: without the words that have given way there."""
-    written = text.upper()
-    if not any(word in written for word in KIT_WORDS_SINCE):
+    sentence = text.upper()
+    if not any(word in sentence for word in KIT_WORDS_SINCE):
         return kit
     return in_program(text, kit)
 
@@ -206,10 +206,10 @@ def compile_source(
     unknown = None if is_chosen else unknown_robot(text)
     if unknown is not None:  # which words there are nobody knows
         return Compiled(Source(text, name), [unknown])
-    found = compile_text(text, robot.kit, name, optimize)
-    if not found.is_right:
-        return naming(found, robot, is_chosen) if names_robots else found
-    return fitting(found, robot, is_strict)
+    result = compile_text(text, robot.kit, name, optimize)
+    if not result.is_right:
+        return naming(result, robot, is_chosen) if names_robots else result
+    return fitting(result, robot, is_strict)
 
 
 def naming(compiled: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
@@ -242,8 +242,8 @@ def maker(robot: Robot) -> Callable[[str], Image | None]:
     """Return what makes the image of a text for a robot, or None where the text has mistakes."""
 
     def made(text: str) -> Image | None:
-        found = compile_source(text.encode(), robot, "", is_strict=True)
-        return image_of(found, robot) if found.is_right else None
+        result = compile_source(text.encode(), robot, "", is_strict=True)
+        return image_of(result, robot) if result.is_right else None
 
     return made
 

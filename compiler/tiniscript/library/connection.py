@@ -184,20 +184,20 @@ class RobotConnection:
         while self._follower is None or self._ending is None:
             follower = self._follower or anything
             left_s = LOOK_S if end_s is None else min(LOOK_S, end_s - monotonic())
-            found = self._client.event(max(left_s, 0.0))
+            result = self._client.event(max(left_s, 0.0))
             robot_event = None
-            if found is not None and self._concerns_us(follower, found[1]):
-                robot_event = self._reader.told(*found)
+            if result is not None and self._concerns_us(follower, result[1]):
+                robot_event = self._reader.told(*result)
                 if (
                     robot_event is not None
-                    and follower.end(found[1]) is not None
+                    and follower.end(result[1]) is not None
                     and self._follower
                 ):
                     self._ending = ending_of(robot_event)
             if robot_event is not None:
                 yield robot_event
             # an event that arrived before the timeout is still reported
-            last_s = monotonic() if found is None else found[0] / 1000
+            last_s = monotonic() if result is None else result[0] / 1000
             if end_s is not None and last_s >= end_s:
                 return
 
@@ -293,8 +293,8 @@ class RobotConnection:
         if not holds or not self._client.holds_for_others:
             self._client.close()
             return
-        said = languages.text("library", "holds_for_others", self.language)
-        warnings.warn(said.format(port=opening.shown(self.port)), RuntimeWarning, stacklevel=4)
+        text = languages.text("library", "holds_for_others", self.language)
+        warnings.warn(text.format(port=opening.shown(self.port)), RuntimeWarning, stacklevel=4)
         Thread(target=self._hold, name="holder").start()
 
     def _hold(self) -> None:
@@ -381,7 +381,7 @@ def _usual_port(language: Language) -> str:
     running = directory.for_all()
     if len(running) == 1:
         return running[0].address
-    listed = [each.port for each in ports.listed()]
+    listed = [item.port for item in ports.listed()]
     values = {"known": opening.shown(", ".join(listed)) or "-",
               "example": listed[0] if listed else "/dev/ttyUSB0"}  # fmt: skip
     if last is not None:

@@ -169,7 +169,7 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
     if failure.reason == errors.MISSING:
         from tiniscript.link import ports
 
-        known = ", ".join(each.port for each in ports.listed())
+        known = ", ".join(item.port for item in ports.listed())
         if known:
             reason, values["known"] = "port_missing_but", shown(known)
     return RobotError(reason, language, values)

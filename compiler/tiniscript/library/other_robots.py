@@ -38,8 +38,8 @@ def naming_robots(
     """
     if not any(diagnostic.code in (*_UNKNOWN, OTHER_ROBOT) for diagnostic in diagnostics):
         return diagnostics
-    found = named_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
-    return found if is_chosen else [_with_robot_names(diagnostic, text) for diagnostic in found]
+    result = named_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
+    return result if is_chosen else [_with_robot_names(diagnostic, text) for diagnostic in result]
 
 
 def _with_robot_names(diagnostic: Diagnostic, text: str) -> Diagnostic:
@@ -64,11 +64,11 @@ def named_among(
     own = set(kit.names)
     known = {robot: set(its.names) for robot, its in others.items() if robot != name}
     of_kits = own.union(*known.values())
-    said = {token.text for token in scan(text).tokens if token.kind is WORD}
-    used = {word if word in of_kits else concept_of(word) for word in said} & of_kits
+    texts = {token.text for token in scan(text).tokens if token.kind is WORD}
+    used = {word if word in of_kits else concept_of(word) for word in texts} & of_kits
     whole = [robot for robot, its in known.items() if used <= its]
     named: list[Diagnostic] = []
-    told: list[set[str]] = []  # robots that words have led to
+    messages: list[set[str]] = []  # robots that words have led to
     codes = {*_UNKNOWN, NO_BUTTON} if used - own - {BUTTON} else {*_UNKNOWN}
     for diagnostic in diagnostics:
         word = diagnostic.values.get("found", "").upper()
@@ -78,10 +78,10 @@ def named_among(
         word = side if side in of_kits - own else word
         having = [robot for robot, its in known.items() if word in its - own]
         if diagnostic.code in codes and having:
-            having = [each for each in having if each in whole] or having
-            if any(each <= {*having} for each in told):
+            having = [item for item in having if item in whole] or having
+            if any(item <= {*having} for item in messages):
                 continue
-            told.append({*having})
+            messages.append({*having})
             values = {"found": word, "own": name, **dict(zip(_NUMBERS, having, strict=False))}
             diagnostic = Diagnostic(OTHER_ROBOT, diagnostic.span, values)
         named.append(diagnostic)

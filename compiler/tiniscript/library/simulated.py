@@ -52,8 +52,8 @@ def virtual_robot(
     left, right = motors
     for motor in (left, right):
         within("motors", motor, LEAST_MOTOR, MOST_MOTOR, language)
-    told = thousandths(sensors or {}, profile, language)
-    settings = Settings(seed=seed, noise=noise, motors=(left, right), told=told)
+    message = thousandths(sensors or {}, profile, language)
+    settings = Settings(seed=seed, noise=noise, motors=(left, right), told=message)
     simulated = Simulated(
         _make_robot(profile, os.fspath(world), settings, language),
         0.0 if hurry == math.inf else hurry,

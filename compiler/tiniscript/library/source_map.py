@@ -99,7 +99,7 @@ def as_json(places: Map) -> str:
     """
     lines = ", ".join(map(_c_string, places.lines))
     numbers = ", ".join(f"[{', '.join(map(str, place))}]" for place in places.places)
-    yes_no = ", ".join("true" if each else "false" for each in places.yes_no)
+    yes_no = ", ".join("true" if item else "false" for item in places.yes_no)
     return (
         f'{{"version": {VERSION}, "name": {_c_string(places.name)}, "lines": [{lines}],'
         f' "places": [{numbers}], "variables": [{", ".join(map(_c_string, places.variables))}],'
@@ -163,8 +163,8 @@ def _forget_oldest(folder: Path) -> None:
     files.remove_abandoned(folder, names)
     known = [name for name in names if name.endswith(".json")]
     if len(known) > KEPT:
-        found = sorted((_modification_s(folder / name), name) for name in known)
-        for _, name in found[: len(known) - KEPT]:
+        result = sorted((_modification_s(folder / name), name) for name in known)
+        for _, name in result[: len(known) - KEPT]:
             with suppress(OSError):
                 (folder / name).unlink()
 

@@ -107,7 +107,7 @@ class KeyRing:
     def refuse(self, key: RobotKey) -> None:
         """The robot has another key than this one: it is stale, until it is right after all."""
         self._change(lambda before: [
-            kept._replace(is_stale=True) if kept[:3] == key[:3] else kept for kept in before
+            item._replace(is_stale=True) if item[:3] == key[:3] else item for item in before
         ])  # fmt: skip
 
     def drop(self, key: RobotKey) -> None:

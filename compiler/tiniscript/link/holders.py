@@ -43,12 +43,12 @@ def holder(path: str, pid: int | None = None) -> Holder | None:
 
     None where nobody tells.
     """
-    found = next(_processes_with(path), None) if sys.platform == "linux" else pid
-    found = pid if found is None else found
-    if found is None or found == os.getpid():
+    result = next(_processes_with(path), None) if sys.platform == "linux" else pid
+    result = pid if result is None else result
+    if result is None or result == os.getpid():
         return None
-    name = _command(found)
-    return None if name is None else Holder(found, printable(name, NAME_CHARACTERS))
+    name = _command(result)
+    return None if name is None else Holder(result, printable(name, NAME_CHARACTERS))
 
 
 def is_suspended(pid: int) -> bool:
@@ -64,13 +64,13 @@ def is_suspended(pid: int) -> bool:
 def _processes_with(path: str) -> Iterator[int]:
     """Yield the processes that have a file open, as far as this user may know that."""
     try:
-        wanted = Path(path).stat()
+        expected = Path(path).stat()
     except (OSError, ValueError):
         return
     for process in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):  # it has ended, or is another user's
             if int(process.name) != os.getpid() and any(
-                os.path.samestat(wanted, path.stat()) for path in (process / "fd").iterdir()
+                os.path.samestat(expected, path.stat()) for path in (process / "fd").iterdir()
                 if path.exists()
             ):  # fmt: skip
                 yield int(process.name)

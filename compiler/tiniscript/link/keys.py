@@ -154,10 +154,10 @@ class KeyFile(KeyRing):
             raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
 
 
-def known_seals(given: Iterable[RobotKey], before: Iterable[RobotKey]) -> list[RobotKey]:
+def known_seals(robot_keys: Iterable[RobotKey], before: Iterable[RobotKey]) -> list[RobotKey]:
     """Return keys with what was known before: that their robots seal."""
-    found = {key.key for key in before if key.uses_seals}
-    return [key._replace(uses_seals=key.uses_seals or key.key in found) for key in given]
+    matches = {key.key for key in before if key.uses_seals}
+    return [key._replace(uses_seals=key.uses_seals or key.key in matches) for key in robot_keys]
 
 
 def is_shared(path: Path) -> bool:
@@ -188,12 +188,12 @@ def written(keys: Iterable[RobotKey]) -> bytes:
 def read(data: bytes) -> list[RobotKey]:
     """Return the keys in a file. Raises BadKeys where it is none, without anything from it."""
     try:
-        found = json.loads(data)
-        if found["tiniscript_keys"] != 1:
+        result = json.loads(data)
+        if result["tiniscript_keys"] != 1:
             raise BadKeys
-        if len(found["keys"]) > MOST:
+        if len(result["keys"]) > MOST:
             raise BadKeys
-        return [_key(row) for row in found["keys"]]
+        return [_key(row) for row in result["keys"]]
     except (ValueError, TypeError, KeyError, IndexError, RecursionError):
         raise BadKeys from None
 

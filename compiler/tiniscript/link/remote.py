@@ -44,10 +44,10 @@ def pressed(names: Iterable[str], x: int = 0, y: int = 0) -> Pressed:
     keys = 0
     for name in names:
         keys |= 1 << REMOTE_KEYS.index(name)
-    found = Pressed(keys, x, y)
-    if not found.is_sound:
-        raise ValueError(found)
-    return found
+    result = Pressed(keys, x, y)
+    if not result.is_sound:
+        raise ValueError(result)
+    return result
 
 
 class RemoteControl:
@@ -90,15 +90,15 @@ class RemoteControl:
     @property
     def newest(self) -> Pressed:
         """All keys that somebody holds, and the pad of who has moved his last."""
-        found = NOTHING
-        for each in self._held.values():
-            pad = (each.x, each.y) if each.x or each.y else (found.x, found.y)
-            found = Pressed(found.keys | each.keys, *pad)
-        return found
+        result = NOTHING
+        for item in self._held.values():
+            pad = (item.x, item.y) if item.x or item.y else (result.x, result.y)
+            result = Pressed(result.keys | item.keys, *pad)
+        return result
 
     def due_ms(self) -> int | None:
         """Return when to look again, or None."""
-        times = [until for each in self._held if (until := self._until_ms[each]) is not None]
+        times = [until for item in self._held if (until := self._until_ms[item]) is not None]
         newest = self.newest
         if newest != self._said:
             gap_ms = EVERY_MS if self._unanswered == AHEAD else GAP_MS if self._unanswered else 0

@@ -85,10 +85,10 @@ class Seal:
         assert not self.is_spent
         self.sent += 1
         counter = self.sent.to_bytes(COUNTER_BYTES, "little")
-        said = frame.payload
+        text = frame.payload
         if frame.number == _WIFI and not frame.is_reply:  # the only one with a secret: a password
-            said = said[:1] + self._mask(counter, said[1:])
-        payload = b"\0" + counter + said
+            text = text[:1] + self._mask(counter, text[1:])
+        payload = b"\0" + counter + text
         whole = frame._replace(payload=payload, is_sealed=True)
         return whole._replace(payload=payload + self._mac(whole))
 

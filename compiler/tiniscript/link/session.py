@@ -931,9 +931,9 @@ class Session(Requester):
 
     def _cancel(self, status: int) -> None:
         if self._pending:
-            wanted = self._pending.wanted
-            is_midway = status == CANCELLED and wanted.is_midway
-            wanted.outcome = Reply(status, MIDWAY if is_midway else 0)
+            expected = self._pending.wanted
+            is_midway = status == CANCELLED and expected.is_midway
+            expected.outcome = Reply(status, MIDWAY if is_midway else 0)
         self._pending = self._orphan = self._handshake.doubted = None
         self._transmission.end()
         self._unheard_ms = None

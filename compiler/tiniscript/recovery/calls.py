@@ -43,14 +43,14 @@ class _Call(NamedTuple):
 
 def misplaced_values(source: Source) -> list[Diagnostic]:
     """Return what is told of calls whose values are in another form."""
-    told = []
+    diagnostics = []
     start = 0
     for line in source.text.split("\n"):
         for call in _calls(without_note(line)[0], start):
             readings = _unit_apart(call), _thousands(call), _seconds_of_motors(call, source.text)
-            told += [found for found in readings if found][:1]
+            diagnostics += [reading for reading in readings if reading][:1]
         start += len(line) + 1
-    return told
+    return diagnostics
 
 
 def _calls(body: str, start: int) -> Iterator[_Call]:
@@ -62,7 +62,7 @@ def _calls(body: str, start: int) -> Iterator[_Call]:
 
 
 def _split_values(values: str) -> list[str]:
-    return [each.strip() for each in _COMMA.split(values)]
+    return [item.strip() for item in _COMMA.split(values)]
 
 
 def _call_diagnostic(
@@ -75,7 +75,7 @@ def _call_diagnostic(
 def _unit_apart(call: _Call) -> Diagnostic | None:
     """`F(20, CM, 60)`, `F(CM, 20, 60)`, `F(20, 60, CM)`, `F(CM SIDE, 60)`."""
     unit = UNIT_OF.get(call.word.text, "")
-    values = [each for each in call.values if each.upper() != unit]
+    values = [value for value in call.values if value.upper() != unit]
     before = _UNIT_BEFORE.fullmatch(values[0]) if values else None
     if before and before["unit"].upper() == unit and len(values) == len(call.values):
         values[0] = before["value"]
@@ -136,8 +136,8 @@ def own_example(text: str) -> str:
     unit = UNIT_OF.get(call.word.text, "") if call else ""
     if call is None or not unit:
         return ""
-    values = [re.sub(rf"(?i)\b{unit}\b", "", each).strip() for each in call.values]
-    values = [re.sub(r"  +", " ", each) for each in values if each]
+    values = [re.sub(rf"(?i)\b{unit}\b", "", value).strip() for value in call.values]
+    values = [re.sub(r"  +", " ", value) for value in values if value]
     is_whole = len(values) == len(call.word.arguments)
     return call.with_values([f"{values[0]} {unit}", *values[1:]]) if is_whole else ""
 
@@ -152,12 +152,12 @@ def likely_word(word: str, text: str) -> str:
     is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
     short = shortened(word)
     if is_tone:
-        found = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
+        result = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
     elif len(short) == 1:
-        found = short[0]
+        result = short[0]
     else:
-        found = word[:1] if len(word) <= _SHORT else ""
-    return found if found in WORDS and len(WORDS[found].arguments) == len(values) else ""
+        result = word[:1] if len(word) <= _SHORT else ""
+    return result if result in WORDS and len(WORDS[result].arguments) == len(values) else ""
 
 
 def usage_with(word: str, number: str) -> str:

@@ -161,13 +161,13 @@ def _losses_of_sure_repairs(
     if not joint or not any(difference(text, applied(text, joint), kit)):
         return {}
     lost = {id(it): its for it, its in zip(sure, _losses(sure, text, kit), strict=True)}
-    is_joint = not any(any(each) for each in lost.values())  # none alone: then all together do it
+    is_joint = not any(any(item) for item in lost.values())  # none alone: then all together do it
     return {key: its for key, its in lost.items() if is_joint or any(its)}
 
 
 def keeps_all(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
     """Return for each diagnostic whether its changes alone lose nothing that was written."""
-    return [not its.lost for its in _losses(diagnostics, text, kit)]
+    return [not loss.lost for loss in _losses(diagnostics, text, kit)]
 
 
 def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Difference]:
@@ -179,13 +179,13 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
     edits = [edits_of(it) or () for it in diagnostics]
     changing = [k for k, its in enumerate(edits) if its]
     left = min(LOOKS, LOOKED_AT // (len(text) + 1))
-    found = [NOTHING] * len(edits)
+    differences = [NOTHING] * len(edits)
     groups = deque([k] for k in changing)
     if len(groups) > left:
         *layers, rest = _layers({k: edits[k] for k in changing})
         groups = deque(layers)
         for k in rest:
-            found[k] = UNKNOWN
+            differences[k] = UNKNOWN
     while groups:
         group, left = groups.popleft(), left - 1
         joint = difference(text, applied(text, [it for k in group for it in edits[k]]), kit)
@@ -195,20 +195,22 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
         elif any(joint):
             shares = _split_difference(joint, [_surrounding_text(edits[k], text) for k in group])
             for k, share in zip(group, shares, strict=True):
-                found[k] = share
-    return found
+                differences[k] = share
+    return differences
 
 
 def _layers(edits: Mapping[int, Sequence[Edit]]) -> list[list[int]]:
     """Return groups of changes that do not touch, by their keys, and at last those in no group."""
     layers: list[list[int]] = [[] for _ in range(LAYERS + 1)]
-    taken: list[list[Span]] = [[] for _ in range(LAYERS)]
+    spanses: list[list[Span]] = [[] for _ in range(LAYERS)]
     for k, its in edits.items():
-        free = (at for at, spans in enumerate(taken) if not any(_overlaps(it, spans) for it in its))
+        free = (
+            at for at, spans in enumerate(spanses) if not any(_overlaps(it, spans) for it in its)
+        )
         at = next(free, LAYERS)
         layers[at].append(k)
         for edit in its if at < LAYERS else ():
-            insort(taken[at], edit.span)
+            insort(spanses[at], edit.span)
     return [layer for layer in layers[:-1] if layer] + layers[-1:]
 
 
@@ -223,8 +225,8 @@ def _split_difference(joint: Difference, parts: Sequence[str]) -> list[Differenc
     if len(parts) == 1:
         return [joint]
     own = [[it for it in joint.lost if it in part] for part in parts]
-    is_told = not joint.more and {*joint.lost} == {it for its in own for it in its}
-    return [Difference(its, []) if its or is_told else UNKNOWN for its in own]
+    is_told = not joint.more and {*joint.lost} == {it for item in own for it in item}
+    return [Difference(item, []) if item or is_told else UNKNOWN for item in own]
 
 
 def _surrounding_text(edits: Sequence[Edit], text: str) -> str:
@@ -241,17 +243,17 @@ def _unmentioned_losses(diagnostic: Diagnostic, lost: Sequence[str], text: str) 
     A minus is none of these: a move goes the other way then.
     """
     edits = edits_of(diagnostic) or []
-    made = " ".join(edit.text for edit in edits).upper()
+    outcome = " ".join(edit.text for edit in edits).upper()
     gone = {*_WRITTEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())}
-    kept = {*_WRITTEN.findall(made)}
+    kept = {*_WRITTEN.findall(outcome)}
     is_cut = kept <= gone and diagnostic.code not in _NAMING
-    found = []
-    for each in lost:
-        unit = _WITH_UNIT.fullmatch(each) if diagnostic.repair else None
-        is_unit = unit is not None and unit[1].upper() not in made
-        if is_unit or (is_cut and each.upper() in gone - kept):
-            found.append(each)
-    return found
+    result = []
+    for item in lost:
+        unit = _WITH_UNIT.fullmatch(item) if diagnostic.repair else None
+        is_unit = unit is not None and unit[1].upper() not in outcome
+        if is_unit or (is_cut and item.upper() in gone - kept):
+            result.append(item)
+    return result
 
 
 def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
@@ -369,11 +371,11 @@ class _Said:
         return self._meanings[token.text]
 
     def _found_in(self, token: Lexeme) -> set[str]:
-        found = {self._word(token), concept_of(token.text) or ""}
-        found |= {
+        matches = {self._word(token), concept_of(token.text) or ""}
+        matches |= {
             meaning.concept for meaning in self.names.meanings(token.text) if meaning.cost <= NEAR
         }
-        return {"S" if each == "STOP" else each for each in found}
+        return {"S" if item == "STOP" else item for item in matches}
 
     def _read(self) -> None:
         slots = self._slots()
@@ -457,15 +459,15 @@ class _Said:
     def _number(self, token: Lexeme) -> float | None:
         if token.kind is NUMBER:
             return float(token.text)
-        said = said_of(token.text, "number") if token.kind is WORD else ()
+        text = said_of(token.text, "number") if token.kind is WORD else ()
         is_other = self.names.is_name(token.text) or len(lexicon().get(token.text, ())) > 1
-        return float(said[0]) if said and not is_other and said != ("1",) else None
+        return float(text[0]) if text and not is_other and text != ("1",) else None
 
     def _add_amount(self, k: int, value: float, slot: str) -> int:
         """Keep the number at a place with its sign and its unit; return where to read on."""
         token, after = self.tokens[k], self._next_lexeme(k)
         is_minus = self._is_minus(k)
-        written = f"{'-' if is_minus else ''}{token.source or token.text}"
+        text = f"{'-' if is_minus else ''}{token.source or token.text}"
         while token.kind is WORD and value % 10 == 0:  # `ochenta y cinco`
             at = k + 1 + bool(said_of(self._next_lexeme(k).text, "and"))
             more = self._number(self.tokens[at]) if at < len(self.tokens) else None
@@ -476,9 +478,9 @@ class _Said:
         if said := self._unit_after(k):
             unit, scale = said
             value, k = value * scale / 1000, k + 1
-            written += f"{after.space or ''}{after.source or after.text}"
+            text += f"{after.space or ''}{after.source or after.text}"
         signed = -value if is_minus else value
-        self.amounts.append(Amount(signed, unit, written, self.lines[k]))
+        self.amounts.append(Amount(signed, unit, text, self.lines[k]))
         return k + 1
 
     def _is_minus(self, k: int) -> bool:
@@ -495,13 +497,13 @@ class _Said:
         token, next_one = self._next_lexeme(k), self._next_lexeme(k + 1).text
         if token.text == "%" and next_one in (")", ",", ";"):  # no remainder of a division
             return "%", 1000
-        said = said_of(token.text, "unit")
+        text = said_of(token.text, "unit")
         is_letter = len(token.text) == 1 and token.kind is WORD
         is_apart = is_letter and token.space != "" and next_one not in (",", ")")
         is_order = is_letter and token.source == token.text and token.space != ""
-        if not said or (is_apart and is_order) or self.names.is_name(token.text):
+        if not text or (is_apart and is_order) or self.names.is_name(token.text):
             return None
-        return said[0] if said[0] in _COUNTED_UNITS else "", float(said[1])
+        return text[0] if text[0] in _COUNTED_UNITS else "", float(text[1])
 
     def _is_loose_unit(self, k: int) -> bool:
         """Whether a word says a unit and nothing else, of no number."""
@@ -510,9 +512,9 @@ class _Said:
             self.tokens[k - 1] if k else _END,
             self._next_lexeme(k),
         )
-        said = {each.kind for each in lexicon().get(token.text, ())}
+        texts = {item.kind for item in lexicon().get(token.text, ())}
         is_behind = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
-        is_unit = said == {"unit"} or ("unit" in said and (is_behind or token.text in WAYS))
+        is_unit = texts == {"unit"} or ("unit" in texts and (is_behind or token.text in WAYS))
         is_free = not self.names.is_name(token.text) and after.kind is not NUMBER
         if not is_unit or not is_free or (len(token.text) == 1 and not is_behind):
             return False
@@ -573,12 +575,12 @@ class _Said:
 
     def calls(self, name: str) -> int:
         """Return how often a DEF is called: after DEF, or after an end, its name is no call."""
-        found = 0
+        result = 0
         for k, (before, lexeme) in enumerate(pairwise([_END, *self.tokens])):
-            found += lexeme.text == name and not (
+            result += lexeme.text == name and not (
                 "DEF" in self._possible_words(before) or self._is_label(k)
             )
-        return found
+        return result
 
     @cached_property
     def negations(self) -> list[str]:
@@ -618,7 +620,7 @@ class _Said:
         left = [
             lexeme for lexeme in self.tokens if lexeme is not _END and lexeme.text not in (";", "{")
         ]
-        found = 0
+        result = 0
         for k, token in enumerate(left):
             word = self._word(token)
             if word in _HEADS:
@@ -626,19 +628,19 @@ class _Said:
                 end += word == "DEF"
                 if 0 < end < len(left):
                     is_over = left[end].text in (*ENDED, "}") or self._word(left[end]) in _ARMS
-                    found += is_over
-        return found
+                    result += is_over
+        return result
 
     def _arms_in_brackets(self) -> int:
         """Return how many IFs have two branches in their brackets: `IF(question, F, B)`."""
-        found = 0
+        result = 0
         for k, token in enumerate(self.tokens[:-1]):
             end = closed(self.tokens, k + 1) if self._next_lexeme(k).text == "(" else 0
             if end and "IF" in self._possible_words(token):
                 inside = pairwise(self.tokens[k + 2 : end - 1])
                 begun = [b for a, b in inside if a.text in (",", ";")]
-                found += sum(bool(self._possible_words(lexeme) & _DRIVES) for lexeme in begun) > 1
-        return found
+                result += sum(bool(self._possible_words(lexeme) & _DRIVES) for lexeme in begun) > 1
+        return result
 
 
 @lru_cache(2)
@@ -652,7 +654,7 @@ def _words_of_right(text: str, kit: Kit) -> _Said:
 
 
 def _words_of(text: str) -> frozenset[str]:
-    return frozenset(each.upper() for each in _NAME.findall(text))
+    return frozenset(item.upper() for item in _NAME.findall(text))
 
 
 def _amounts(before: _Said, after: _Said) -> Iterator[str]:
@@ -672,7 +674,7 @@ def _amounts(before: _Said, after: _Said) -> Iterator[str]:
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
     units |= {after.units.get(token.text, "") for token in after.tokens}
     loose = Counter(after.loose)
-    yield from (each[1] for each in before.loose if each[0] not in units and not loose[each])
+    yield from (item[1] for item in before.loose if item[0] not in units and not loose[item])
 
 
 class _Stock:
@@ -686,15 +688,15 @@ class _Stock:
 
     def has(self, values: Sequence[float]) -> bool:
         """Whether there is one for each of these, of which there is one at least."""
-        found = (len(self.places.get(value, ())) >= n for value, n in Counter(values).items())
-        return bool(values) and all(found)
+        result = (len(self.places.get(value, ())) >= n for value, n in Counter(values).items())
+        return bool(values) and all(result)
 
     def take(self, values: Sequence[float]) -> None:
         for value in values:
             self.places[value].popleft()
 
     def all(self) -> list[Amount]:
-        return [self.amounts[k] for k in sorted(k for its in self.places.values() for k in its)]
+        return [self.amounts[k] for k in sorted(k for item in self.places.values() for k in item)]
 
 
 def _apart(
@@ -747,9 +749,9 @@ def _runs(text: str) -> Iterator[tuple[float, list[float]]]:
             if not all(_BETWEEN.fullmatch(gap) for gap in gaps):
                 break
             digits = [match[0].translate(_LETTERS) for match in run]
-            written = text[run[0].start() : run[-1].end()]
-            parts = [float(each) for each in re.findall(r"\d+(?:\.\d+)?|\.\d+", written)]
-            yield from ((value, parts) for value in _values(digits, ":" in written))
+            sentence = text[run[0].start() : run[-1].end()]
+            parts = [float(item) for item in re.findall(r"\d+(?:\.\d+)?|\.\d+", sentence)]
+            yield from ((value, parts) for value in _values(digits, ":" in sentence))
 
 
 def _values(digits: Sequence[str], is_time: bool) -> Iterator[float]:
@@ -776,7 +778,7 @@ def _questions(before: _Said, after: _Said) -> Iterator[str]:
     """Give the comparisons that are gone, or turned round, and branches that nothing is in."""
     asked = _senses(before) - (after.notes - before.notes)
     left = _senses(after)
-    turners = ({word: said.words[word] for word in _TURNERS} for said in (before, after))
+    turners = ({word: item.words[word] for word in _TURNERS} for item in (before, after))
     negated = (before.negations, after.negations)
     may_turn = bool(negated[0] or negated[1]) or len({str(turner) for turner in turners}) > 1
     if asked.total() > left.total() or (asked - left and not may_turn):

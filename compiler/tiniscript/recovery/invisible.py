@@ -20,7 +20,7 @@ def invisible(diagnostic: Diagnostic, text: str) -> Diagnostic:
     )
     if not pairs or not all(old != new == _visible_code(old) for old, new in pairs):
         return diagnostic
-    sign = next(each for old, _ in pairs for each in old if _is_invisible(each))
+    sign = next(item for old, _ in pairs for item in old if _is_invisible(item))
     return diagnostic._replace(
         code=codes.ODD_CHARACTER, values={"found": f"U+{ord(sign):04X}", "fix": ""}
     )

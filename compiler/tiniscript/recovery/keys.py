@@ -53,17 +53,17 @@ def asked_keys(source: Source, kit: Kit) -> list[Diagnostic]:
     rows = [without_note(line)[0] for line in source.text.split("\n")]
     names = Names([lexemes(row) for row in rows], kit)
     own = names.defs.union(*names.parameters.values(), _SET.findall(plain(source.text)))
-    told: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     start = depth = 0
     for row, line in zip(rows, source.text.split("\n"), strict=True):
         for part in _PART.finditer(row):
             if part[2]:
                 continue  # `SI|`
-            told += _Part(part[1], start + part.start(), names, own).told(depth > 0)
-            words = [each.text for each in lexemes(part[1])]
+            diagnostics += _Part(part[1], start + part.start(), names, own).told(depth > 0)
+            words = [lexeme.text for lexeme in lexemes(part[1])]
             depth += sum((it in BLOCK_ENDS) - (it in ENDED) for it in map(names.meant, words))
         start += len(line) + 1
-    return told
+    return diagnostics
 
 
 def key_edits(text: str, kit: Kit) -> list[Edit]:
@@ -118,11 +118,11 @@ class _Part:
 
     def _key_diagnostics(self, key: _Key) -> Iterator[Diagnostic]:
         span = self._span(key)
-        found = self.text[span.start - self.at : span.end - self.at]
+        result = self.text[span.start - self.at : span.end - self.at]
         if not key.right:
-            yield Diagnostic(codes.UNKNOWN_NAME, span, {"no_key": found, "keys": ", ".join(KEYS)})
-        elif found.upper() != key.right:
-            values = {"found": found, "right": key.right, "fix": key.right}
+            yield Diagnostic(codes.UNKNOWN_NAME, span, {"no_key": result, "keys": ", ".join(KEYS)})
+        elif result.upper() != key.right:
+            values = {"found": result, "right": key.right, "fix": key.right}
             repair = Repair((Edit(span, key.right),), True)
             yield Diagnostic(codes.OTHER_LANGUAGE, span, values, span, repair)
 
@@ -132,19 +132,19 @@ class _Part:
         key = self._key(0) if self.pieces else None
         if key is None or not key.right:
             return None
-        given = _GIVEN.fullmatch(self.text, self.pieces[key.end - 1].span.end)
-        return (key, given[1].strip()) if given else None
+        match = _GIVEN.fullmatch(self.text, self.pieces[key.end - 1].span.end)
+        return (key, match[1].strip()) if match else None
 
     def _order(self, key: _Key, order: str, head: str) -> Diagnostic:
         begin = self._span(key)
         span = Span(begin.start, self.at + len(self.text.rstrip()))
         fix = f"{head}({key.right});{order};{BLOCK_ENDS[head]}"
-        found = self.text[begin.start - self.at : begin.end - self.at]
+        result = self.text[begin.start - self.at : begin.end - self.at]
         values, repair = (
-            {"found": found, "right": key.right, "fix": fix},
+            {"found": result, "right": key.right, "fix": fix},
             Repair((Edit(span, fix),), False),
         )
-        if found.upper() != key.right:
+        if result.upper() != key.right:
             return Diagnostic(codes.OTHER_LANGUAGE, begin, values, span, repair)
         values = {"word": re.split(r"\W", order)[0].upper(), "fix": fix}
         return Diagnostic(codes.NO_VALUE, span, values, span, repair)

@@ -40,18 +40,20 @@ def leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
     lines = source.text.split("\n")
     starts = [0, *accumulate(len(line) + 1 for line in lines)]
     tasks = frozenset(_TASK.findall(plain(source.text)))  # which have no name
-    told: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     for row, start in zip(rows, starts, strict=False):
-        told += _words(row, start, names, tasks)
-    return told
+        diagnostics += _words(row, start, names, tasks)
+    return diagnostics
 
 
 def setup_and_end_leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is told of each `SI|` after an instruction, and of a word for the end of all."""
     rows = [without_note(line)[0] for line in source.text.split("\n")]
     starts = [0, *accumulate(len(line) + 1 for line in source.text.split("\n"))]
-    told = [each for row, start in zip(rows, starts, strict=False) for each in _setups(row, start)]
-    return [*told, *_ending(rows, starts, Names([lexemes(row) for row in rows], kit))]
+    messages = [
+        setup for row, start in zip(rows, starts, strict=False) for setup in _setups(row, start)
+    ]
+    return [*messages, *_ending(rows, starts, Names([lexemes(row) for row in rows], kit))]
 
 
 def _ending(rows: Sequence[str], starts: Sequence[int], names: Names) -> Iterator[Diagnostic]:
@@ -110,5 +112,5 @@ def _is_filler(token: Lexeme, names: Names) -> bool:
     word = token.text
     if token.kind is not WORD or word in WORDS or names.is_name(word) or names.meant(word):
         return False
-    kinds = {said.kind for said in lexicon().get(word, ())}
+    kinds = {item.kind for item in lexicon().get(word, ())}
     return concept_of(word) is None and kinds <= _MEANS_NOTHING

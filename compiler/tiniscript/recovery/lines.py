@@ -91,7 +91,7 @@ class Reading(NamedTuple):
     @property
     def said(self) -> str:
         """The tokens without those that change nothing: separators, brackets around one value."""
-        text = " ".join(each for each in self.text if each != ";")
+        text = " ".join(item for item in self.text if item != ";")
         while (bare := _NEEDLESS.sub(r"\1\2", text)) != text:
             text = bare
         return text
@@ -148,8 +148,8 @@ def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Read
     setup = meanings.setup_of(tokens)
     readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
     whole = [reading._replace(tokens=[*setup, *reading.tokens]) for reading in readings]
-    told = ((reading, right(reading.tokens, names)) for reading in whole)
-    return [reading._replace(items=its) for reading, its in told if not isinstance(its, Failure)]
+    message = ((reading, right(reading.tokens, names)) for reading in whole)
+    return [reading._replace(items=its) for reading, its in message if not isinstance(its, Failure)]
 
 
 _Successors = Callable[[Reading, Failure], Iterator[Reading]]
@@ -203,11 +203,11 @@ class _Search:
     @staticmethod
     def says_twice(reading: Reading, items: Sequence[Item], first: Reading) -> bool:
         """Whether one instruction of the line became the same one twice, which nobody wrote."""
-        told = [texts(reading.tokens[item.start : item.end]) for item in items]
-        for one, other, item in zip(told, told[1:], items, strict=False):
+        messages = [texts(reading.tokens[item.start : item.end]) for item in items]
+        for one, other, item in zip(messages, messages[1:], items, strict=False):
             if item.kind == "do" and one[0] == other[0]:
                 if one == other and one[0] in ("S", "STOP", "SHOW"):
-                    return first.text.count(one[0]) < told.count(one)
+                    return first.text.count(one[0]) < messages.count(one)
                 if not reading.is_sure and one == other == first.text[: len(one)]:
                     return True
         return False

@@ -95,15 +95,15 @@ def _join_pieces(pieces: list[_Piece]) -> str:
 
 def _outermost(pieces: list[_Piece], k: int, start: int = 0) -> int:
     """Return where the block around a piece begins that none from `start` on is around."""
-    depth, found = 0, k
+    depth, result = 0, k
     for place in range(start, k):
         if pieces[place].word in BLOCK_ENDS:
-            found = place if not depth else found
+            result = place if not depth else result
             depth += 1
         elif pieces[place].word in ENDED:
             depth -= 1
-        found = k if not depth else found
-    return found
+        result = k if not depth else result
+    return result
 
 
 def _defs(pieces: list[_Piece]) -> Iterator[tuple[int, int]]:

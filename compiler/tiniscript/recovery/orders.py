@@ -56,7 +56,7 @@ def made_up(orders: Sequence[Order]) -> str:
 
 def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     """Return the orders of a sentence, in turn."""
-    found: list[Order] = []
+    result: list[Order] = []
     if len(words) > LONGEST:
         return []
     words = [
@@ -74,13 +74,13 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     groups = groupby(words, key=lambda it: it.text in (*joins,) or bool(said_of(it.text, "then")))
     for is_between, group in groups:
         part = list(group)
-        if is_between or (not found and all(said_of(lexeme.text, "filler") for lexeme in part)):
+        if is_between or (not result and all(said_of(lexeme.text, "filler") for lexeme in part)):
             continue  # `Hola robot, …`
         own = _orders(part, names)
-        if not own or any(order.is_repeated for order in own[bool(not found) :]):
+        if not own or any(order.is_repeated for order in own[bool(not result) :]):
             return []  # nobody knows how much of it is done so often
-        found += own
-    return found
+        result += own
+    return result
 
 
 def _join_words(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
@@ -148,7 +148,7 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
     first = names.meant(words[0].text)
     rest = [lexeme.text for lexeme in words[1:]]
     if first in ("S", "STOP") and rest:
-        if all(said_of(each, "the", "engine", "filler") for each in rest):
+        if all(said_of(item, "the", "engine", "filler") for item in rest):
             return Order("S", "S", ())
         if any(lexeme.kind is NUMBER for lexeme in words):
             pause = filled([made("W"), *words[1:]], names, has_until=False)
@@ -188,12 +188,12 @@ def _parse_condition(
     """
     if exact := laid_out(condition_in(words, names)):
         return exact, ()
-    said = (worded(words, names) if is_ahead else None) or {}
-    condition = said.get("asked") or said.get("question", "")
+    text = (worded(words, names) if is_ahead else None) or {}
+    condition = text.get("asked") or text.get("question", "")
     is_other = any(names.meant(it.text) in _ASIDE or it.text in COMPARISONS for it in words)
     if is_other or not condition.startswith("DISTANCE"):
         return "", ()
-    return condition, () if "asked" in said else (f"{NEAR_CM} cm",)
+    return condition, () if "asked" in text else (f"{NEAR_CM} cm",)
 
 
 def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:

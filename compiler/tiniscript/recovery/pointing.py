@@ -24,12 +24,12 @@ def pointed(diagnostic: Diagnostic, source: Source) -> Diagnostic:
         return diagnostic
     if _normalized(source[span]) == _normalized(named):
         return diagnostic
-    found = _nearest(named, span, source)
-    if found is None:
+    result = _nearest(named, span, source)
+    if result is None:
         return diagnostic
     if place is None and code not in _WAYS:
         place = span
-    return diagnostic._replace(span=found, place=place)
+    return diagnostic._replace(span=result, place=place)
 
 
 def _normalized(text: str) -> str:
@@ -59,4 +59,4 @@ def _distance(one: Span, other: Span) -> tuple[int, int]:
 @lru_cache(16)
 def _unaccented(text: str) -> str:
     """Return a text in capitals without accents, each character in its place."""
-    return "".join(short if len(short := plain(each)) == 1 else each for each in text)
+    return "".join(short if len(short := plain(item)) == 1 else item for item in text)

@@ -89,15 +89,15 @@ def cells(table: str) -> Iterator[list[str]]:
 
 @cache
 def of_tokens() -> tuple[Row, ...]:
-    found = []
+    matches = []
     for pattern, becomes, cost, code, how, example in cells(rows.TOKENS):
         parts = tuple(_expanded(becomes, rows.PARTS).split())
         is_offered = "offered" in how
         may_lose = is_offered or bool(_OF_NUMBERS.search(f"{pattern} {becomes}"))
         row = Row(compiled(pattern, rows.PARTS), parts, float(cost), CODES[code], "first" in how,
                   is_offered, may_lose, _texts(example))  # fmt: skip
-        found.append(row)
-    return tuple(found)
+        matches.append(row)
+    return tuple(matches)
 
 
 @cache
@@ -169,11 +169,11 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
     often = ""
     if len(atom) > 1 and atom[-1] in "?*+" and (atom[-2].isalnum() or atom[-2] in "':,;()"):
         atom, often = atom[:-1], atom[-1]
-    found = _ATOM.findall(atom)
+    result = _ATOM.findall(atom)
     labels = [
-        each if each[0] in "@_" or each[0].isalnum() else "s" + each.strip("'")
-        for each in found
-        if each != "$"
+        item if item[0] in "@_" or item[0].isalnum() else "s" + item.strip("'")
+        for item in result
+        if item != "$"
     ]
     if labels in (["@all"], ["@cond"]) and often:  # the brackets in it are closed in it
         inner = body = _closing_pattern(["@flat"])
@@ -183,9 +183,9 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
         body = f"(?:{body}{often}?)"
         return f"(?P<{name}>{body})" if name else body, frozenset()
     one = _token(labels)
-    choices = [*([one] if labels else []), *([_EDGES["$"]] if "$" in found else [])]
+    choices = [*([one] if labels else []), *([_EDGES["$"]] if "$" in result else [])]
     body = f"(?:{'|'.join(choices)}){often}{'?' if often and often in '+*' else ''}"
-    is_needed = often in ("", "+") and "$" not in found
+    is_needed = often in ("", "+") and "$" not in result
     return f"(?P<{name}>{body})" if name else body, frozenset(labels if is_needed else ())
 
 
@@ -211,12 +211,12 @@ def places(patterns: Mapping[int, Pattern]) -> Places:
     It is the label that the fewest patterns need, "" for one that any line may match.
     """
     many = Counter(label for it in patterns.values() for label in chain(*it.needed))
-    found: dict[str, list[int]] = {}
+    places: dict[str, list[int]] = {}
     for k, pattern in patterns.items():
-        rarest = min(pattern.needed, key=lambda it: sum(many[each] for each in it), default=("",))
+        rarest = min(pattern.needed, key=lambda it: sum(many[item] for item in it), default=("",))
         for label in rarest:
-            found.setdefault(label, []).append(k)
-    return found
+            places.setdefault(label, []).append(k)
+    return places
 
 
 class Encoded:
@@ -287,7 +287,7 @@ class Encoded:
         if part[0] != "@":
             return [made(part.strip("'"))]
         function, *named = part[1:].split(":")
-        place = _Place(self, [captured(each) for each in named], self.span(match)[0])
+        place = _Place(self, [captured(item) for item in named], self.span(match)[0])
         return _FUNCTIONS[function](place)
 
     def translated(self, token: Lexeme) -> Lexeme:
@@ -391,9 +391,9 @@ def _seconds(place: _Place) -> _Made:
 def _converted_number(place: _Place) -> _Made:
     """A number with its unit, in the unit that values have: `500 ms` is 0.5, `1 m` is 100."""
     (number,), (unit,) = place.captured
-    said = said_of(unit.text, "unit") or ("", "1000")
+    text = said_of(unit.text, "unit") or ("", "1000")
     return [
-        number if said[1] == "1000" else made(number_text(float(number.text) * int(said[1]) / 1000))
+        number if text[1] == "1000" else made(number_text(float(number.text) * int(text[1]) / 1000))
     ]
 
 

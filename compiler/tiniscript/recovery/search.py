@@ -187,23 +187,23 @@ class Recovery:
 
     def join_until(self) -> None:
         """Put an UNTIL on a line of its own after the instruction before it."""
-        kept: list[_Text] = []
+        texts: list[_Text] = []
         until = re.compile(rf"^\s*{words_of('until')}\b", re.MULTILINE)
         text = plain(self.program)
         if not until.search(text) or _END_UNTIL.search(text):
             return  # there is none, or it is taken for a block
         is_do = False
         for line in self.lines:
-            above = next((text for text in reversed(kept) if text.body.strip()), None)
+            above = next((text for text in reversed(texts) if text.body.strip()), None)
             body = above.body.rstrip().rstrip(";") if above and not above.note.strip() else ""
             if above and body.endswith(")") and not is_do and until.match(plain(line.body)):
                 above.body, above.note = f"{body} {line.body.strip()}", line.note
                 above.last = line.last
                 above.steps.append(Step(codes.UNTIL_ALONE, lexemes(line.body), lexemes(above.body)))
             else:
-                kept.append(line)
+                texts.append(line)
             is_do = is_do or _DO_ALONE.match(plain(line.body)) is not None
-        self.lines = kept
+        self.lines = texts
 
     def read_line(self, line: _Text) -> None:
         """Find the cheapest reading of a line, sure if no rival costs about as much; else parts."""
@@ -293,12 +293,12 @@ class Recovery:
 
     def rivals(self) -> list[tuple[float, int, Reading]]:
         """Return readings that are not the cheapest ones: how much more they cost, and the line."""
-        found = [
+        matches = [
             (rival.cost - text.reading.cost, k, rival)
             for k, text in enumerate(self.lines)
             for rival in text.rivals
         ]
-        return sorted(found, key=lambda it: it[0])
+        return sorted(matches, key=lambda it: it[0])
 
     def choices(self) -> Iterator[tuple[list[Reading], bool]]:
         """Give what each line may be read as; at last without the blocks of a program."""
@@ -349,8 +349,8 @@ class Recovery:
 
 def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
     """Whether a digit may be meant for the bracket that is missing after it: `DISTANCE < 209`."""
-    written = texts(old)
-    return written.count("(") > written.count(")") and any(
+    text = texts(old)
+    return text.count("(") > text.count(")") and any(
         sign.text == ")" and sign.source is None and re.fullmatch(f".+{rows.CLOSE_KEY}", one.text)
         for one, sign in pairwise(new)
     )
@@ -394,8 +394,8 @@ def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[
 
 def _without_empty(tokens: Sequence[Lexeme]) -> list[Lexeme]:
     """Drop separators with nothing between them."""
-    kept: list[Lexeme] = []
+    lexemes: list[Lexeme] = []
     for token in tokens:
-        if token.text != ";" or (kept and kept[-1].text not in (";", "|")):
-            kept.append(token)
-    return kept
+        if token.text != ";" or (lexemes and lexemes[-1].text not in (";", "|")):
+            lexemes.append(token)
+    return lexemes

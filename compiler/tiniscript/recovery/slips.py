@@ -136,7 +136,7 @@ def code_of(change: Change) -> tuple[Code, Step | None]:
     more = {*texts(after)} - {*texts(before)}
     if "SI" in fewer and "IF" in more:
         return codes.SPANISH_IF, None
-    dropped = {each for each in fewer if {each, meant_by(each)} & {*ENDED}}
+    dropped = {item for item in fewer if {item, meant_by(item)} & {*ENDED}}
     if dropped and not more and fewer.keys() <= dropped | {";"}:
         return codes.EXTRA_WORD, None
     code, step = _code_of_steps(change) if steps else (_code_of_words(before, after), None)
@@ -164,7 +164,7 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
     if own and own[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
         return own[0].code, own[0]
     lost = (lexeme.text for lexeme in before if lexeme.kind is WORD and lexeme.text not in new)
-    foreign = next((each for each in lost if meant_by(each) in new - words), "")
+    foreign = next((item for item in lost if meant_by(item) in new - words), "")
     translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
     if translated and (foreign or not own):
         is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
@@ -202,24 +202,24 @@ def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
 
 def _foreign_words(slip: Slip) -> Slip:
     """A word of another language, with what belongs to it: `bot.forward`, FOR of `FOR I = 1 TO`."""
-    old, start, found, right = slip.old, slip.start, slip.found, slip.right
-    with_next = old[start : start + len(found) + 1]
-    has_dot = texts(found[-1:]) == (".",)
+    old, start, result, right = slip.old, slip.start, slip.found, slip.right
+    with_next = old[start : start + len(result) + 1]
+    has_dot = texts(result[-1:]) == (".",)
     if has_dot and not right:
-        found, right = with_next, slip.new[start : start + 1]
+        result, right = with_next, slip.new[start : start + 1]
     elif not right and start and old[start - 1].text != "|":
-        found, right = [old[start - 1], *found], [old[start - 1]]
+        result, right = [old[start - 1], *result], [old[start - 1]]
     elif has_dot:
-        found = with_next
-    cut = next((k for k, it in enumerate(found) if it.text in ("=", "(")), len(found))
-    is_set = cut < len(found) and found[cut].text == "="
-    found = found[: cut - is_set] or found
-    if any(lexeme.kind is NUMBER for lexeme in found):  # PARA of `PARA I DE 1 A 4`
-        found = [*takewhile(_is_counting, found)] or found
-    if right and found and all(said_of(lexeme.text, "filler") for lexeme in found):
+        result = with_next
+    cut = next((k for k, it in enumerate(result) if it.text in ("=", "(")), len(result))
+    is_set = cut < len(result) and result[cut].text == "="
+    result = result[: cut - is_set] or result
+    if any(lexeme.kind is NUMBER for lexeme in result):  # PARA of `PARA I DE 1 A 4`
+        result = [*takewhile(_is_counting, result)] or result
+    if right and result and all(said_of(lexeme.text, "filler") for lexeme in result):
         named = [lexeme for lexeme in old if meant_by(lexeme.text) == right[0].text]
-        found = named[:1] or found  # `oi robô, anda`
-    return slip._replace(found=found, right=right)
+        result = named[:1] or result  # `oi robô, anda`
+    return slip._replace(found=result, right=right)
 
 
 def _is_counting(token: Lexeme) -> bool:
@@ -319,11 +319,13 @@ def before_it(slip: Slip) -> str:
     """Return what is right of the instruction before the slip."""
     if _has_gap(slip):
         return written(slip.old[slip.start - 1 : slip.start])
-    kept = written(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
-    if slip.code is codes.HEADER_SEPARATOR and (not kept or lexemes(kept)[0].text not in OF_BLOCKS):
+    result = written(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
+    if slip.code is codes.HEADER_SEPARATOR and (
+        not result or lexemes(result)[0].text not in OF_BLOCKS
+    ):
         begun = (part for part in without_setup(slip.line) if part[0].text in OF_BLOCKS)
-        return laid_out(next(begun)) if kept else slip.now[0].text  # `CADA VEZ QUE … S`
-    return kept
+        return laid_out(next(begun)) if result else slip.now[0].text  # `CADA VEZ QUE … S`
+    return result
 
 
 def _changed_text(slip: Slip) -> str:
@@ -382,8 +384,8 @@ def _opened(slip: Slip) -> str:
 
 
 def _rest_of_line(slip: Slip) -> str:
-    told = slip.old[slip.start :]
-    return _known_word(told[2:] if texts(told[1:2]) == ("=",) else told)  # `Y = SIDE(3)`
+    message = slip.old[slip.start :]
+    return _known_word(message[2:] if texts(message[1:2]) == ("=",) else message)  # `Y = SIDE(3)`
 
 
 _WORD_OF: dict[Code, Callable[[Slip], str]] = {
@@ -402,7 +404,7 @@ def _usage(slip: Slip) -> str:
 def _letter(slip: Slip) -> str:
     """Return the letter that stands in a number in the place of a digit."""
     was, now = found_in(slip), right_of(slip)
-    letters = {each for each in was if each.isalpha()} - {*now} if len(was) == len(now) else set()
+    letters = {item for item in was if item.isalpha()} - {*now} if len(was) == len(now) else set()
     return letters.pop() if len(letters) == 1 else ""
 
 
@@ -448,15 +450,15 @@ def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
 
     A separator in brackets parts nothing, where all brackets of the line are closed.
     """
-    found: list[list[Lexeme]] = [[]]
+    lexemeses: list[list[Lexeme]] = [[]]
     depth, is_closed = 0, texts(tokens).count("(") == texts(tokens).count(")")
     for token in tokens:
         depth += (token.text == "(") - (token.text == ")")
         if token.text == ";" and not (is_closed and depth > 0):
-            found.append([])
+            lexemeses.append([])
         else:
-            found[-1].append(token)
-    return found
+            lexemeses[-1].append(token)
+    return lexemeses
 
 
 def without_setup(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:

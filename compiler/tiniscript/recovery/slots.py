@@ -130,12 +130,12 @@ class _Reader:
             return float(token.text), k + 1
         if token.kind is not WORD or token.text in self.names.known.values:
             return None
-        said = said_of(token.text, "number")
+        text = said_of(token.text, "number")
         is_told = after in (",", ")") or said_of(after, "unit") or self._is_half(k + 1)
-        is_one = said == ("1",) and not is_told
-        if said and self.command and not is_one:
-            number, k = self._sum(float(said[0]), k + 1)
-            self.is_sure = self.is_sure and said != ("1",)
+        is_one = text == ("1",) and not is_told
+        if text and self.command and not is_one:
+            number, k = self._sum(float(text[0]), k + 1)
+            self.is_sure = self.is_sure and text != ("1",)
             return number, k
         is_first = self.text(k - 1) == "(" and after == "," and self.command != "M"
         unit = k + 1 + (after == "A")  # `half a second`
@@ -150,18 +150,18 @@ class _Reader:
         """Return a number with the smaller ones after it: `cuatrocientos cuarenta y cinco`."""
         while number % 10 == 0:
             place = k + bool(said_of(self.text(k), "and"))
-            said = said_of(self.text(place), "number")
-            if not said or number % 10 ** len(said[0]):
+            text = said_of(self.text(place), "number")
+            if not text or number % 10 ** len(text[0]):
                 break
-            number, k = number + float(said[0]), place + 1
+            number, k = number + float(text[0]), place + 1
         return number, k
 
     def _number(self, k: int) -> int | None:
         """Read a number with its unit; return where to read on, None where none is here."""
-        found = self._value_of_words(k)
-        if found is None:
+        result = self._value_of_words(k)
+        if result is None:
             return None
-        number, k = found
+        number, k = result
         if self._is_half(k):
             number, k, self.is_sure = number + 0.5, k + 2, False
         unit, thousandths = self.mark, 1000.0
@@ -222,8 +222,8 @@ class _Reader:
         word, after = self.text(k), self.text(k + 1)
         names, marked = self.names, said_of(word, "value")
         is_command = word in names.actuators or (word in DONE and word != "BREAK")
-        said = [word] if is_command else [meaning.concept for meaning in names.meanings(word)]
-        meant = next((each for each in said if is_command or each in CALLED or each == "S"), None)
+        text = [word] if is_command else [meaning.concept for meaning in names.meanings(word)]
+        meant = next((item for item in text if is_command or item in CALLED or item == "S"), None)
         is_before_number = self._is_number(k + 1) or after in ("=", ":")
         if self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]

@@ -103,18 +103,18 @@ def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> l
     ]
     diagnostics = text.with_name(diagnostics)
     told: list[Diagnostic] = []
-    for each in diagnostics[:_MANY]:
-        told.append((_usage_diagnostic(Usage(text, each)) if each.repair is None else None) or each)
+    for item in diagnostics[:_MANY]:
+        told.append((_usage_diagnostic(Usage(text, item)) if item.repair is None else None) or item)
     parts = [it for it in told if it.values.get("part")]
-    if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
+    if parts and any(item.code is codes.TASK_NOT_TOP for item in told):  # rather an IF
         part = {"part": parts[0].values["part"]}
         told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
-    if any("usage" in each.values for each in told if each.code is codes.OUT_OF_RANGE):
+    if any("usage" in item.values for item in told if item.code is codes.OUT_OF_RANGE):
         told += text.turned()
     return [
-        each
-        for each in (*told, *diagnostics[_MANY:])
-        if not (each.code in _OF_NAMES and text.is_in_wrong_def(each, told))
+        item
+        for item in (*told, *diagnostics[_MANY:])
+        if not (item.code in _OF_NAMES and text.is_in_wrong_def(item, told))
     ]
 
 
@@ -138,13 +138,13 @@ class _Text:
 
     def turned(self) -> list[Diagnostic]:
         """Return moves with the power before the time, as another call of the text has them."""
-        found: list[Diagnostic] = []
-        for each in _TURNED.finditer(self.source.text):
-            if LONG_S <= float(each[1]) <= MOST_POWER and 0 < float(each[2]) < LONG_S:
-                fix = f"{each[0][0].upper()}({each[2]}, {each[1]})"
-                values = {"time": each[1], "power": each[2], "fix": fix}
-                found.append(Diagnostic(codes.SWAPPED, Span(*each.span()), values))
-        return found
+        diagnostics: list[Diagnostic] = []
+        for match in _TURNED.finditer(self.source.text):
+            if LONG_S <= float(match[1]) <= MOST_POWER and 0 < float(match[2]) < LONG_S:
+                fix = f"{match[0][0].upper()}({match[2]}, {match[1]})"
+                values = {"time": match[1], "power": match[2], "fix": fix}
+                diagnostics.append(Diagnostic(codes.SWAPPED, Span(*match.span()), values))
+        return diagnostics
 
     def end_at(self, place: int) -> str:
         """Return the end of the innermost block that is open at a place, "" for none."""
@@ -161,8 +161,12 @@ class _Text:
 
     def with_name(self, diagnostics: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
-        nameless = [each for each in diagnostics if each.code is codes.DEF_NEEDS_NAME]
-        unknown = (each for each in diagnostics if each.code is codes.UNKNOWN_WORD)
+        nameless = [
+            diagnostic for diagnostic in diagnostics if diagnostic.code is codes.DEF_NEEDS_NAME
+        ]
+        unknown = (
+            diagnostic for diagnostic in diagnostics if diagnostic.code is codes.UNKNOWN_WORD
+        )
         wholes = ((it, self.source[instruction_at(it.span, self.source)]) for it in unknown)
         called = (it.values["found"] for it, whole in wholes if len(lexemes(whole)) == 1)
         name = next(called, "") if len(nameless) == 1 else ""
@@ -170,11 +174,11 @@ class _Text:
             return diagnostics
         own, end = nameless[0], nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
-        said = own._replace(values={"name": name}, repair=repair)
+        text = own._replace(values={"name": name}, repair=repair)
         return [
-            said if each is own else each
-            for each in diagnostics
-            if each.values.get("found") != name
+            text if diagnostic is own else diagnostic
+            for diagnostic in diagnostics
+            if diagnostic.values.get("found") != name
         ]
 
 
@@ -211,8 +215,8 @@ class Usage:
 
     def matched(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of a pattern whose part `here` begins at the place."""
-        found = pattern.finditer(self.text)
-        return next((it for it in found if it.start("here") == self.found.span.start), None)
+        result = pattern.finditer(self.text)
+        return next((it for it in result if it.start("here") == self.found.span.start), None)
 
     # -- classes ----------------------------------------------------------------------------------
 
@@ -224,7 +228,7 @@ class Usage:
         code, here = self.found.code, self.source[self.found.span]
         is_strange = code is codes.UNKNOWN_WORD and self.is_first and bool(self.row)
         is_strange = is_strange and not self.found.values.get("near")
-        said = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
+        text = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
         are_sentence = len(self.words) > 1 and len(self.source[self.piece]) <= _LONGEST
         labels: dict[str, object] = {
             code.number: True,
@@ -248,7 +252,7 @@ class Usage:
                 "@strange": True,
                 "@pressed": self._is_pressed(),
                 "@instead": said_instead(self.signs[0]),
-                "@switched": any(said_of(each, "on", "off") for each in said),
+                "@switched": any(said_of(each, "on", "off") for each in text),
                 "@button": any(map(self.is_button, self.words)) and self.signs[1:2] != ["("],
                 "@turned": any(said_of(each, "turn", "lap") for each in self.words),
                 "@sentence": are_sentence and not {*self.signs} & {*COMPARISONS, "(", "="},
@@ -258,7 +262,7 @@ class Usage:
     def _is_pressed(self) -> bool:
         """Whether parts of one word say that a button is pressed: `onButtonPressed(…)`."""
         parted = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
-        return len(parted) > 1 and any(self.is_button(plain(each)) for each in parted)
+        return len(parted) > 1 and any(self.is_button(plain(item)) for item in parted)
 
     def _label_of(self, k: int) -> str:
         text, span = self.row[k].text, self.spans[k + 1]
@@ -277,19 +281,19 @@ class Usage:
     def told(self, row: Row, gaps: Gaps) -> Diagnostic:
         """Return what a row tells: of the place, or where its words say."""
         values, fix = gaps.filled, gaps.filled.get("fix", "")
-        span = next((_PLACES[each](self) for each in row.how if each in _PLACES), self.found.span)
+        span = next((_PLACES[item](self) for item in row.how if item in _PLACES), self.found.span)
         code = row.code or self.found.code
         if row.code is None:
             values = {**self.found.values, **values}
         place = self.piece if {*row.how} & {"offered", "whole"} else None
         repair = Repair((Edit(self.piece, fix),), False) if "offered" in row.how else None
         if "everywhere" in row.how:
-            edits = (Edit(each, values["right"]) for each in self.renamed())
+            edits = (Edit(item, values["right"]) for item in self.renamed())
             repair = Repair(tuple(edits), False)
-        told = Diagnostic(code, span, values, place, repair)
+        diagnostic = Diagnostic(code, span, values, place, repair)
         if "again" not in row.how:
-            return told
-        return _usage_diagnostic(Usage(self.around, told)) or told
+            return diagnostic
+        return _usage_diagnostic(Usage(self.around, diagnostic)) or diagnostic
 
     def values(self) -> dict[str, str]:
         """Return what is said before the gaps of a row are filled."""
@@ -297,10 +301,10 @@ class Usage:
 
     def several(self, name: str, gaps: Gaps) -> Mapping[str, str]:
         """Return values that come together."""
-        found = _SEVERAL[name](self, gaps.filled.get("word", ""))
-        if not found:
+        result = _SEVERAL[name](self, gaps.filled.get("word", ""))
+        if not result:
             raise NoGap
-        return found
+        return result
 
     # -- what its words say -----------------------------------------------------------------------
 
@@ -319,9 +323,9 @@ class Usage:
         is_ended = word in BLOCK_ENDS and self.around.is_ended
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
-        found = lines.read(self.row, self.names) if word == "LOOP" else []  # else a guess
-        is_head = bool(found) and [each.kind for each in found[0].items or ()] == ["open"]
-        head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
+        result = lines.read(self.row, self.names) if word == "LOOP" else []  # else a guess
+        is_head = bool(result) and [item.kind for item in result[0].items or ()] == ["open"]
+        head = laid_out(result[0].tokens).strip("; ") if is_head else _usage(word)
         return head if is_ended else f"{head}; ...; {BLOCK_ENDS[word]}"
 
     def question(self, word: str) -> str:
@@ -330,16 +334,16 @@ class Usage:
         Nothing where no number is asked for.
         """
         asked = self.asked(word)
-        if not any(each.kind is NUMBER for each in asked):
+        if not any(item.kind is NUMBER for item in asked):
             return ""
-        said = laid_out(condition_in(asked, self.names))
-        return f"{word}({said})" if said else WORDS[word].usage
+        text = laid_out(condition_in(asked, self.names))
+        return f"{word}({text})" if text else WORDS[word].usage
 
     def asked(self, word: str) -> list[Lexeme]:
         """Return what stands behind a header, up to what is done."""
         behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.row)][1:]
         begun = DONE - {"L", "R"}  # `pared a la derecha`
-        meant = [_is_over(each) or self.names.meant(each.text) in begun for each in behind]
+        meant = [_is_over(item) or self.names.meant(item.text) in begun for item in behind]
         return behind[: [*meant, True].index(True)]
 
     def is_button(self, word: str) -> bool:
@@ -370,10 +374,10 @@ class Usage:
     @cached_property
     def turn(self) -> _Turn:
         """A turn that says no way, or no number."""
-        said = (*self.words, "_".join(self.words[:2]))
+        text = (*self.words, "_".join(self.words[:2]))
         way = next((it for it in map(self.names.meant, self.words) if it in ("L", "R")), "")
         degrees = {"half": "180", "whole": "360"}
-        halves = (it for it in degrees if any(said_of(each, it) for each in said))
+        halves = (it for it in degrees if any(said_of(each, it) for each in text))
         angle = degrees.get(next(halves, ""), "")
         is_timed = any(said_of(each, "unit")[:1] not in ((), ("turns",)) for each in self.words)
         numbers = [token.text for token in self.row if token.kind is NUMBER]
@@ -435,14 +439,14 @@ class Usage:
         is_word = found.isidentifier() and found not in WORDS and not self.names.is_name(found)
         if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
             return None
-        at = min(sum(each.text == "," for each in before), len(word.arguments) - 1)
+        at = min(sum(item.text == "," for item in before), len(word.arguments) - 1)
         argument = word.arguments[at]
         unit = said_of(found, "unit")
         way = UNIT_OF.get(word.text, "")
         is_of_way = bool(way) and unit == (WAYS[way].unit, "1000")
-        said = f"{before[-1].text} {way}" if is_of_way else ""
+        text = f"{before[-1].text} {way}" if is_of_way else ""
         return (
-            _NoValue(word, argument, before[-1].text, here, unit[0] if unit else "", said)
+            _NoValue(word, argument, before[-1].text, here, unit[0] if unit else "", text)
             if (argument.unit in _WANTED)
             else None
         )
@@ -456,8 +460,8 @@ class Usage:
 
     def in_words(self, word: str) -> dict[str, str]:
         """A question in words without brackets: `IF BRIGHT THEN STOP`."""
-        said = worded(self.asked(word), self.names) or {}
-        return said if said.get("asked") or said.get("question") else {}
+        text = worded(self.asked(word), self.names) or {}
+        return text if text.get("asked") or text.get("question") else {}
 
     def in_brackets(self, word: str) -> dict[str, str]:
         """A question in words in the brackets of a header: what they ask, else an example."""
@@ -477,8 +481,8 @@ class Usage:
         called = (match["name"] or "").upper()
         rest = self.text[match.end() :] if end == right else ""
         below = _row(rest) or (_before_blocks(rest, called) if called else [])
-        calls = [each for each in below if _calls(each, called)]
-        if inside := [each for each in below if each not in calls]:
+        calls = [item for item in below if _calls(item, called)]
+        if inside := [item for item in below if item not in calls]:
             values["example"] = "; ".join((head, *inside, right, *calls))
         return values
 
@@ -487,7 +491,7 @@ class Usage:
         rows = self.text.splitlines()
         k = self.source.position(self.found.span.start)[0] - 1
         behind = without_note(self.behind_it[: len(rows[k])])[0]
-        rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]
+        rest = [item.strip() for item in behind.split("\n")[0].split(";") if _WORD.search(item)]
         below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
             begun = self.source[Span(self.found.span.start, self.piece.end)]
@@ -610,16 +614,16 @@ def _is_over(token: Lexeme) -> bool:
 def _row(text: str) -> list[str]:
     """Return the instructions of a text, nothing where they are many, or a block is among them."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
-    found = [each.strip() for row in rows for each in row if each.strip()]
-    is_long = len(found) > _MANY_BELOW or any(map(_IS_BLOCK.match, found))
-    return [] if is_long else found
+    matches = [item.strip() for row in rows for item in row if item.strip()]
+    is_long = len(matches) > _MANY_BELOW or any(map(_IS_BLOCK.match, matches))
+    return [] if is_long else matches
 
 
 def _before_blocks(text: str, name: str) -> list[str]:
     """Return the instructions before the first block of a text, and before a call of a name."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
-    found = (each.strip() for row in rows for each in row if each.strip())
-    inside = [*takewhile(lambda it: not _IS_BLOCK.match(it) and not _calls(it, name), found)]
+    result = (item.strip() for row in rows for item in row if item.strip())
+    inside = [*takewhile(lambda it: not _IS_BLOCK.match(it) and not _calls(it, name), result)]
     return inside if len(inside) <= _MANY_BELOW else []
 
 
@@ -658,27 +662,27 @@ def _block(gaps: Gaps) -> str:
 
 def _order(gaps: Gaps) -> str:
     """The one order that words say."""
-    said = _usage_at(gaps).orders
-    return said[0].text if len(said) == 1 and not said[0].is_side_free else ""
+    text = _usage_at(gaps).orders
+    return text[0].text if len(text) == 1 and not text[0].is_side_free else ""
 
 
 def _spoken_orders(gaps: Gaps, is_sided: bool) -> str:
     """The orders that words say; `is_sided`: of one nobody says which way it turns."""
-    said = _usage_at(gaps).orders
-    is_free = any(each.is_side_free for each in said)
-    return written(said) if len(said) > 1 and is_free is is_sided else ""
+    text = _usage_at(gaps).orders
+    is_free = any(item.is_side_free for item in text)
+    return written(text) if len(text) > 1 and is_free is is_sided else ""
 
 
 def _other_orders(gaps: Gaps) -> set[str]:
     """Orders beside a turn, which it alone would lose."""
-    said = _usage_at(gaps).ordered.items()
-    return {its for word, its in said if not said_of(word, "right")} - {"L", "R", "B", "S"}
+    text = _usage_at(gaps).ordered.items()
+    return {its for word, its in text if not said_of(word, "right")} - {"L", "R", "B", "S"}
 
 
 def _forever_word(gaps: Gaps) -> str:
     """The word for FOREVER, where words say no order."""
     usage = _usage_at(gaps)
-    endless = (each for each in usage.words if usage.names.meant(each) == "FOREVER")
+    endless = (word for word in usage.words if usage.names.meant(word) == "FOREVER")
     return "" if usage.meant else next(endless, "")
 
 
@@ -702,7 +706,7 @@ def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
     concept, row = _concept(gaps), _usage_at(gaps).row
     if not concept or WORDS[concept].arguments:
         return ""
-    has_number = any(each.kind is NUMBER for each in row)
+    has_number = any(item.kind is NUMBER for item in row)
     return concept if (has_number if is_numbered else len(row) == 1) else ""
 
 
@@ -712,7 +716,7 @@ def _asking(word: str) -> str:
 
 def _variable(gaps: Gaps) -> str:
     usage = _usage_at(gaps)
-    return next((each for each in usage.words if each in usage.names.variables), "")
+    return next((word for word in usage.words if word in usage.names.variables), "")
 
 
 def _own_example(gaps: Gaps) -> str:
@@ -774,21 +778,21 @@ def _without_seconds(gaps: Gaps) -> str:
 
 
 def _missing_value(gaps: Gaps, is_unit: bool) -> _NoValue | None:
-    found = _usage_at(gaps).no_value
-    return found if found and bool(found.unit) is is_unit else None
+    result = _usage_at(gaps).no_value
+    return result if result and bool(result.unit) is is_unit else None
 
 
 def _number_said(gaps: Gaps) -> str:
     """A number with a unit that values have, or with that of a way."""
-    said = _missing_value(gaps, is_unit=True)
-    is_own = said is not None and (said.unit == said.argument.unit or bool(said.right))
+    text = _missing_value(gaps, is_unit=True)
+    is_own = text is not None and (text.unit == text.argument.unit or bool(text.right))
     here = _usage_at(gaps).source[_usage_at(gaps).found.span]
-    return f"{said.number} {here}" if said and is_own else ""
+    return f"{text.number} {here}" if text and is_own else ""
 
 
 def _spoken_direction(gaps: Gaps) -> str:
-    said = _missing_value(gaps, is_unit=True)
-    return said.right if said and said.unit != said.argument.unit else ""
+    text = _missing_value(gaps, is_unit=True)
+    return text.right if text and text.unit != text.argument.unit else ""
 
 
 def _other_robots_word(gaps: Gaps) -> str:
@@ -821,8 +825,8 @@ def _endless_move(gaps: Gaps) -> str:
     if not is_endless or not usage.signs or usage.signs[0] not in MOVES:
         return ""
     start, end = (place - usage.piece.start for place in usage.found.span)
-    said = usage.source[usage.piece]
-    return f"{said[:start]}FOREVER{said[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
+    text = usage.source[usage.piece]
+    return f"{text[:start]}FOREVER{text[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
 
 
 def _swapped_forever(gaps: Gaps) -> str:
@@ -837,8 +841,8 @@ def _swapped_forever(gaps: Gaps) -> str:
 def _until_with_move(gaps: Gaps) -> str:
     """An UNTIL with the move that it lacks."""
     usage = _usage_at(gaps)
-    asked = re.match(r"\s*(\([^()\n]+\))", usage.text[usage.found.span.start + 5 :])
-    return f"F(2, 80) UNTIL{asked[1]}" if asked else ""
+    match = re.match(r"\s*(\([^()\n]+\))", usage.text[usage.found.span.start + 5 :])
+    return f"F(2, 80) UNTIL{match[1]}" if match else ""
 
 
 def _arm(gaps: Gaps) -> str:
@@ -904,7 +908,7 @@ def _dotted_span(usage: Usage) -> Span:
 def _rows_of_name(gaps: Gaps) -> list[str]:
     """The lines in which a word is meant as a name."""
     usage = _usage_at(gaps)
-    return [str(usage.source.position(each.start)[0]) for each in usage.renamed()]
+    return [str(usage.source.position(item.start)[0]) for item in usage.renamed()]
 
 
 def _other_rows(gaps: Gaps) -> list[str]:
@@ -914,7 +918,7 @@ def _other_rows(gaps: Gaps) -> list[str]:
 def _later_rows(gaps: Gaps) -> list[str]:
     """The lines in which TIME stands behind the first place."""
     usage = _usage_at(gaps)
-    places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", usage.text)][1:]
+    places = [match.start() for match in re.finditer(r"(?i)\bTIME\b", usage.text)][1:]
     return [str(usage.source.position(place)[0]) for place in places]
 
 
@@ -934,9 +938,9 @@ def _times_in_line(gaps: Gaps) -> str:
 def _words_behind(gaps: Gaps) -> str:
     """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
     usage = _usage_at(gaps)
-    said = usage.source[_following_span(usage)]
-    right = lines.right(lexemes(said), usage.names)
-    return shortened(said) if isinstance(right, Failure) and right.at == 0 else ""
+    text = usage.source[_following_span(usage)]
+    right = lines.right(lexemes(text), usage.names)
+    return shortened(text) if isinstance(right, Failure) and right.at == 0 else ""
 
 
 def _following_span(usage: Usage) -> Span:

@@ -27,7 +27,14 @@ def remember(path: str, kit: int) -> None:
     with contextlib.suppress(OSError):
         _path().parent.mkdir(mode=files.OWN, parents=True, exist_ok=True)
         with files.alone(_path()):  # other commands do the same
-            kept = [entry, *(each for each in _remembered_profiles() if each != entry)][:KEPT]
+            kept = [
+                entry,
+                *(
+                    remembered_profile
+                    for remembered_profile in _remembered_profiles()
+                    if remembered_profile != entry
+                ),
+            ][:KEPT]
             files.keep(_path(), json.dumps(kept).encode())
 
 
@@ -38,13 +45,13 @@ def recall(kit: int) -> Robot | None:
 
 def profiles() -> list[tuple[str, Robot]]:
     """Return the profiles that still exist, with their paths, the newest first."""
-    found: list[tuple[str, Robot]] = []
+    result: list[tuple[str, Robot]] = []
     for kit, path in _remembered_profiles():
         with contextlib.suppress(ProfileRefused):
             robot = robots.load(path)
             if robot.kit.fingerprint == kit:
-                found.append((path, robot))
-    return found
+                result.append((path, robot))
+    return result
 
 
 def _remembered_profiles() -> list[tuple[int, str]]:

@@ -51,12 +51,12 @@ EXTERNAL = 3  # the group of INT0 to INT7
 
 def _bits(*parts: str) -> dict[int, Bit]:
     """Return the pins of `"0 d0 d1"`: the number of the first pin, then the bit of each pin."""
-    found = {}
+    result = {}
     for part in parts:
         first, *bits = part.split()
         for pin, bit in enumerate(bits, int(first)):
-            found[pin] = Bit(bit[0], int(bit[1]))
-    return found
+            result[pin] = Bit(bit[0], int(bit[1]))
+    return result
 
 
 def _pwm_channels(text: str) -> dict[int, Compare]:

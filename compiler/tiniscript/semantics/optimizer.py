@@ -158,12 +158,12 @@ def _simplified(op: str, left: _Operand, right: _Operand) -> _Operand:
 
 
 def _body(body: ir.Body) -> ir.Body:
-    made: list[ir.Statement] = []
+    statements: list[ir.Statement] = []
     for statement in body:
-        made += _statement(statement)
-        if made and not ir.goes_on(tuple(made[-1:])):
+        statements += _statement(statement)
+        if statements and not ir.goes_on(tuple(statements[-1:])):
             break
-    return tuple(made)
+    return tuple(statements)
 
 
 def _task(task: ir.Task) -> ir.Task:

@@ -78,7 +78,7 @@ class _Reader:
         self._next = 0
         self._kit = kit
         self._sensors = frozenset(device.name for device in in_program(source.text, kit).readings)
-        self._defs = {each.name for each in parsed.program.body if isinstance(each, Def)}
+        self._defs = {item.name for item in parsed.program.body if isinstance(item, Def)}
         self._grey = grey
 
     def form(self) -> Form:
@@ -213,9 +213,9 @@ class _Reader:
         if first == len(body):
             return []
         texts = "\n".join(block.word[1:].strip() for block in body[first:]).split("\n\n")
-        found = [_stack(text, self._kit) for text in texts if text.strip()]
-        stacks = [stack for stack in found if stack is not None]
-        if len(stacks) != len(found):
+        matches = [_stack(text, self._kit) for text in texts if text.strip()]
+        stacks = [stack for stack in matches if stack is not None]
+        if len(stacks) != len(matches):
             return []
         del body[first:]
         return stacks

@@ -275,11 +275,11 @@ class Classroom:
 
     def _works(self, address: str | None = None) -> int:
         """Return how many works the class has, of an address or in all."""
-        return sum(address is None or each.address == address for each in self._all_work())
+        return sum(address is None or item.address == address for item in self._all_work())
 
     def _names(self) -> list[str]:
         """Return the names of all who have a token."""
-        return [each.name for each in self._all_work() if each.token]
+        return [item.name for item in self._all_work() if item.token]
 
     def _all_work(self) -> list[Kept | Pupil]:
         return [*self._kept.values(), *self._pupils.values()]
@@ -292,14 +292,14 @@ class Classroom:
             self._forget(min(silent, key=lambda pupil: pupil.heard_s))
         return bool(silent)
 
-    def _forget(self, gone: Pupil) -> None:
+    def _forget(self, pupil: Pupil) -> None:
         """A pupil is here no more; the work stays, for who comes back."""
-        del self._pupils[gone.token]
-        if gone.work.text:
-            self._keep(Kept(gone.name, gone.written, gone.work, gone.token, gone.address))
-        for each in self._kept.values():
-            if each.given_to == gone.token:
-                each.given_to = ""
+        del self._pupils[pupil.token]
+        if pupil.work.text:
+            self._keep(Kept(pupil.name, pupil.written, pupil.work, pupil.token, pupil.address))
+        for item in self._kept.values():
+            if item.given_to == pupil.token:
+                item.given_to = ""
 
     def _keep(self, kept: Kept) -> None:
         self._kept[kept.key] = kept
@@ -324,7 +324,7 @@ class Classroom:
         place = -1 if turn is None else 0
         if pupil in waiting:
             place = waiting.index(pupil) + 1
-        given = next((each for each in self._kept.values() if each.given_to == pupil.token), None)
+        given = next((item for item in self._kept.values() if item.given_to == pupil.token), None)
         return {
             "name": pupil.name,
             "place": place,
@@ -354,9 +354,9 @@ class Classroom:
 
     def _hear_taken(self, pupil: Pupil, took: object) -> None:
         """A page says that it has what it was given: the very text proves it."""
-        found = took if isinstance(took, dict) else {}
-        kept = self._kept.get(str(found.get("key")))
-        if kept is None or kept.given_to != pupil.token or found.get("text") != kept.work.text:
+        result = took if isinstance(took, dict) else {}
+        kept = self._kept.get(str(result.get("key")))
+        if kept is None or kept.given_to != pupil.token or result.get("text") != kept.work.text:
             return
         del self._kept[kept.key]
         lessons = dict.fromkeys((*kept.work.lessons, *pupil.work.lessons))
@@ -376,7 +376,7 @@ class Classroom:
 
     def _drive(self, pupil: Pupil, request: Json) -> Json:
         asked = request.get("asked", [])
-        if not isinstance(asked, list) or not all(_is_allowed(each) for each in asked):
+        if not isinstance(asked, list) or not all(_is_allowed(item) for item in asked):
             raise BadRequest
         return self._hosting.answer(_own_request(pupil, request))
 
@@ -505,8 +505,8 @@ class Classroom:
     def work(self) -> list[Json]:
         """Return the work of all pupils, of those who are not here, too."""
         with self._lock:
-            found = [(each.name, each.work) for each in self._all_work() if each.work.text]
-        return [{"name": name, **work._asdict()} for name, work in found]
+            matches = [(item.name, item.work) for item in self._all_work() if item.work.text]
+        return [{"name": name, **work._asdict()} for name, work in matches]
 
     def _restore_work(self, request: Json) -> None:
         """Keep work that comes from a file, once. Raises BadRequest."""
@@ -514,7 +514,7 @@ class Classroom:
         plain = plain_name(name) if isinstance(name, str) else ""
         if not plain or work is None:
             raise BadRequest
-        if any((each.name, each.work) == (plain, work) for each in self._kept.values()):
+        if any((item.name, item.work) == (plain, work) for item in self._kept.values()):
             return
         if self._works() >= MOST_WORKS:
             raise BadRequest
@@ -547,15 +547,15 @@ class Classroom:
                 "robots": [robot.port for robot in self._robots],
                 "kept": [
                     {
-                        "name": each.name,
-                        "written": each.written,
-                        "token": each.token,
-                        "address": each.address,
-                        "given_to": each.given_to,
-                        "key": each.key,
-                        **each.work._asdict(),
+                        "name": item.name,
+                        "written": item.written,
+                        "token": item.token,
+                        "address": item.address,
+                        "given_to": item.given_to,
+                        "key": item.key,
+                        **item.work._asdict(),
                     }
-                    for each in self._kept.values()
+                    for item in self._kept.values()
                 ],
                 "pupils": [
                     {
@@ -575,14 +575,14 @@ class Classroom:
         with self._lock:
             now_s = self._clock()
             for row in _rows(kept, "pupils")[:MOST_PUPILS]:
-                found = _work_of_row(row, Work.of(row) or NOTHING)
-                if found is not None and found.token and found.address:
-                    self._begin(found, found.address, now_s)
+                result = _work_of_row(row, Work.of(row) or NOTHING)
+                if result is not None and result.token and result.address:
+                    self._begin(result, result.address, now_s)
             for row in _rows(kept, "kept"):
-                found = _work_of_row(row, Work.of(row))
-                if found is not None and self._works() < MOST_WORKS:
-                    found.given_to = found.given_to if found.given_to in self._pupils else ""
-                    self._keep(found)
+                result = _work_of_row(row, Work.of(row))
+                if result is not None and self._works() < MOST_WORKS:
+                    result.given_to = result.given_to if result.given_to in self._pupils else ""
+                    self._keep(result)
             self._goes_on = bool(self._pupils or self._kept)
             if not is_same_lesson:
                 for pupil in list(self._pupils.values()):
@@ -640,17 +640,17 @@ class Classroom:
             "lessons": len(catalogue.folders()),
             "kept": [
                 {
-                    "key": each.key,
-                    "name": each.name,
-                    "lessons": each.work.lessons,
-                    "given": self._number(each.given_to),
+                    "key": item.key,
+                    "name": item.name,
+                    "lessons": item.work.lessons,
+                    "given": self._number(item.given_to),
                     "alike": [
                         pupil.number
                         for pupil in self._pupils.values()
-                        if are_alike(pupil.written, each.written)
+                        if are_alike(pupil.written, item.written)
                     ],
                 }
-                for each in self._kept.values()
+                for item in self._kept.values()
             ],
             "pupils": [
                 {
@@ -705,8 +705,8 @@ def _requested_robot(request: Json) -> ClassRobot:
 
 
 def _rows(kept: Json, name: str) -> list[Json]:
-    found = kept.get(name)
-    return [each for each in found if isinstance(each, dict)] if isinstance(found, list) else []
+    result = kept.get(name)
+    return [item for item in result if isinstance(item, dict)] if isinstance(result, list) else []
 
 
 def _work_of_row(row: Json, work: Work | None) -> Kept | None:
@@ -715,13 +715,13 @@ def _work_of_row(row: Json, work: Work | None) -> Kept | None:
     plain = plain_name(name) if isinstance(name, str) else ""
     if work is None or not plain:
         return None
-    found = Kept(plain, plain, work)
+    result = Kept(plain, plain, work)
     written, address = row.get("written"), row.get("address")
-    found.written = (plain_name(written) if isinstance(written, str) else "") or plain
-    found.address = address if isinstance(address, str) else ""
-    found.token, found.given_to = _token_of_row(row, "token"), _token_of_row(row, "given_to")
-    found.key = _token_of_row(row, "key") or found.key
-    return found
+    result.written = (plain_name(written) if isinstance(written, str) else "") or plain
+    result.address = address if isinstance(address, str) else ""
+    result.token, result.given_to = _token_of_row(row, "token"), _token_of_row(row, "given_to")
+    result.key = _token_of_row(row, "key") or result.key
+    return result
 
 
 def _token_of_row(row: Json, name: str) -> str:
@@ -735,4 +735,4 @@ def _new_code() -> str:
 def _name_of(port: str) -> str:
     """Return the name of the robot that was there last, or nothing."""
     same = same_for_all(port)
-    return next((str(each["name"]) for each in listed() if same_for_all(each["port"]) == same), "")
+    return next((str(item["name"]) for item in listed() if same_for_all(item["port"]) == same), "")

@@ -107,7 +107,7 @@ class Hosting:
                 own.attending.connect_again()  # the answer was lost, or it comes late
                 return {}
             before = self._robots_at(port)
-            rivals = [each for each in {*before, *([own] if own else ())} if _is_driving(each)]
+            rivals = [item for item in {*before, *([own] if own else ())} if _is_driving(item)]
             if not all(rival.tab == tab or rival.attending.is_half_made for rival in rivals):
                 return {"failure": "other_tab"}
             for rival in rivals:  # nobody knows of it any more
@@ -161,8 +161,8 @@ def listed() -> list[Json]:
     `name` is that of the robot that had answered there, `virtual` the profile of a virtual robot.
     """
     known = known_ports.known()
-    virtual = {each.address: each for each in directory.for_all()}
-    about = {each.port: each.description for each in ports.listed()}
+    virtual = {item.address: item for item in directory.for_all()}
+    about = {item.port: item.description for item in ports.listed()}
     names = [*about, *(port for port in virtual if port not in about)]
     names += [port for port in known.names
               if port not in names and is_there(port) and not directory.is_gone(port)]  # fmt: skip
@@ -197,10 +197,10 @@ def port_of(request: Json) -> str:
 
 
 def _text(request: Json, name: str, most: int) -> str:
-    found = request.get(name)
-    if not isinstance(found, str) or not 1 <= len(found) <= most or not found.isprintable():
+    result = request.get(name)
+    if not isinstance(result, str) or not 1 <= len(result) <= most or not result.isprintable():
         raise BadRequest
-    return found
+    return result
 
 
 def _requests(request: Json) -> list[Json]:

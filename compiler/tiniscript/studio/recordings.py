@@ -75,8 +75,8 @@ class Row(NamedTuple):
     @property
     def pressed(self) -> Pressed | None:
         """What somebody holds from then on, if that is what the row says."""
-        found = _KEYS.fullmatch(self.event)
-        return Pressed(*map(int, found.groups())) if found else None
+        match = _KEYS.fullmatch(self.event)
+        return Pressed(*map(int, match.groups())) if match else None
 
 
 class Recording(NamedTuple):
@@ -172,22 +172,22 @@ def read(data: bytes) -> Recording:
         raise BadRecording("older")
     if HEAD in fields and fields[HEAD] != VERSION:
         raise BadRecording("other_version" if type(fields[HEAD]) is int else "unreadable")
-    found = _parse_header(fields)
+    result = _parse_header(fields)
     rows: list[Row] = []
     for number, each in enumerate(lines[1:], 2):
         if rows and rows[-1].event == END:
             raise BadRecording("unreadable", number)
-        row = _row(each, number, found.of)
+        row = _row(each, number, result.of)
         if row.ms < (rows[-1].ms if rows else 0):
             raise BadRecording("unreadable", number)
         if row.ms > MOST_MS:
             raise BadRecording("too_long", number)
-        if rows and not found.is_virtual and rows[-1].event in CUT and row.event != END:
+        if rows and not result.is_virtual and rows[-1].event in CUT and row.event != END:
             raise BadRecording("unreadable", number)
         rows.append(row)
     if not rows or rows[-1].event != END:
         raise BadRecording("cut", len(lines))
-    return found._replace(rows=tuple(rows[:-1]), end_ms=rows[-1].ms)
+    return result._replace(rows=tuple(rows[:-1]), end_ms=rows[-1].ms)
 
 
 def _parse_header(fields: dict[str, Any]) -> Recording:
@@ -243,16 +243,18 @@ def kept(world: World) -> tuple[World, str | Form]:
 def _parse_readings(found: object, robot: Robot) -> dict[int, list[int]]:
     """Return the readings that single sensors gave one after the other."""
     numbers = {device.name: k for k, device in enumerate(robot.kit.readings) if device.name}
-    told: dict[int, list[int]] = {}
+    result: dict[int, list[int]] = {}
     for name, values in found.items() if isinstance(found, dict) else ():
         number = numbers.get(name)
         if number is None or not isinstance(values, list) or not 0 < len(values) <= MOST_READINGS:
             raise BadRecording("unreadable")
         device = robot.kit.readings[number]
-        if any(type(each) is not int or not device.low <= each <= device.high for each in values):
+        if any(
+            type(value) is not int or not device.low <= value <= device.high for value in values
+        ):
             raise BadRecording("unreadable")
-        told[number] = values
-    return told
+        result[number] = values
+    return result
 
 
 def _row(written_row: str, number: int, of: str) -> Row:
@@ -279,12 +281,12 @@ def _decode_text(data: bytes) -> str:
 
 def _parsed(written_line: str, number: int, kind: type) -> Any:
     try:
-        found = json.loads(written_line)
+        result = json.loads(written_line)
     except (ValueError, RecursionError):
-        found = None
-    if not isinstance(found, kind):
+        result = None
+    if not isinstance(result, kind):
         raise BadRecording("unreadable", number)
-    return found
+    return result
 
 
 def _is(form: re.Pattern[str], found: object) -> bool:

@@ -91,7 +91,7 @@ class RobotLink:
 
     @property
     def has_run(self) -> bool:
-        return self._run is not None or any(each.pending.starts for each in self._asked)
+        return self._run is not None or any(item.pending.starts for item in self._asked)
 
     def ask(self, request: Json) -> None:
         """Begin a request; its answer is among the news, with its `id`.
@@ -105,7 +105,7 @@ class RobotLink:
             return
         if not isinstance(do, str) or do not in _MAKERS:
             raise BadRequest
-        if do != "keys" and sum(not each.is_keys for each in self._asked) >= MOST_WAITING:
+        if do != "keys" and sum(not item.is_keys for item in self._asked) >= MOST_WAITING:
             raise BadRequest
         make = _MAKERS[do](request)
         limit_ms = whole(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
@@ -144,14 +144,14 @@ class RobotLink:
         return found
 
     def _outcomes(self) -> list[Json]:
-        over = [each for each in self._asked if each.pending.outcome is not None]
-        self._asked = [each for each in self._asked if each.pending.outcome is None]
-        for each in over:
-            reply = each.pending.outcome
+        over = [item for item in self._asked if item.pending.outcome is not None]
+        self._asked = [item for item in self._asked if item.pending.outcome is None]
+        for item in over:
+            reply = item.pending.outcome
             if reply and reply.status == OK and isinstance(reply.values, ReceiptReply):
-                if each.is_program:
+                if item.is_program:
                     self._program_run = self._known_run(reply.values.run)
-        return [{"id": each.number, **self._answer(each.pending)} for each in over]
+        return [{"id": item.number, **self._answer(item.pending)} for item in over]
 
     def _follow(self, event: Event) -> None:
         """Find the end of the page's run. An end may come before the answer that names the run;
@@ -282,17 +282,17 @@ def _name(request: Json) -> _Make:
 
 
 def _trim(request: Json) -> _Make:
-    found = request.get("trim")
-    if found is None:
+    result = request.get("trim")
+    if result is None:
         return lambda session: session.trim()
-    if not isinstance(found, dict):
+    if not isinstance(result, dict):
         raise BadRequest
     trim = Trim(  # without a pace: the robot leaves what it has
-        found.get("is_exchanged") is True,
-        found.get("is_left_reversed") is True,
-        found.get("is_right_reversed") is True,
-        whole(found, "balance", -MOST_BALANCE, MOST_BALANCE),
-        whole(found, "least", 0, MOST_LEAST),
+        result.get("is_exchanged") is True,
+        result.get("is_left_reversed") is True,
+        result.get("is_right_reversed") is True,
+        whole(result, "balance", -MOST_BALANCE, MOST_BALANCE),
+        whole(result, "least", 0, MOST_LEAST),
     )
     return lambda session: session.trim(trim.data())
 

@@ -147,9 +147,9 @@ class Simulation:
     def _let_in(self) -> None:
         """What somebody has done meanwhile reaches the robot now."""
         done, self._done = self._done, []
-        for each in done:
-            self._replay_event(each)
-            self._note(each)
+        for item in done:
+            self._replay_event(item)
+            self._note(item)
 
     def _replay_event(self, done: str) -> None:
         if done == DOWN:

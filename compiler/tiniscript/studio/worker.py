@@ -30,22 +30,22 @@ def answer(request: str, data: bytes = b"") -> str:
 
 
 def _check(fields: Answer, data: bytes) -> Answer:
-    found = checking.check(data, fields["robot"], fields["language"])
+    result = checking.check(data, fields["robot"], fields["language"])
     return {
-        "image": found.image.hex(),
-        "program": f"{checksum(found.image):08x}" if found.image else "",
-        "bytes": found.code_bytes,
+        "image": result.image.hex(),
+        "program": f"{checksum(result.image):08x}" if result.image else "",
+        "bytes": result.code_bytes,
         "findings": [
             {**finding.message._asdict(), "may_repair": finding.may_repair}
-            for finding in found.findings
+            for finding in result.findings
         ],
-        "places": found.places,
-        "shows": [[offset, *show] for offset, show in found.shows],
-        "variables": [variable._asdict() for variable in found.variables],
-        "start": found.start,
-        "robot": found.robot,
-        "names_robot": found.names_robot,
-        "remote": found.remote,
+        "places": result.places,
+        "shows": [[offset, *show] for offset, show in result.shows],
+        "variables": [variable._asdict() for variable in result.variables],
+        "start": result.start,
+        "robot": result.robot,
+        "names_robot": result.names_robot,
+        "remote": result.remote,
         "loose": _loose(fields, data) if LOOSE.encode() in data else 0,
     }
 

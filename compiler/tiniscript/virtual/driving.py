@@ -76,15 +76,15 @@ class Hull:
     def outline(self, pose: Pose, corners: int = 24) -> list[Point]:
         """Return points around the robot, for a picture."""
         back, front = self.spine(pose)
-        found = []
+        points = []
         for k in range(corners):
             middle = front if k < corners // 2 else back
             angle = math.radians(pose.heading - 90) + math.pi * (
                 k / (corners // 2 - 1) if k < corners // 2 else (k - 1) / (corners // 2 - 1)
             )
             x, y = self.radius_cm * math.cos(angle), self.radius_cm * math.sin(angle)
-            found.append(Point(middle.x + x, middle.y + y))
-        return found
+            points.append(Point(middle.x + x, middle.y + y))
+        return points
 
 
 class Drive(NamedTuple):
@@ -198,8 +198,8 @@ class Driving:
                 free_cm -= speed * step_ms
                 is_known = False
             else:
-                wanted = moved(self.body, pose, *self._pushed_wheel_speeds(pose), step_ms)
-                pushed, free_cm = self._slide_along(pose, wanted)
+                expected = moved(self.body, pose, *self._pushed_wheel_speeds(pose), step_ms)
+                pushed, free_cm = self._slide_along(pose, expected)
                 way.append(pushed)
                 is_known = True
             pose = way[-1]

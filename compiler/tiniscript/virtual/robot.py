@@ -303,14 +303,14 @@ class VirtualRobot:
         self._advance_to(now_ms)
         if self.is_at_rest:
             return
-        made = []
+        items = []
         for power, percent in zip((left, right), self.settings.motors, strict=True):
             off = self.chance.gauss(0.0, self.settings.noise) if self.settings.noise else 0.0
-            made.append(power * percent / 100 * (1 + off))
+            items.append(power * percent / 100 * (1 + off))
         if self.wheels:
-            self.wheels.set(self.now_ms, *made)
+            self.wheels.set(self.now_ms, *items)
         else:
-            self.driving.set_motors(self.now_ms, *made)
+            self.driving.set_motors(self.now_ms, *items)
 
     def _halt(self, said: str) -> None:
         """Its motors have no power from now on, and a program that runs has ended, as is `said`.
@@ -348,14 +348,14 @@ class VirtualRobot:
     @property
     def at(self) -> int | None:
         """Return where the instruction that runs begins, or None while no program runs."""
-        found = self._firmware.call("at") % (1 << 32)
-        return None if found == NOWHERE else found
+        result = self._firmware.call("at") % (1 << 32)
+        return None if result == NOWHERE else result
 
     @property
     def places(self) -> list[int]:
         """Return the offsets of what the program does now, one for each of its tasks."""
-        found = self._firmware.tasks()
-        return found or ([] if self.at is None else [self.at])
+        result = self._firmware.tasks()
+        return result or ([] if self.at is None else [self.at])
 
     @property
     def watched(self) -> Firmware:

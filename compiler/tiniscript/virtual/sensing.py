@@ -57,9 +57,9 @@ class Sensing:
 
     def read(self, number: int, pose: Pose, remote: int = 0) -> int:
         """Return the reading of a sensor at `pose`, or what a remote control says there."""
-        told = self._told.get(number)
-        if told:
-            return told.pop(0) if len(told) > 1 else told[0]
+        message = self._told.get(number)
+        if message:
+            return message.pop(0) if len(message) > 1 else message[0]
         if number >= len(self.robot.kit.sensors):
             return remote
         return self._sense(number, pose, self.noise)
@@ -70,8 +70,8 @@ class Sensing:
 
     def look(self, number: int, pose: Pose) -> int:
         """Return the reading without noise. This does not change later readings."""
-        told = self._told.get(number)
-        return told[0] if told else self._sense(number, pose, 0.0)
+        message = self._told.get(number)
+        return message[0] if message else self._sense(number, pose, 0.0)
 
     def _sense(self, number: int, pose: Pose, noise: float) -> int:
         device = self.robot.kit.sensors[number]

@@ -322,16 +322,16 @@ class BadLine:
             elif kind == 1:
                 self._late.append((due_ms, byte ^ 1 << self._chance.randrange(8)))
             elif kind == 2:
-                self._late.extend((due_ms, each) for each in (*RADIO_TEXT, byte))
+                self._late.extend((due_ms, item) for item in (*RADIO_TEXT, byte))
             else:
                 self._late.append((due_ms + self._chance.randrange(LATEST_MS), byte))
 
     def take(self, now_ms: int) -> bytes:
         """Return the bytes that have arrived."""
-        found = bytearray()
+        result = bytearray()
         while self._late and self._late[0][0] <= now_ms:
-            found.append(self._late.popleft()[1])
-        return bytes(found)
+            result.append(self._late.popleft()[1])
+        return bytes(result)
 
     @property
     def waiting(self) -> int:

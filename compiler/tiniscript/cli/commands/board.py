@@ -49,5 +49,5 @@ def _relative_to_cwd(folder: Path) -> Path:
 
 def _name(path: Path) -> str:
     """Return a path quoted for a command."""
-    found = inputs.shown(str(path))
-    return f'"{found}"' if " " in found else found
+    result = inputs.shown(str(path))
+    return f'"{result}"' if " " in result else result

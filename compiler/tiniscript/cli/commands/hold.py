@@ -46,9 +46,9 @@ class _Log:
         """Print events until the port is gone."""
         self._say("LINKED", "linked", robot=self.connection.name, port=shown(self.connection.port))
         while True:
-            found = self.connection.event()
-            if found is not None:
-                self._print_event(*found)
+            result = self.connection.event()
+            if result is not None:
+                self._print_event(*result)
             if self.search is not None and self.search.outcome is not None:
                 self._look_again()
 

@@ -17,8 +17,8 @@ def run(options: Namespace, language: str) -> int:
         return together(options, robot, language, _identify_member)
     with Connection(options, robot, language) as connection:
         connection.meet()
-        said = _identified(connection)
-        print(json.dumps(_fields(connection)) if options.json else said)
+        text = _identified(connection)
+        print(json.dumps(_fields(connection)) if options.json else text)
     return 0
 
 

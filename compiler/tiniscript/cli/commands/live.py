@@ -65,8 +65,8 @@ def _is_runnable(line: str, known: Known, robot: Robot, options: Namespace) -> b
     if options.robot is None:
         compiled = naming(known.line(line, 0).compiled, robot, is_chosen=True)
         if is_other_robots(compiled.diagnostics):
-            found = own_kit.of_answering(options, robot, language)
-            if found is not None:
+            result = own_kit.of_answering(options, robot, language)
+            if result is not None:
                 return True  # it is compiled again for that robot
     return _compiled(line, known, robot, language, True, SHORT_BYTES, warns=False) is not None
 
@@ -82,18 +82,18 @@ def _compiled(
     """
     if header(line) == "SB":
         raise CommandError(1, "live_button")
-    found = known.line(line, 0 if is_last else room)
-    if warns or not found.compiled.is_right:
-        outputs.print_diagnostics(naming(found.compiled, robot, is_chosen=True), language)
-    if not found.compiled.is_right:
+    result = known.line(line, 0 if is_last else room)
+    if warns or not result.compiled.is_right:
+        outputs.print_diagnostics(naming(result.compiled, robot, is_chosen=True), language)
+    if not result.compiled.is_right:
         return None
-    assert found.compiled.verdict is not None
-    if lacks := lacking(found.compiled.verdict.needs, robot):
+    assert result.compiled.verdict is not None
+    if lacks := lacking(result.compiled.verdict.needs, robot):
         raise CommandError(1, lacks, robot=robot.name, file="prog.ts")
-    code = len(found.compiled.code)
+    code = len(result.compiled.code)
     if code > room:
         raise CommandError(1, "live_too_long", code=str(code), room=str(room))
-    return found
+    return result
 
 
 class Repl:
@@ -118,21 +118,21 @@ class Repl:
             return introduced(self.connection, is_json=False)
         robot = self.connection.profile
         room = short_bytes(self.connection.device_info)  # less where frames are sealed
-        found = _compiled(line, self.known, robot, self.language, is_last, room)
-        if found is None:
+        result = _compiled(line, self.known, robot, self.language, is_last, room)
+        if result is None:
             return 1
-        if lacks_remote(found.compiled.code, self.known.kit, self.connection.device_info):
+        if lacks_remote(result.compiled.code, self.known.kit, self.connection.device_info):
             raise self.connection.failure(Reply(STATUSES["NO_REMOTE"]))
         try:
-            code = 0 if found.does_nothing else self._run(found, is_last)
+            code = 0 if result.does_nothing else self._run(result, is_last)
         except KeyboardInterrupt:
             return stop_and_say(self.connection)
-        if not code and found.forgets and not is_last:
+        if not code and result.forgets and not is_last:
             say_aside("live_forgets", self.language)
-        if not code and found.defs:
-            self.known.defs.update(found.defs)
-            if found.does_nothing:
-                names = ", ".join(found.defs)
+        if not code and result.defs:
+            self.known.defs.update(result.defs)
+            if result.does_nothing:
+                names = ", ".join(result.defs)
                 say("live_known", self.language, names=names)
         return code
 
@@ -151,15 +151,15 @@ class Repl:
             line = f"{line}\n{following}"
         return line
 
-    def _run(self, found: Line, is_last: bool) -> int:
-        compiled = found.compiled
+    def _run(self, line: Line, is_last: bool) -> int:
+        compiled = line.compiled
         places = source_map.made(compiled)
         source_map.remember(compiled.image, places)  # tsc doctor names a fault's line later
-        kit = kit_of(found.compiled, self.connection.profile)
-        reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
+        kit = kit_of(line.compiled, self.connection.profile)
+        reply = self.connection.ask(lambda session: session.live(line.compiled.code, kit))
         program = reply.values.program
-        printer = printer_of(self.connection, False, places, program, found.whole)
-        catch = Catch(found.shown, self.known, printer, is_last)
+        printer = printer_of(self.connection, False, places, program, line.whole)
+        catch = Catch(line.shown, self.known, printer, is_last)
         simulator = self.connection.simulator
         if simulator is not None:
             simulator.watch()

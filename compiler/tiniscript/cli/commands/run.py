@@ -60,8 +60,8 @@ def run(options: Namespace, language: str) -> int:
         say_aside("read_nothing", language, **values)
     if ending.what != "FAULT":
         return 0
-    said = fault_text(ending.fault, ending.offset, ready.places, given.is_image, language)
-    print(said, file=sys.stderr)
+    text = fault_text(ending.fault, ending.offset, ready.places, given.is_image, language)
+    print(text, file=sys.stderr)
     return 1
 
 

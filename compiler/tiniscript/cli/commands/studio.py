@@ -128,9 +128,9 @@ def _address() -> str:
 def _address_option(address: str) -> str:
     """Return the address of --address, which has no other form: Host must be exactly this."""
     try:
-        found = IPv4Address(address)
+        result = IPv4Address(address)
     except ValueError:
-        found = IPv4Address(0)
-    if found.is_unspecified or found.is_multicast:
+        result = IPv4Address(0)
+    if result.is_unspecified or result.is_multicast:
         raise CommandError(2, "studio_bad_address", found=shown(address))
-    return str(found)
+    return str(result)

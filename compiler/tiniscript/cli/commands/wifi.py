@@ -38,7 +38,7 @@ def run(options: Namespace, language: str) -> int:
     if is_about_broker and (is_about_network or (options.broker is not None and options.no_broker)):
         raise CommandError(2, "wifi_one_way")
     of_broker = (options.user, options.group, options.trust, options.tls or None)
-    if options.broker is None and any(each is not None for each in of_broker):
+    if options.broker is None and any(item is not None for item in of_broker):
         raise CommandError(2, "broker_no_user")
     broker = robot_broker.settings(options, language) if options.broker is not None else None
     name = None if options.network is None else _name_bytes(options.network)

@@ -40,7 +40,7 @@ def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, .
     if len(set(lines)) > MOST_BREAKPOINTS:
         raise CommandError(2, "break_most", most=str(MOST_BREAKPOINTS))
     statements = begins(ready.image.code)
-    found = []
+    matches = []
     for line in lines:
         places = [
             _first_statement(place, statements)
@@ -49,8 +49,8 @@ def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, .
         ]
         if not places:
             raise CommandError(1, "break_nowhere", line=str(line))
-        found.append(min(places))
-    return tuple(sorted(set(found)))
+        matches.append(min(places))
+    return tuple(sorted(set(matches)))
 
 
 def _first_statement(place: MapLocation, statements: Sequence[int]) -> int:
@@ -120,18 +120,18 @@ class Debugger:
         tasks = self._tasks(task)
         line = 0 if place is None else place.line
         what = "" if place is None else self.map.line(line)[place.column - 1 :].split(";")[0]
-        said = [text("halted", language).format(line=line, what=what.strip())]
+        texts = [text("halted", language).format(line=line, what=what.strip())]
         values = ", ".join(
             f"{name} = {value_text(value, is_yes_no)}" for name, value, is_yes_no in variables
         )
-        said += [f"  {values}"] * bool(values)
+        texts += [f"  {values}"] * bool(values)
         for state, where in tasks:
             key = f"halted_task_{TASK_STATES[state][0]}"
-            said.append("  " + text(key, language).format(line=where))
+            texts.append("  " + text(key, language).format(line=where))
         if self.has_keys:
-            said.append(text("halted_keys", language))
+            texts.append(text("halted_keys", language))
         self.printer.say(
-            0, "HALTED", str(line), "\n".join(said), line=line, at=at,
+            0, "HALTED", str(line), "\n".join(texts), line=line, at=at,
             variables={name: value_of(value, is_yes_no) for name, value, is_yes_no in variables},
             tasks=[{"state": TASK_STATES[state][0], "line": where} for state, where in tasks],
         )  # fmt: skip
@@ -152,9 +152,9 @@ class Debugger:
     def _tasks(self, halted: int) -> list[tuple[int, int]]:
         """Return state and line of each task beside the one that is halted, and has not ended."""
         reply = self.connection.ask(lambda session: session.read_tasks())
-        found = []
+        result = []
         for number, (state, at, _) in enumerate(iter_unpack("<BHI", reply.values.tasks)):
             place = self.map.at(at)
             if number != halted and state and place is not None:
-                found.append((state, place.line))
-        return found
+                result.append((state, place.line))
+        return result

@@ -120,8 +120,8 @@ class EventPrinter:
         if show is None:
             self.say(since_ms, "SHOW", what, value=value_of(*value))
             return
-        said = f"{self._name_with_place(show, str(show.line))} {what}"
-        self.say(since_ms, "SHOW", what, said, self.name_of(event), value=value_of(*value),
+        text = f"{self._name_with_place(show, str(show.line))} {what}"
+        self.say(since_ms, "SHOW", what, text, self.name_of(event), value=value_of(*value),
                  name=show.text, line=show.line, column=show.column)  # fmt: skip
 
     def _tell_fault(self, since_ms: int, number: int, at: int, program: int) -> None:

@@ -123,10 +123,10 @@ def _assigned(compiled: Compiled, start: int) -> tuple[str, ...]:
     program = compiled.program
     assert program is not None
     numbers = {
-        each.variable
+        item.variable
         for body in (program.body, *(procedure.body for procedure in program.procedures))
-        for each in walk(body)
-        if isinstance(each, Assign) and each.span.start >= start
+        for item in walk(body)
+        if isinstance(item, Assign) and item.span.start >= start
     }
     return tuple(program.variables[number] for number in sorted(numbers))
 

@@ -81,10 +81,10 @@ class SelfTest(Conversation):
 
     def _examine(self) -> Robot | None:
         """Let the doctor examine it; return the robot that it is, where this computer knows it."""
-        wanted = self.connection.profile
+        expected = self.connection.profile
         kit = self.connection.device_info.kit
         causes, self.heard = examination_of(self.connection, self.expected)
-        known = wanted if kit == wanted.kit.fingerprint else of_kit(kit)
+        known = expected if kit == expected.kit.fingerprint else of_kit(kit)
         good = self._passed_parts(known.name if known is not None else "")
         for part in PARTS:
             self.found += [cause for cause in causes if cause.part == part] or good.get(part, [])

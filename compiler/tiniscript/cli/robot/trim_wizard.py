@@ -103,10 +103,10 @@ class TrimWizard(Conversation):
             seen.append(self.turned(side))
             if not seen[-1].wheel:
                 raise self._failure(sure("still")._replace(of=side))
-        found = as_seen(Trim(), *seen)
-        if found is None:
+        trim = as_seen(Trim(), *seen)
+        if trim is None:
             raise self._failure(sure("same_wheel"))
-        return found
+        return trim
 
     def _least(self) -> int:
         """Return the smallest power that moves both wheels, or 0 if the smallest step does."""
@@ -119,11 +119,11 @@ class TrimWizard(Conversation):
     def _measured(self, move: str, seconds: int, question: str) -> list[float]:
         """Return how much it went, or turned, in a second at each power."""
         while True:
-            found = [
+            result = [
                 self._measure_move(move, power, seconds, question) / seconds for power in POWERS
             ]
-            if found[0] < found[1]:
-                return found
+            if result[0] < result[1]:
+                return result
             say_aside("trim_not_faster_again", self.language)
 
     def _measure_move(self, move: str, power: int, seconds: int, question: str) -> float:
@@ -162,9 +162,9 @@ class TrimWizard(Conversation):
             self._set(trim)
 
     def _failure(self, finding: Finding) -> CommandError:
-        found = said(finding, self.language)
+        result = said(finding, self.language)
         part = label(finding, self.language)
-        return CommandError(3, "trim_found", part=part, found=found.what, then=found.then)
+        return CommandError(3, "trim_found", part=part, found=result.what, then=result.then)
 
     def _set(self, trim: Trim) -> None:
         self.connection.ask(lambda session: session.trim(trim.data()), TAKEN)  # kept at the end
@@ -172,10 +172,10 @@ class TrimWizard(Conversation):
 
 def measured(answer: str, is_turn: bool) -> float | None:
     """Return the centimetres or degrees that a person wrote, with a comma or a point; else None."""
-    found = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
-    if found is None:
+    match = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
+    if match is None:
         return None
-    number, unit = float(found[1].replace(",", ".")), found[2]
+    number, unit = float(match[1].replace(",", ".")), match[2]
     if is_turn:
         return number if unit in ("", *DEGREES) else None
     if unit in INCHES:

@@ -41,13 +41,13 @@ class Frame:
         """Show these lines in place of the last ones, and print `above` over them, to stay."""
         width = self.console.size.width
         if above or width != self._width or len(lines) != len(self.lines):
-            written = self._full_picture(lines, above)
+            text = self._full_picture(lines, above)
         else:
-            written = self._changes(lines)
+            text = self._changes(lines)
         self.lines = [line.copy() for line in lines]
         self._width = width
-        if written:
-            self._write(BEGIN + written + END)
+        if text:
+            self._write(BEGIN + text + END)
 
     def _full_picture(self, lines: Sequence[Text], above: str) -> str:
         """Return what writes all of it, from the first line of the last picture on."""
@@ -135,9 +135,9 @@ class Screen:
     def flush(self) -> None:
         sys.stdout.flush()
         if self.lines:
-            said = Text("\n".join(self.lines)).plain
+            text = Text("\n".join(self.lines)).plain
             self.lines = []
-            self.frame.draw(self.frame.lines, said)
+            self.frame.draw(self.frame.lines, text)
 
     def warn(self, line: str) -> None:
         """Print a line on standard error, above the picture."""
@@ -176,14 +176,14 @@ class Screen:
             self.console.print(self.last)
         elif not self.is_still:
             sys.stdout.flush()
-            said = Text("\n".join(self.lines)).plain if self.lines else ""
+            text = Text("\n".join(self.lines)).plain if self.lines else ""
             self.lines = []
-            self.frame.draw(lines, said)
+            self.frame.draw(lines, text)
 
 
 def _is_one_terminal() -> bool:
     """Whether both streams of this command, which are terminals, are the same one."""
     if sys.platform == "win32":  # a command has one console
         return True
-    numbers = [os.fstat(each.fileno()).st_rdev for each in (sys.stdout, sys.stderr)]
+    numbers = [os.fstat(item.fileno()).st_rdev for item in (sys.stdout, sys.stderr)]
     return numbers[0] == numbers[1]

@@ -55,9 +55,9 @@ def _printable(value: object) -> object:
 
 def text(key: str, language: str) -> str:
     """Return a sentence as `Said`."""
-    said = Said(languages.text(CATALOGUE, key, language))
-    said.language = language
-    return said
+    result = Said(languages.text(CATALOGUE, key, language))
+    result.language = language
+    return result
 
 
 def say(key: str, language: str, /, **values: object) -> None:

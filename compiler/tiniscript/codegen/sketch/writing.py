@@ -350,16 +350,16 @@ class _Sketch:
         return "\n".join(pieces) + "\n" if pieces else ""
 
     def prototypes(self, codes: Iterable[str]) -> str:
-        found = [
+        matches = [
             f"{line[: line.index('{')].rstrip()};"
             for code in codes
             for line in code.splitlines()
             if re.match(r"(?!ISR|struct)[\w$]+( [\w$]+)* [\w$]+[^\w$ (]*\(.*\) \{", line)
         ]
-        if not found:
+        if not matches:
             return ""
         last = helpers.FOREVER[self.is_exact] if "FOREVER" in self.needed else ""
-        lines = [f"// {self.says('prototypes')}", *found, *([last] if last else [])]
+        lines = [f"// {self.says('prototypes')}", *matches, *([last] if last else [])]
         return "\n".join(lines) + "\n"
 
     def note(self, key: str) -> str:

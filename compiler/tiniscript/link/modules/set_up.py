@@ -99,21 +99,21 @@ def _set(wire: Wire, dialect: Dialect, step: Step) -> Outcome:
     question = {NAME: dialect.ask_name, PIN: dialect.ask_pin, BAUD: dialect.ask_baud}[step.what]
     outcome = Outcome(step, SILENT)
     for command in step.commands:
-        said = ask(wire, command, dialect.ending, dialect.wait_ms)
-        if is_ok(said):
+        text = ask(wire, command, dialect.ending, dialect.wait_ms)
+        if is_ok(text):
             if not question:
-                return Outcome(step, UNSEEN, said)
+                return Outcome(step, UNSEEN, text)
             answer = ask(wire, question, dialect.ending, dialect.wait_ms)
             now = value_of(answer)
             if not answer and not is_there(wire, dialect):
-                return Outcome(step, SILENT, said)
+                return Outcome(step, SILENT, text)
             if not now:
-                return Outcome(step, UNSEEN, said)
+                return Outcome(step, UNSEEN, text)
             if _is_same(step, dialect, answer):
                 return Outcome(step, DONE, now)
             outcome = Outcome(step, DIFFERS, now)
-        elif said and outcome.how != DIFFERS:
-            outcome = Outcome(step, REFUSED, said if is_error(said) else "")
+        elif text and outcome.how != DIFFERS:
+            outcome = Outcome(step, REFUSED, text if is_error(text) else "")
     return outcome
 
 

@@ -93,16 +93,16 @@ def _as_message(name: str, message: JsonMessage) -> tuple[object, ...]:
     """Return the fields of the link's message of that name, which such a request is given."""
     if name not in vars(Requester) or name.upper() not in BY_NAME:
         raise BadMessage
-    return tuple(_field(message, each) for each in BY_NAME[name.upper()].request)
+    return tuple(_field(message, item) for item in BY_NAME[name.upper()].request)
 
 
-def _field(message: JsonMessage, its: Field) -> int | bytes:
+def _field(message: JsonMessage, field: Field) -> int | bytes:
     """Return what a message says for a field of the link's. Raises BadMessage."""
-    if its.kind == "rest":
-        return _bytes(message, its.name, its.low, min(its.high, SEALED_PAYLOAD_BYTES))
-    bits = 8 * its.high
-    lowest = -(1 << bits - 1) if its.kind.startswith("i") else 0
-    number = protocol.number(message, its.name)
+    if field.kind == "rest":
+        return _bytes(message, field.name, field.low, min(field.high, SEALED_PAYLOAD_BYTES))
+    bits = 8 * field.high
+    lowest = -(1 << bits - 1) if field.kind.startswith("i") else 0
+    number = protocol.number(message, field.name)
     if not 0 <= number - lowest < 1 << bits:
         raise BadMessage
     return number

@@ -395,9 +395,9 @@ class Server:
         except OSError:
             self._drop(client)
             return
-        wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if client.out else 0)
+        expected = selectors.EVENT_READ | (selectors.EVENT_WRITE if client.out else 0)
         if client in self._clients:
-            self._selector.modify(client.peer, wanted, client)
+            self._selector.modify(client.peer, expected, client)
 
     def _part(self) -> None:
         """Tell all clients that the connection has ended, and why."""
@@ -412,5 +412,5 @@ class Server:
     def _close_all(self) -> None:
         for client in self._clients:
             client.peer.close()
-        for each in (self._listening, self._bell, self._wire, self._selector):
-            each.close()
+        for item in (self._listening, self._bell, self._wire, self._selector):
+            item.close()

@@ -201,14 +201,14 @@ def _connect_to(registration: Registration, verb: str) -> SharedConnection | Non
             protocol.written({"tsc": __version__, "token": registration.token, "verb": verb})
         )
         rest = protocol.MessageReader(protocol.LINE_BYTES)
-        found = _read_greeting(peer, rest)
-        if protocol.field(found[0], "answer", str) != registration.answer:
+        result = _read_greeting(peer, rest)
+        if protocol.field(result[0], "answer", str) != registration.answer:
             raise BadMessage  # another program listens there now
-        version = protocol.field(found[0], "tsc", str)
+        version = protocol.field(result[0], "tsc", str)
         if version != __version__ and verb != "stop":
             raise OtherVersion(registration, version)
         client = SharedConnection(peer, registration, rest)
-        for message in found[1:]:
+        for message in result[1:]:
             client._handle_message(message)
         return client
     except (OSError, BadMessage, OtherVersion) as failure:
@@ -228,7 +228,7 @@ def _read_greeting(peer: socket.socket, rest: protocol.MessageReader) -> list[Js
         data = peer.recv(65536)
         if not data:
             raise ConnectionError
-        found = rest.put(data)
-        if found:
-            return found
+        result = rest.put(data)
+        if result:
+            return result
     raise TimeoutError

@@ -205,13 +205,13 @@ class Broker:
                 if asked <= self._acknowledged and monotonic() > self._told_s + QUIET_S:
                     break
                 self._news.wait(READ_S)
-            found = list(self._here.pop(group).values())
+            result = list(self._here.pop(group).values())
             is_whole = asked <= self._acknowledged
             self._acknowledged -= asked
         if not is_whole:
             raise PortError(errors.UNREACHABLE, self.gone or "no answer of a broker")
         self._client.unsubscribe(topics)
-        return sorted(found, key=lambda each: (each.name.casefold(), each.id))
+        return sorted(result, key=lambda each: (each.name.casefold(), each.id))
 
     @property
     def skipped(self) -> dict[str, int]:

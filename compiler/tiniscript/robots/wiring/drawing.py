@@ -138,11 +138,11 @@ def _is_used(pin: Pin, plan: Plan) -> bool:
 
 def _marks(outlines: Iterable[tuple[bool, str]], style: str = "") -> list[str]:
     """Return the marks of pins or terminals: those that are used, and those that stay free."""
-    found = sorted(outlines, reverse=True)
+    result = sorted(outlines, reverse=True)
     return [
         f'<path d="{"".join(each for _, each in same)}" '
         f'fill="{"#ffffff" if is_used else "#cccccc"}" stroke="{LINE}"{style}/>'
-        for is_used, same in groupby(found, key=lambda each: each[0])
+        for is_used, same in groupby(result, key=lambda each: each[0])
     ]
 
 

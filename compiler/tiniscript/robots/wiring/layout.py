@@ -137,7 +137,7 @@ class _Layout:
         for part in plan.parts:
             parts[self._side_of(part)].append(part)
         tall = max(len(column) for column in columns) * STEP + BOARD_NAME
-        heights = [sum(_room(part) for part in each) for each in parts]
+        heights = [sum(_room(part) for part in item) for item in parts]
         whole = max(tall, *heights)
         self.board_top = MARGIN + STEP + _snap((whole - tall) // 2)
         self.board_height = tall
@@ -149,8 +149,8 @@ class _Layout:
         self.pin_y = {pin.number: pin.y for pin in self.pins if pin.number is not None}
         self.tops: dict[int, int] = {}  # of parts, by their place in the plan
         bottom = MARGIN + STEP + whole
-        for each in parts:
-            self._stack(each, bottom)
+        for item in parts:
+            self._stack(item, bottom)
 
     # -- the board
 
@@ -197,8 +197,8 @@ class _Layout:
         y = MARGIN + STEP
         for k, part in enumerate(ordered):
             latest = bottom - sum(_room(part) for part in ordered[k:])
-            wanted = min(self._wanted(part), latest)
-            y = max(y, _snap(int(wanted)))
+            expected = min(self._wanted(part), latest)
+            y = max(y, _snap(int(expected)))
             self.tops[id(part)] = y
             y += _room(part)
 

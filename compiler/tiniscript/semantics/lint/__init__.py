@@ -98,8 +98,8 @@ def _look_at(body: ir.Body, around: Around, look: Look) -> None:
         inner = ir.bodies(statement)
         if inner:
             inside = _inner_context(statement, around, is_last=statement is body[-1])
-            for each in inner:
-                _look_at(each, inside, look)
+            for item in inner:
+                _look_at(item, inside, look)
 
 
 def _inner_context(statement: ir.Statement, around: Around, is_last: bool) -> Around:

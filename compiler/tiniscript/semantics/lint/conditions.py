@@ -95,9 +95,9 @@ class _Conditions:
             self._look.report(codes.TURNED_ROUND, move.span, **values)
         else:
             reached = "GE" if device is TIME else _REACHED.get(move.direction, "")
-            written = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
+            text = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
             is_sure = bool(reached) and (is_ahead or device is TIME)
-            fix = self._with_condition(move, written) if is_sure else ""
+            fix = self._with_condition(move, text) if is_sure else ""
             self._report_exact(compared, move.span, "UNTIL", fix)
 
     def _report_frozen_until(
@@ -200,9 +200,9 @@ class _Conditions:
         where the number is there for nothing else.
         """
         sets = [
-            each
-            for each in self._program.body
-            if isinstance(each, ir.Assign) and each.variable == variable
+            item
+            for item in self._program.body
+            if isinstance(item, ir.Assign) and item.variable == variable
         ]
         if len(sets) != 1 or self._look.variables.set_to[variable] != [sets[0].value]:
             return False
@@ -210,9 +210,9 @@ class _Conditions:
             return False
         term = ir.Term("VARIABLE", variable)
         is_only_shown = all(
-            isinstance(each, ir.Show)
-            for each in ir.every(self._program)
-            if any(term in expression for expression in ir.expressions(each))
+            isinstance(item, ir.Show)
+            for item in ir.every(self._program)
+            if any(term in expression for expression in ir.expressions(item))
         )
         shown = {
             term for show in ir.walk(loop.body) if isinstance(show, ir.Show) for term in show.value
@@ -244,10 +244,10 @@ class _Conditions:
                 self._look.report(codes.LATE_ARM, arm.span, wide=str(before),
                              narrow=str(compared))  # fmt: skip
 
-    def _report_known(self, compared: Comparison, span: Span) -> bool:
+    def _report_known(self, comparison: Comparison, span: Span) -> bool:
         """Warn where the answer is known: `LIGHT_L > 5000`, of a sensor that goes up to 1023."""
-        device = compared.device
-        answer = answer_of(compared)
+        device = comparison.device
+        answer = answer_of(comparison)
         if answer:
             self._look.report(codes.KNOWN_ANSWER, span, sensor=device.name, low=as_text(device.low),
                          high=as_text(device.high), answer=answer)  # fmt: skip
@@ -272,8 +272,8 @@ class _Conditions:
             self._look.report(codes.KNOWN_ANSWER, span, sensor=name, low=low, high=high,
                          answer="answer_no", between=between)  # fmt: skip
 
-    def _report_exact(self, compared: Comparison, span: Span, word: str, fix: str) -> None:
-        device, op, number = compared
+    def _report_exact(self, comparison: Comparison, span: Span, word: str, fix: str) -> None:
+        device, op, number = comparison
         if op == "EQ" and is_between(device, number):
             self._look.report(codes.EXACT, span, sensor=device.name, number=as_text(number),
                          word=word, fix=fix)  # fmt: skip
@@ -299,10 +299,10 @@ class _Conditions:
             for term in condition
         )
         comes = comes_true(asking, direction, self._kit)
-        written = self._look.condition(span, word)
+        text = self._look.condition(span, word)
         if not comes and (comes is not None or direction):
             return ""
-        return re.sub(r"[A-Za-z_]\w*", lambda it: held.get(it[0].upper(), it[0]), written)
+        return re.sub(r"[A-Za-z_]\w*", lambda it: held.get(it[0].upper(), it[0]), text)
 
 
 def _runs_once(loop: ir.Loop | ir.While) -> bool:
@@ -312,14 +312,14 @@ def _runs_once(loop: ir.Loop | ir.While) -> bool:
 
 def _round_statements(loop: ir.Loop | ir.While) -> list[ir.Statement]:
     """Return the statements of a loop that no IF is around."""
-    found: list[ir.Statement] = []
+    statements: list[ir.Statement] = []
     rest: list[ir.Loop | ir.While] = [loop]
     while rest:
-        for each in rest.pop().body:
-            found.append(each)
-            if isinstance(each, (ir.Loop, ir.While)):
-                rest.append(each)
-    return found
+        for item in rest.pop().body:
+            statements.append(item)
+            if isinstance(item, (ir.Loop, ir.While)):
+                rest.append(item)
+    return statements
 
 
 def _variables(condition: ir.Expression) -> list[int]:

@@ -31,7 +31,7 @@ def report_kept_motors(look: Look) -> None:
     lower = [*(task.body for task in tasks), program.body]
     for task in tasks:
         del lower[0]
-        is_stopped = any(isinstance(each, ir.Stop) for body in higher for each in all_of(body))
+        is_stopped = any(isinstance(item, ir.Stop) for body in higher for item in all_of(body))
         if not is_stopped and motors.are_kept(task.body):
             line = str(look.source.position(task.span.start)[0])
             for body in lower:
@@ -49,8 +49,8 @@ def _take_turns(tasks: list[ir.Body], look: Look) -> None:
     if len(begin) < 2 or not tasks[0] or begin[0] is not tasks[0][0]:
         return
     first = look.source[begin[0].span]
-    for each in begin[1:]:
-        look.report(codes.NO_MOTORS, each.span, first=first, both="M(60, 30);W(4)")
+    for item in begin[1:]:
+        look.report(codes.NO_MOTORS, item.span, first=first, both="M(60, 30);W(4)")
 
 
 class _Motors:
@@ -61,7 +61,7 @@ class _Motors:
         """Whether a task surely drives for ever at its end, and never lets the motors go there."""
         rest = _endless_part(body)
         if not any(
-            isinstance(each, ir.Motors) or (_is_move(each) and _takes_time(each)) for each in rest
+            isinstance(item, ir.Motors) or (_is_move(item) and _takes_time(item)) for item in rest
         ):
             return False
         return (
@@ -71,24 +71,24 @@ class _Motors:
 
     def _wants_motors_after(self, body: ir.Body, wants: bool) -> bool | None:
         """Return whether the motors are wanted after a body, None where it may let them go."""
-        found: bool | None = wants
+        result: bool | None = wants
         for call in body:
-            if found is None or isinstance(call, ir.Break):
+            if result is None or isinstance(call, ir.Break):
                 return None
             if isinstance(call, ir.Motors):
-                found = True
+                result = True
             elif isinstance(call, ir.Stop) or _is_move(call):
-                found = False
+                result = False
             elif isinstance(call, (ir.Move, ir.Beep)):
-                found = found or None
+                result = result or None
             elif isinstance(call, ir.Call):
-                found = self._wants_motors_after(self._procedures[call.procedure].body, found)
+                result = self._wants_motors_after(self._procedures[call.procedure].body, result)
             elif isinstance(call, ir.If):
-                arms = [self._wants_motors_after(arm, found) for arm in ir.bodies(call)]
-                found = None if None in arms else all(arms)
+                arms = [self._wants_motors_after(arm, result) for arm in ir.bodies(call)]
+                result = None if None in arms else all(arms)
             elif isinstance(call, (ir.Loop, ir.While)):
-                found = self._wants_motors_in_loop(call.body, found)
-        return found
+                result = self._wants_motors_in_loop(call.body, result)
+        return result
 
     def _wants_motors_in_loop(self, body: ir.Body, wants: bool) -> bool | None:
         once = self._wants_motors_after(body, wants)
@@ -112,8 +112,8 @@ def report_brief_tasks(look: Look) -> None:
             if task.body and _is_pause(task.body[-1]) and not any(map(_repeats, done)):
                 look.found.append(_single_run_diagnostic(task, look.source))
         elif driving and known_value(task.look.condition) is None:
-            is_brief = all(isinstance(each, _TAKES_NO_TIME) for each in done)
-            if is_brief and any(isinstance(each, ir.Stop) for each in done):
+            is_brief = all(isinstance(item, _TAKES_NO_TIME) for item in done)
+            if is_brief and any(isinstance(item, ir.Stop) for item in done):
                 _report_resumed_move(task, driving[0], look)
 
 

@@ -70,8 +70,8 @@ def report_instructions_in_notes(look: Look) -> None:
             continue
         if _ends_instruction(tokens, k) and not is_ping:
             rest = "; ".join(swallowed(note.text))
-            said = rest or note.text.strip("/; \t")
-            look.report(codes.IN_A_NOTE, note.span, found=said, rest=rest)
+            text = rest or note.text.strip("/; \t")
+            look.report(codes.IN_A_NOTE, note.span, found=text, rest=rest)
 
 
 def _report_all_notes(notes: Sequence[Token], look: Look) -> None:
@@ -89,10 +89,10 @@ def swallowed(note: str) -> list[str]:
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
     first, *others = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
-    found = [other for other in others if re.fullmatch(_CALL_IN_IT, other)]
-    is_row = all(each in found or not set("()") & set(each) for each in (first, *others))
-    is_row = is_row and bool(found) and found != ["S"] * len(found)
-    return found if is_row and first else []
+    matches = [other for other in others if re.fullmatch(_CALL_IN_IT, other)]
+    is_row = all(item in matches or not set("()") & set(item) for item in (first, *others))
+    is_row = is_row and bool(matches) and matches != ["S"] * len(matches)
+    return matches if is_row and first else []
 
 
 def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
