@@ -141,7 +141,7 @@ def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> 
 
 
 def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
-    tsc("help", "bake", "a", "cake").gives(2, "found no command for “bake a cake”")
+    tsc("help", "bake", "a", "cake").gives(2, "no command matches “bake a cake”")
     assert tsc("help", "todo", "--lang", "es").out == help.everything("es")
 
 
