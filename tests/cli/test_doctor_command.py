@@ -122,7 +122,7 @@ def test_a_port_that_another_program_has_locked() -> None:
         holder.close()
         assert done.code == 3
         assert "1. Another program is using this port (sure)" in done.out
-        assert "does not tell by whom" in done.out
+        assert "does not say by whom" in done.out
         assert inside("doctor", "--port", end.port).code == 0
 
 
@@ -207,7 +207,7 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
         file.write_text(text, encoding="utf-8")
         done = tsc("doctor", "--port", "/dev/not-there", "--report", file)
         assert done.code == 2, text[:50]
-        assert "tsc has not made it" in done.err
+        assert "tsc did not write it." in done.err
         assert file.read_text(encoding="utf-8") == text
     for place in (tmp_path, tmp_path / "no" / "report.txt", Path("/dev/full")):
         tsc("doctor", "--port", "/dev/not-there", "--report", place).gives(2, "cannot be written")

@@ -47,7 +47,7 @@ def test_one_program(tsc: Tsc, folder: Path) -> None:
     tsc("lesson", "check", "1", folder / "beto.ts", "--lang", "es").gives(
         1, out="- El robot se quedó 18 cm antes del centro de la cochera. Haz que avance más."
     )
-    tsc("lesson", "check", "1", "-e", WRONG).gives(1, "TS017", out="repair the mistakes first")
+    tsc("lesson", "check", "1", "-e", WRONG).gives(1, "TS017", out="fix the mistakes first")
 
 
 def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
@@ -130,7 +130,7 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
         (["show", "a\0b"], "There is no lesson"),
         (["check", "1"], "which program?"),
         (["check", "1", "nothing.ts"], "there is no file nothing.ts"),
-        (["check", "1", "x.ts", "-e", "F(1,1)"], "one program at a time"),
+        (["check", "1", "x.ts", "-e", "F(1,1)"], "one program only"),
         (["check", "1", "-e", "F(1,1)", "--seed", "0"], "--seed takes a whole number"),
         (
             ["check", "1", "-e", "F(1,1)", "--teacher"],

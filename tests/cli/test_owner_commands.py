@@ -100,18 +100,18 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
     assert claimed(pty_robot).code == 0
     as_another(monkeypatch, tmp_path, "settings")
     for _ in range(7):  # more often than wrong keys are listened to
-        on(pty_robot, "doctor").gives(0, "claimed it again", "10 s")
+        on(pty_robot, "doctor").gives(0, "claimed the robot again.", "10 s")
     assert "lo hizo suyo" in on(pty_robot, "doctor", "--identify", "--lang", "es").err
     assert [key.is_stale for key in KeyFile().all()] == [True]
     on(pty_robot, "upload", "-e", DRIVES).gives(3, "another key")
     as_another(monkeypatch, tmp_path)
     done = on(pty_robot, "upload", "-e", DRIVES)
-    assert done.code == 0 and "claimed it again" not in done.err
+    assert done.code == 0 and "claimed the robot again." not in done.err
 
 
 def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
     """A robot with an owner takes text only while it is told to."""
-    assert "nothing to give up" in on(pty_robot, "set", "owner", "--give-up").out
+    assert "has no owner to remove" in on(pty_robot, "set", "owner", "--give-up").out
     assert "no owner" in on(pty_robot, "set", "text", "off").out
     assert claimed(pty_robot).code == 0
     assert len(KeyFile().all()) == 1
@@ -160,7 +160,7 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
     assert "teacher's key" in on(pty_robot, "stop", "--teacher").err  # a pupil has none
     as_another(monkeypatch, tmp_path, "settings")
-    assert "goes on only after" in on(pty_robot, "stop", "--teacher").out
+    assert "will only run again after" in on(pty_robot, "stop", "--teacher").out
     as_another(monkeypatch, tmp_path, "pupil")
     on(pty_robot, "start").gives(3, "teacher")
     as_another(monkeypatch, tmp_path, "settings")

@@ -67,7 +67,7 @@ def test_nothing_is_written_that_a_level_does_not_take(tsc: Tsc, tmp_path: Path)
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["--text-level", "uno"], "--text-level goes with --text"),
+        (["--text-level", "uno"], "--text-level works only with --text."),
         (["--text", "--map", "x.json"], "a line of text has no map"),
         (["--text", "--text-level", "nano"], "--text-level takes uno, mega or esp32, not nano"),
     ],

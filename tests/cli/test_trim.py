@@ -146,7 +146,7 @@ def of_the_table(cause: str, part: str, **values: str) -> str:
     finding = Finding(cause, True, values, part)
     found = causes.said(finding, "en")
     return (
-        f"tsc: {causes.label(finding, 'en')}: {found.what}. The robot keeps what it had. "
+        f"tsc: {causes.label(finding, 'en')}: {found.what}. The robot keeps its old trim. "
         f"Try:  {found.then}"
     )
 
@@ -158,7 +158,7 @@ def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(pty_robot: PtyRobot) -
         ("\n5\n", of_the_table("still", "left")),
         ("\n1\n3\n" + "2\n" * 8, of_the_table("too_weak", "motors", n="40")),
         ("\n1\n3\n1\n\n" + "2\n" * 3, of_the_table("too_uneven", "motors", n="40")),
-        ("\n1\n", "the answers ended"),
+        ("\n1\n", "the input ended"),
     ):
         on(pty_robot, data=answers).gives(3, said)
         assert keeps(pty_robot) == Trim(balance=7, least=3, pace=Pace()), said
@@ -303,6 +303,6 @@ def test_who_stops_measuring_leaves_what_was_there(pty_robot: PtyRobot) -> None:
     assert keeps(pty_robot).pace == Pace()
     assert on(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0
     for answers in ("1\n", "1\n\n33\n\n"):
-        on(pty_robot, data=LIFTED + answers).gives(3, "the answers ended")
+        on(pty_robot, data=LIFTED + answers).gives(3, "the input ended")
         assert keeps(pty_robot) == Trim(balance=7, pace=Pace(10, 20.5))
         assert not pty_robot.moves

@@ -181,7 +181,7 @@ def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: 
     for words in (naming, trimming):
         done = on(pty_robot, *words)
         assert done.code == 3 and not done.out, words
-        assert "keeps it as soon as its motors have stopped" in done.err
+        assert "will save it as soon as its motors have stopped" in done.err
     assert "lo guarda en" in on(pty_robot, *naming, "--lang", "es").err
     assert pty_robot.moves, "nothing has stopped it"
     interrupted(command)
@@ -200,7 +200,7 @@ def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
     assert done.code == 3 and "Change the batteries and send it again" in done.err
     done = on(pty_robot, "upload", "-e", "SB|SHOW(8)", "--lang", "es")
     assert done.code == 3 and "Cambia las pilas y envíalo otra vez" in done.err
-    assert "its batteries are too weak to save it" in on(pty_robot, "doctor").out
+    assert "RAM: the robot's batteries are too weak to save it" in on(pty_robot, "doctor").out
     fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
     assert (fields["saved"], fields["slot"]) == ("LOW_SUPPLY", None)
     for words in (("set", "name", "ANA"), ("set", "trim", "--balance", "5")):
@@ -265,7 +265,7 @@ def test_the_file_of_the_program_is_named_where_it_is_known(
 def test_where_there_is_none_before_the_next_step_is_said(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "upload", "-e", FIRST).code == 0
     for language, said, advice in (
-        ("en", "no program from before that it can run", "Send the program that you want"),
+        ("en", "no earlier program that it can run.", "Send the program that you want"),
         ("es", "ningún programa anterior que pueda", "Envía el programa que quieras"),
     ):
         on(pty_robot, "start", "--previous", "--lang", language).gives(3, said, advice, out="")

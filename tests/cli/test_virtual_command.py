@@ -324,7 +324,7 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         (["robot", "--sensor", "EYES=1"], "has no sensor EYES"),
         (["robot", "--robot", "r2d2"], "There is no robot r2d2"),
         (["upload", "-e", "SI|S", "--world", "line"], "--world is for the virtual robot alone"),
-        (["live", "S", "--port", "COM1", "--virtual"], "--virtual does not go together"),
+        (["live", "S", "--port", "COM1", "--virtual"], "--virtual cannot be combined"),
     ],
 )
 def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], said: str) -> None:

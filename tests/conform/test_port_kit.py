@@ -212,7 +212,7 @@ def test_a_cable_that_is_pulled(pty_robot: PtyRobot, tsc: Tsc) -> None:
     done = tsc("doctor", "--conform", "--port", pty_robot.port)
     pulled.join()
     assert done.code == 3
-    assert "is gone after" in done.err
+    assert "disappeared after" in done.err
 
 
 def test_a_port_that_is_not_there(tsc: Tsc) -> None:

@@ -455,4 +455,4 @@ def test_an_esp32_that_is_not_written_is_told(clone: Path, tmp_path: Path, code:
 
 
 def test_an_esp32_is_only_built_where_that_is_asked(clone: Path, tmp_path: Path) -> None:
-    written(clone, tmp_path, "--build", code=1).gives(0, out="its firmware builds")
+    written(clone, tmp_path, "--build", code=1).gives(0, out="the firmware is built.")

@@ -185,8 +185,8 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "rote": {
             "F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The program does not use LOOP. Use it here: LOOP(3) ... END_LOOP",
-            "LOOP(2); BEEP(0.1, 440); END_LOOP; F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The robot does the task just as well when each LOOP is done only once",
-            "LOOP(1); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); END_LOOP": "The LOOP of the program repeats nothing",
+            "LOOP(2); BEEP(0.1, 440); END_LOOP; F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The program solves the task just as well if each LOOP runs only once.",
+            "LOOP(1); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); END_LOOP": "The program's LOOP repeats nothing.",
         },
     },
     10: {
@@ -229,7 +229,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "wrong": {
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "The robot showed nothing. Write what it should show: SHOW(TIME)",
-            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; LOOP(FOREVER); STRAIGHT; TO_LEFT; TO_RIGHT; END_LOOP; SHOW(TIME)": "s the robot did more than 200000 things without a rest. Put W(0.05) into the loop.",
+            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; LOOP(FOREVER); STRAIGHT; TO_LEFT; TO_RIGHT; END_LOOP; SHOW(TIME)": "s the robot ran more than 200000 instructions without a pause. Put W(0.05) into the loop.",
             "SHOW(TIME); DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "After it stops, the robot should show a value, but it does not",
             "DEF WIG; L(0.05, 20); R(0.05, 20); END_DEF; LOOP(FOREVER); WIG; END_LOOP": "In 60.0 s the robot followed only 10 cm of the black line; the task asks for 240 cm",
         },
@@ -310,7 +310,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "SI|W(1); F(1.5, 60); W(1); R(1, 40); W(1); F(1, 60); W(1); B(1, 60); W(1); BEEP(0.5, 440); W(1); L(0.5, 40)": "KEY_LEFT was held, and the robot did not turn to the left",
         },
         "wrong": {
-            "W(FOREVER) UNTIL(KEY_UP); F(5, 60)": "no key was held, and the robot moved all the same",
+            "W(FOREVER) UNTIL(KEY_UP); F(5, 60)": "no key was held down, but the robot still moved. Make",
             "W(FOREVER) UNTIL(KEY_UP); F(1, 60); W(FOREVER) UNTIL(KEY_DOWN); B(1, 60)": "KEY_RIGHT was held, and the robot did not turn to the right",
         },
     },

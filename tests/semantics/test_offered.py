@@ -93,7 +93,7 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
         ("F(5, 60) UNTIL(DISTANCE > 0)", "Use a time to end the move"),
         ("F(5, 60);IF(NOT (DISTANCE < 20));S;ENDIF", "After F(5, 60) the robot stands still"),
         ("D = 2;LOOP(3);F(5, 60);IF(DISTANCE < D);S;ENDIF;END_LOOP", "F(5, 60) UNTIL(DISTANCE < D"),
-        ("D = DISTANCE;F(5, 60) UNTIL(NOT (D < 20))", "Ask a sensor in UNTIL"),
+        ("D = DISTANCE;F(5, 60) UNTIL(NOT (D < 20))", "Check a sensor in UNTIL"),
         ("F(007, 60)", "Write 7, or the seconds"),
         ("LOOP(VECES);S;END_LOOP", "write VECES = and its number before it"),
         ("BEEP(1, NOTA)", "Which number is NOTA?"),

@@ -175,7 +175,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
             for words in (["show"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
                 for port in (address, address.replace("127.0.0.1", "localhost")):
                     done = inside(*words, "--port", port)
-                    done.gives(3, "another user of this computer listens")
+                    done.gives(3, "another user of this computer is listening")
         server.settimeout(HANGS_S)
         peer, _ = server.accept()
         with peer:

@@ -170,4 +170,4 @@ def test_a_robot_is_driven_by_bluetooth(radio_page: tuple[Browser, Page], servic
         said(page, "Stopped: the robot has confirmed the stop.")
         assert not drives_now(radio.did)
         radio.go_away()
-        said(page, "The Bluetooth connection has ended.")
+        said(page, "The Bluetooth connection was lost. The")

@@ -64,7 +64,7 @@ def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
     assert check(page, right[0].program) == ("passed", [])
     lesson = catalogue.load(FOLDERS[number - 1])
     worlds = f", in {lesson.worlds} worlds" if lesson.worlds > 1 else ""
-    wanted = f"Done! The task of lesson {number} is solved{worlds}."
+    wanted = f"Done! You solved lesson {number}{worlds}."
     assert page.inner_text("#lesson_said") == wanted
     assert page.inner_text("#lesson_stars") == "★" * lesson.worlds
 

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 KIT = robots.load("tinibot").kit
 PATIENCE_MS = 90_000
 RUNS = 5
-VOID = "The robot was stopped meanwhile"
+VOID = "The robot was stopped first, so it"
 BLINKS = "The robot that blinks and plays its tune is"
 
 
@@ -188,7 +188,7 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     drives(page, robot)
     page.context.set_offline(True)
     robot.until(lambda: not robot.moves, "it stands")
-    said(page, "tsc studio does not answer any more")
+    said(page, "tsc studio no longer answers")
     page.context.set_offline(False)
     wrong = first[0].wrong
     assert wrong and all("ERR_INTERNET_DISCONNECTED" in each for each in wrong)
@@ -200,7 +200,7 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")
     other.click("#link_connect")
-    said(other, "Another tab of this browser drives this robot.")
+    said(other, "Another tab of this browser is driving this robot.")
     drives(page, robot)
     other.click("#stop")  # whoever sees STOP may press it
     robot.until(lambda: not robot.moves, "it stands")
@@ -318,7 +318,7 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     """And a page that is closed stops its robot."""
     entrance = server.entrance()
     first, second = pages.visit(entrance), pages.visit(entrance)
-    studio.noted(second, "This address was opened before")
+    studio.noted(second, "This address has already been used")
     assert first.locator("#note").inner_text() == ""
     for page, has_robots in ((first, True), (second, False)):
         page.click("#side_real")
@@ -331,7 +331,7 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     second.evaluate("sessionStorage.setItem('tiniscript.token', '0'.repeat(32))")
     enter(second, server.address)
     second.click("#side_real")
-    said(second, "tsc studio was started again meanwhile,")
+    said(second, "tsc studio was restarted")
     assert [each for each in pages.wrong if "403" not in each] == []
     pages.wrong.clear()
 

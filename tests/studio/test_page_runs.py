@@ -82,7 +82,7 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
     ran(page, "SI|Y = 8;\nSHOW(Y)", "SHOW 8")
     assert len(kept(page)) >= 2
     page.locator("#runs_list li").nth(1).locator("button").first.click()
-    told(page, "Looking back: this was after ")  # its text is another one
+    told(page, "Looking back: this was at ")  # its text is another one
     assert page.locator("#where").text_content() == pose
     assert value(page, "X") == "7"
     page.focus("#time_at")
@@ -170,8 +170,11 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     [
         (b"a letter", "It is damaged, or is not a run (line 1)."),
         (real((1, "DONE")).encode()[:-10], "Its end is missing (after line 2)."),
-        (b'{"tiniscript_recording": 1}', "It is of an older version"),
-        (real((1, "DONE")).replace('run":1', 'run":9').encode(), "It comes from a newer version."),
+        (b'{"tiniscript_recording": 1}', "It was recorded by an older version"),
+        (
+            real((1, "DONE")).replace('run":1', 'run":9').encode(),
+            "It was recorded by a newer version.",
+        ),
         (b" " * 1_100_000, "It is too long"),
     ],
     ids=["letter", "cut", "older", "newer", "huge"],

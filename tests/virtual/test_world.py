@@ -125,8 +125,8 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
             RIGHT + f"[[walls]]\npoints = {[[k, k] for k in range(201)]}",
             "Points of walls[1].points: 201",
         ),
-        (RIGHT + "[[walls", "Line 7 is not TOML."),
-        (RIGHT + "a = " + "[" * 5000, "is not TOML"),
+        (RIGHT + "[[walls", "Line 7 is not valid TOML.."),
+        (RIGHT + "a = " + "[" * 5000, "is not valid TOML."),
         (RIGHT + "[labels]\nen = '\t'\n", "labels.en is empty or cannot be printed."),
         (
             RIGHT.replace("y_cm = 50", "y_cm = 200.5"),
@@ -167,7 +167,7 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
     wrong.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
     for name, said in (
         ("obstacle", "Did you mean obstacles?"),
-        ("nowhere", f"Take one of these: {', '.join(worlds.names())}"),
+        ("nowhere", f"Choose one of these {', '.join(worlds.names())}"),
         ("", "There is no world"),
         (str(tmp_path), "is a folder"),
         (str(tmp_path / "missing.toml"), "There is no file"),
