@@ -194,7 +194,7 @@ def test_a_class_list_goes_out_and_in(
     tsc("set", "owner", "--import", str(listed)).gives(2, "--export")
     assert tsc("set", "owner", "--import", str(tmp_path / "none")).code == 2
     tsc("set", "owner", "--import", str(listed), "--export", str(tmp_path / "x")).gives(
-        2, "one at a time"
+        2, "use only one of"
     )
 
 

@@ -121,7 +121,7 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
     ("arguments", "sentence"),
     [
         (["jump"], "lesson takes show, check or sheet, not jump"),
-        (["--json"], "--json does not go with tsc lesson."),
+        (["--json"], "--json does not work with tsc lesson."),
         (["show"], "which lesson?"),
         (["show", "19"], "There is no lesson 19. Give a number from 1 to 18"),
         (["show", "0"], "There is no lesson 0."),
@@ -134,10 +134,10 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
         (["check", "1", "-e", "F(1,1)", "--seed", "0"], "--seed takes a whole number"),
         (
             ["check", "1", "-e", "F(1,1)", "--teacher"],
-            "--teacher does not go with tsc lesson check",
+            "--teacher does not work with tsc lesson check",
         ),
-        (["show", "1", "--json"], "--json does not go with tsc lesson show"),
-        (["show", "1", "x.ts"], "x.ts does not go with tsc lesson show"),
+        (["show", "1", "--json"], "--json does not work with tsc lesson show"),
+        (["show", "1", "x.ts"], "x.ts does not work with tsc lesson show"),
         (["sheet", "1"], "where should the page go?"),
         (["sheet", "1", "-o", "no/such/folder.html"], "cannot be written"),
         (["check", "1", "."], "has no programs"),

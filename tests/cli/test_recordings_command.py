@@ -163,11 +163,11 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
 @pytest.mark.parametrize(
     ("data", "said", "dicho"),
     [
-        (real((5, "SHOW 1"))[:-4], "is damaged, or no recorded run (line 3)", "(línea 3)"),
+        (real((5, "SHOW 1"))[:-4], "is damaged or is not a recorded run (line 3)", "(línea 3)"),
         (HEAD.encode(), "the end of", "le falta el final"),
         (
             b'{"tiniscript_recording": 1}',
-            "was recorded by an older tsc and does not contain the program.",
+            "was recorded by an older tsc",
             "de un tsc anterior",
         ),
         (

@@ -174,7 +174,7 @@ def test_nobody_something_else_and_another_version(
     with monkeypatch.context() as newer:
         newer.setattr("tiniscript.link.handshake.MAJOR", MAJOR + 1)
         tsc("doctor", "--identify", "--port", pty_robot.port).gives(
-            3, f"speaks version {MAJOR} of the link"
+            3, f"uses version {MAJOR} of the link"
         )
     pty_robot.switch_off()
     tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, "nothing answers")

@@ -363,7 +363,7 @@ def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
 
     code, _, err = asked(pty_robot, answer)
     assert code == 3, "no sensor has noticed anything"
-    assert "A number from 1 to 6" in err
+    assert "a number from 1 to 6" in err
     assert sum("MOTORS 60 0" in line for line in pty_robot.did) == 3
 
 

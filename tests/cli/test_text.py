@@ -49,7 +49,10 @@ def test_what_a_level_lacks_is_a_mistake_with_its_place(tsc: Tsc) -> None:
     done = tsc("check", "--text-level", "uno", "-e", LONG)
     assert done.code == 1
     assert "line 256:  S\n" in done.err
-    assert "the level uno makes 260 bytes of code, 5 too many: it has room for 255" in done.err
+    assert (
+        "level uno turns this text into 260 bytes of code, 5 too many: it has room for 255"
+        in done.err
+    )
     data = tsc("check", "--json", "--text-level", "mega", "-e", LONG)
     assert '"code": "TS309"' in data.out and '"line": 256' in data.out
     assert tsc("check", "-e", LONG).code == 0

@@ -130,7 +130,7 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
     assert pty_robots.on(pty_robot, "live", "W(0)").code == 0
     done = on(pty_robot, data=ANSWERS + "2\n").gives(0)
     assert keeps(pty_robot) == Trim(True, False, True, -8, 15, Pace())
-    assert "A number from 1 to 4" in done.err
+    assert "a number from 1 to 4" in done.err
     assert done.err.index("One motor turned") < done.err.index("The other motor turned")
     moves = [line for line in pty_robot.did if line.startswith("MOTORS") and line != "MOTORS 0 0"]
     assert moves == [

@@ -60,7 +60,7 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
     with new_board(bootloader("uno")) as uno:
         done = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
         assert done.code == 0, done.err
-        assert "PlatformIO builds the firmware of mine for the uno" in done.err
+        assert "PlatformIO is building the firmware of mine for the uno" in done.err
         first = done.out.splitlines()[0]
         assert first.startswith("mine on the uno: ") and "read back and compared" in first
         info = process("doctor", "--json", "--port", uno.pty)

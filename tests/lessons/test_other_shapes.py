@@ -95,7 +95,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "F(2.78, 80); W(2); B(2.78, 80)": "At the end the robot was 141 cm from the school",
         },
         "wrong": {
-            "F(3.7, 60); L(0.42, 60); F(3.7, 60); L(0.42, 60)": "At the end the robot looks 91 degrees too far to the left",
+            "F(3.7, 60); L(0.42, 60); F(3.7, 60); L(0.42, 60)": "At the end the robot faces 91 degrees too far to the left",
             "F(3.7, 60); L(0.42, 60)": "At the end the robot was 100 cm from the school",
         },
     },
@@ -110,7 +110,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "R(0.833, 60); LOOP(4); B(2.96, 60); L(0.417, 60); END_LOOP": "",
         },
         "rote": {
-            "LOOP(4); BEEP(0.1, 440); END_LOOP; F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60)": "The program has 4 moves that go ahead or back; 1 will do",
+            "LOOP(4); BEEP(0.1, 440); END_LOOP; F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60)": "The program has 4 moves forward or back, but needs only 1",
         },
         "wrong": {
             "LOOP(4); F(3.6, 60); L(0.417, 60); END_LOOP": "The robot went 17 cm past corner 1 before it stopped or turned",
@@ -126,10 +126,10 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF DIAG; L(0.2, 60); F(1.8, 60); B(1.8, 60); R(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(3); DIAG; END_LOOP": "",
         },
         "rote": {
-            "DEF HOP; W(0.1); END_DEF; HOP; HOP; HOP; LOOP(3); F(0.2, 60); BEEP(0.2, 440); B(0.2, 60); BEEP(0.2, 880); END_LOOP": "The robot does the task just as well without the word HOP",
+            "DEF HOP; W(0.1); END_DEF; HOP; HOP; HOP; LOOP(3); F(0.2, 60); BEEP(0.2, 440); B(0.2, 60); BEEP(0.2, 880); END_LOOP": "The program solves the task just as well without the word HOP",
         },
         "wrong": {
-            "DEF HOP; F(0.2, 60); B(0.2, 60); L(0.2, 60); R(0.2, 60); L(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(4); HOP; END_LOOP": "The program has 5 moves; 4 will do",
+            "DEF HOP; F(0.2, 60); B(0.2, 60); L(0.2, 60); R(0.2, 60); L(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(4); HOP; END_LOOP": "The program has 5 moves, but needs only 4",
             "DEF HOP; F(0.2, 60); B(0.2, 60); END_DEF; HOP; HOP; HOP; HOP": "The robot did not beep. Add a sound: BEEP(0.2, 440)",
         },
     },
@@ -144,7 +144,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         "wrong": {
             "SHOW(DISTANCE); F(6, 60); SHOW(DISTANCE); SHOW(DISTANCE)": "The robot touched the wall after 3.1 s",
             "SHOW(DISTANCE); F(0.3, 60); SHOW(DISTANCE); F(0.3, 60); SHOW(DISTANCE)": "The robot drove 16 cm; the task asks for at least 20 cm",
-            "SHOW(DISTANCE); SHOW(DISTANCE); SHOW(DISTANCE); F(1, 60)": "After it stops, the robot should show a value, but it does not",
+            "SHOW(DISTANCE); SHOW(DISTANCE); SHOW(DISTANCE); F(1, 60)": "After it stops, the robot should show a value, but does not",
         },
     },
     7: {
@@ -198,11 +198,11 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "WHILE(LIGHT_L + LIGHT_R < 1800); D = LIGHT_L - LIGHT_R; M(40 - D / 4, 40 + D / 4); W(0.02); END_WHILE; S": "",
         },
         "rote": {
-            "SI|LOOP(100); DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE); W(0.05); END_LOOP": "The program ended when the lamp was still 53 cm away",
+            "SI|LOOP(100); DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE); W(0.05); END_LOOP": "The program ended while the lamp was still 53 cm away",
         },
         "wrong": {
             "DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE)": "here it ended before the robot could move",
-            "LOOP(FOREVER); D = (LIGHT_L - LIGHT_R) / 10; M(8 - D, 8 + D); W(0.05); END_LOOP": "After 25.0 s the time was over, and the robot was still on its way, 43 cm from the lamp",
+            "LOOP(FOREVER); D = (LIGHT_L - LIGHT_R) / 10; M(8 - D, 8 + D); W(0.05); END_LOOP": "When time ran out after 25.0 s, the robot was still on its way, 43 cm from the lamp",
         },
     },
     11: {
@@ -225,12 +225,12 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "rote": {
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; STRAIGHT; S": "Is the condition of UNTIL TRUE from the start?",
-            "DEF HOP; W(0.1) UNTIL(TRUE); END_DEF; HOP; WHILE(NOT BUTTON); M(30, 30); IF(LINE_L); M(0, 35); ENDIF; IF(LINE_R); M(35, 0); ENDIF; W(0.02); END_WHILE; S; SHOW(TIME)": "The robot does the task just as well without the word HOP",
+            "DEF HOP; W(0.1) UNTIL(TRUE); END_DEF; HOP; WHILE(NOT BUTTON); M(30, 30); IF(LINE_L); M(0, 35); ENDIF; IF(LINE_R); M(35, 0); ENDIF; W(0.02); END_WHILE; S; SHOW(TIME)": "The program solves the task just as well without the word HOP",
         },
         "wrong": {
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "The robot showed nothing. Write what it should show: SHOW(TIME)",
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; LOOP(FOREVER); STRAIGHT; TO_LEFT; TO_RIGHT; END_LOOP; SHOW(TIME)": "s the robot ran more than 200000 instructions without a pause. Put W(0.05) into the loop.",
-            "SHOW(TIME); DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "After it stops, the robot should show a value, but it does not",
+            "SHOW(TIME); DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "After it stops, the robot should show a value, but does not",
             "DEF WIG; L(0.05, 20); R(0.05, 20); END_DEF; LOOP(FOREVER); WIG; END_LOOP": "In 60.0 s the robot followed only 10 cm of the black line; the task asks for 240 cm",
         },
     },

@@ -162,7 +162,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     page.click("#runs_close")
     text = "SI|X = DISTANCE;\nSHOW(X)"
     opened(page, real((20, "SHOW 3"), text=text), tmp_path / "run.tsr")
-    told(page, "Line 1: the program reads DISTANCE, and the recording does not have")
+    told(page, "Line 1: the program reads DISTANCE, but the recording lacks")
 
 
 @pytest.mark.parametrize(

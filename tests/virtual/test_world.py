@@ -156,7 +156,9 @@ def test_a_robot_that_does_not_fit_is_refused() -> None:
     with pytest.raises(WorldRefused) as exception_info:
         robot_in(floor(start="x_cm = 5\ny_cm = 50"))
     [said] = describe(exception_info.value, "en")
-    assert said.startswith("The robot does not fit where it starts, at x_cm = 5, y_cm = 50. Move")
+    assert said.startswith(
+        "The robot does not fit at its starting point, x_cm = 5, y_cm = 50. Move"
+    )
 
 
 @pytest.mark.parametrize("verb", [["robot"], ["upload", "--virtual", "-e", "SI|S"]])
@@ -173,7 +175,7 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
         (str(tmp_path / "missing.toml"), "There is no file"),
         (str(binary), "is not UTF-8"),
         (str(large), "Check that it is a world"),
-        (str(wrong), "w.toml cannot be used:\n  lamps[1].x_cm is missing"),
+        (str(wrong), "w.toml has mistakes:\n  lamps[1].x_cm is missing"),
         ("a\0b.toml", "cannot be read"),
     ):
         for language in ("en", "es"):
