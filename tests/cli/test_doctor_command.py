@@ -42,7 +42,7 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     assert found == [
         f"Port {pty_robot.port}",
         "1. tinibot is fine (sure)",
-        "   seen: kit tinibot, id 12345678; it answered 20 questions, and was not restarted",
+        "   seen: kit tinibot, id 12345678; it answered 20 messages and did not restart",
         "   next: Nothing to do. If it restarts when it drives:  tsc doctor --watch 20",
     ]
     assert robot[0] == f"tinibot on {pty_robot.port}, id 12345678, free"
@@ -123,7 +123,7 @@ def test_a_port_that_another_program_has_locked() -> None:
         holder.close()
         assert done.code == 3
         assert "1. Another program is using this port (sure)" in done.out
-        assert "does not tell by whom" in done.out
+        assert "does not say by whom" in done.out
         assert inside("doctor", "--port", end.port).code == 0
 
 
@@ -251,7 +251,7 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
         file.write_text(text, encoding="utf-8")
         done = tsc("doctor", "--port", "/dev/not-there", "--report", file)
         assert done.code == 2, text[:50]
-        assert "tsc has not made it" in done.err
+        assert "tsc did not write it." in done.err
         assert file.read_text(encoding="utf-8") == text
     for place in (tmp_path, tmp_path / "no" / "report.txt", Path("/dev/full")):
         tsc("doctor", "--port", "/dev/not-there", "--report", place).gives(2, "cannot be written")

@@ -149,7 +149,7 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     assert inside("doctor", "--virtual").code == 0
     done = inside("stop", *options)
     assert (done.code, done.out) == (
-        0, f"Stopped: the robot on {upload.port} has confirmed it.\n",
+        0, f"Stopped: the robot on {upload.port} has confirmed the stop.\n",
     )  # fmt: skip
     upload.command.ended().gives(3, out="The robot was stopped from a computer.")
     done = inside("stop", *options)
@@ -253,7 +253,9 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     done = tsc("check", *LINE)
     assert done.code == 1
     said = "tinibot has no BUTTON; the robot liner has it.\nTry:  "  # its first word
-    either = "If your robot is not a liner, take out what needs BUTTON. If it is, write above"
+    either = (
+        "If your robot is not a liner, remove the parts that need BUTTON. If it is, write above"
+    )
     assert f"{said}{either} the program: // robot: liner " in done.err
     assert "LINE_L = 0" not in done.err
     for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):
@@ -291,7 +293,7 @@ def test_up_to_three_robots_are_named() -> None:
 
 def test_the_robot_that_answers_says_which_kit_it_has() -> None:
     with robot("--robot", "liner", "--world", "line") as found:
-        here = "The connected robot: liner. tsc compiles for it.\n"
+        here = "liner is connected; tsc compiles for it.\n"
         done = inside("check", *LINE, "--virtual")
         assert (done.code, done.err) == (0, here)
         done = inside("upload", *LINE, "--port", found.port, "--no-run")
@@ -316,7 +318,7 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
         assert "TS103" in inside("upload", "-e", text).err  # nobody knows it yet
         assert inside("doctor", "--robot", profile).code == 0
         done = inside("upload", "-e", text)
-        assert (done.code, done.err) == (0, "The connected robot: own. tsc compiles for it.\n")
+        assert (done.code, done.err) == (0, "own is connected; tsc compiles for it.\n")
     [(path, found)] = given.profiles()
     assert path == str(profile)
     profile.write_text("")  # it has changed

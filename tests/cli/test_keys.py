@@ -183,7 +183,7 @@ def test_a_class_list_goes_out_and_in(
     said = tsc("set", "owner", "--export", str(listed)).out
     assert "class.json: 1." in said and f"tsc set owner --import {listed}" in said
     assert stat.S_IMODE(listed.stat().st_mode) == 0o600
-    tsc("set", "owner", "--export", str(listed)).gives(2, "is there already. Take another name")
+    tsc("set", "owner", "--export", str(listed)).gives(2, "already exists. Choose another name")
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "two"))
     assert (
         "class.json: 1. New here, or changed: 1."
@@ -194,7 +194,7 @@ def test_a_class_list_goes_out_and_in(
     tsc("set", "owner", "--import", str(listed)).gives(2, "--export")
     assert tsc("set", "owner", "--import", str(tmp_path / "none")).code == 2
     tsc("set", "owner", "--import", str(listed), "--export", str(tmp_path / "x")).gives(
-        2, "one at a time"
+        2, "use only one of"
     )
 
 

@@ -133,7 +133,7 @@ def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
     rows = [row for row in results(done).values() if not row["is_absent"]]
     assert len(rows) == len(class_.pupils)
     done = command.ended().gives(3)
-    told = ("The robot was stopped from a computer.", "another command has stopped the robot")
+    told = ("The robot was stopped from a computer.", "another command stopped the robot")
     assert sum(map(done.out.count, told)) == len(class_.pupils)  # before or after its start
     command = driven()
     command.signal(signal.SIGINT)
@@ -155,7 +155,7 @@ def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     done = inside("doctor", "--all").gives(0)
     rows = [line.split("(")[1].split(")")[0] for line in done.out.splitlines()]
     assert sorted(rows) == sorted(names)
-    assert done.out.count("nothing runs") == len(names)
+    assert done.out.count("nothing is running") == len(names)
     ports_of = ("--port", names[0], "--port", names[2])
     found = results(inside("doctor", "--count", "3", "--json", *ports_of))
     assert set(found) == {names[0], names[2]}
@@ -205,7 +205,7 @@ def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
     done = inside("start", "--previous", "--all", "--json").gives(3)
     rows = results(done)
     assert {port for port in names if rows[port]["is_done"]} == {names[1], names[2]}
-    assert "no program from before" in str(rows[names[0]]["said"])
+    assert "no earlier program" in str(rows[names[0]]["said"])
     checksums = {rows[names[1]]["checksum"], rows[names[2]]["checksum"]}
     assert len(checksums) == 1
     done = inside(

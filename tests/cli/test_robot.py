@@ -46,7 +46,7 @@ def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
     pressed_ms = pty_robot.robot_ms
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "Stopped: the robot has confirmed it.")
+    command.ended().gives(2, "Stopped: the robot has confirmed the stop.")
     assert pty_robot.did[-1] == "MOTORS 0 0"
     assert int(pty_robot.timed[-1].split()[0]) <= pressed_ms + 1000
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
@@ -122,7 +122,7 @@ def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> 
 
 def test_a_name_survives_power_off(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "set", "name", "Ñandú")
-    assert (done.code, done.out) == (0, f"{pty_robot.port}: the robot is called Ñandú now.\n")
+    assert (done.code, done.out) == (0, f"{pty_robot.port}: the robot is now called Ñandú.\n")
     pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "Ñandú"
     for name in ("", " ", "a" * 17, "ñ" * 9, "a\nb"):
@@ -165,7 +165,7 @@ def test_nobody_something_else_and_another_version(
     with monkeypatch.context() as newer:
         newer.setattr("tiniscript.link.handshake.MAJOR", MAJOR + 1)
         tsc("doctor", "--identify", "--port", pty_robot.port).gives(
-            3, f"speaks version {MAJOR} of the link"
+            3, f"uses version {MAJOR} of the link"
         )
     pty_robot.switch_off()
     tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, "nothing answers")

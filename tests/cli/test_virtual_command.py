@@ -286,7 +286,7 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
     command.until("SI: running")
     command.until("SHOW 1")
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "Stopped: the robot has confirmed it.", out=str(picture))
+    command.ended().gives(2, "Stopped: the robot has confirmed the stop.", out=str(picture))
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
@@ -324,7 +324,7 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         (["robot", "--sensor", "EYES=1"], "has no sensor EYES"),
         (["robot", "--robot", "r2d2"], "There is no robot r2d2"),
         (["upload", "-e", "SI|S", "--world", "line"], "--world is for the virtual robot alone"),
-        (["live", "S", "--port", "COM1", "--virtual"], "--virtual does not go together"),
+        (["live", "S", "--port", "COM1", "--virtual"], "--virtual cannot be combined"),
     ],
 )
 def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], said: str) -> None:

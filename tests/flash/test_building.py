@@ -60,7 +60,7 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
     with new_board(bootloader("uno")) as uno:
         done = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
         assert done.code == 0, done.err
-        assert "PlatformIO builds the firmware of mine for the uno" in done.err
+        assert "PlatformIO is building the firmware of mine for the uno" in done.err
         first = done.out.splitlines()[0]
         assert first.startswith("mine on the uno: ") and "read back and compared" in first
         info = process("doctor", "--json", "--port", uno.pty)
@@ -120,7 +120,7 @@ def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
     (folder / ready.name_of("tinibot", "nano", digest)).write_text(":00000001FF\n")
     rows = tsc(clone, "--list").out.splitlines()
     assert rows[:2] == [
-        "tinibot on uno: ready, 0 bytes", "tinibot on nano: is built when it is first written"
+        "tinibot on uno: ready, 0 bytes", "tinibot on nano: will be built the first time"
     ]  # fmt: skip
 
 
@@ -455,4 +455,4 @@ def test_an_esp32_that_is_not_written_is_told(clone: Path, tmp_path: Path, code:
 
 
 def test_an_esp32_is_only_built_where_that_is_asked(clone: Path, tmp_path: Path) -> None:
-    written(clone, tmp_path, "--build", code=1).gives(0, out="its firmware builds")
+    written(clone, tmp_path, "--build", code=1).gives(0, out="the firmware is built.")

@@ -16,7 +16,7 @@ from tiniscript.studio import checking, page_lessons, playing, recordings, robot
 
 ROBOT = "liner"  # on a Nano
 TEXT = "SHOW(1)\nWHEN(BUTTON)\n  S\nEND_WHEN\n"
-WORDS = {"en": "has no TASK and no WHEN", "es": "no tiene TASK ni WHEN"}
+WORDS = {"en": "does not support TASK and WHEN", "es": "no tiene TASK ni WHEN"}
 
 
 @pytest.fixture

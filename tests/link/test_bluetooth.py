@@ -198,7 +198,7 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
         row["port"]: row["said"]
         for row in json.loads(inside("doctor", "--ports", "--ask", "--json").out)
     }
-    assert (said[NAME], said["ble://yesterday"]) == ("robot tinibot (free)", "out of reach now")
+    assert (said[NAME], said["ble://yesterday"]) == ("robot tinibot (free)", "out of range now")
     assert PLACE not in said
 
 

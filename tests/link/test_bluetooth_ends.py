@@ -132,9 +132,9 @@ def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.parametrize(("has_bluez", "has_adapter", "said"), [
-    (False, False, ("the Bluetooth service of this computer does not run",
+    (False, False, ("this computer's Bluetooth service is not running.",
                     "el servicio de Bluetooth de esta computadora no está en marcha")),
-    (True, False, ("the Bluetooth of this computer is off",
+    (True, False, ("Bluetooth is off on this computer",
                    "el Bluetooth de esta computadora está apagado")),
 ])  # fmt: skip
 def test_a_computer_without_bluetooth(

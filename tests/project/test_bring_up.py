@@ -82,7 +82,7 @@ def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
     report = tmp_path / "bring-up.txt"
     assert process("doctor", "--port", "/dev/ttyUSB99", "--report", report).code == 3
     form = report.read_text("utf-8").split("\n\n")[-1].splitlines()
-    assert form[2:4] == ["robot: none has answered", f"1. It answers: {BLANK}"]
+    assert form[2:4] == ["robot: none answered", f"1. It answers: {BLANK}"]
 
 
 @pytest.mark.parametrize("before", ["", "(\n"])

@@ -53,7 +53,7 @@ def pair() -> tuple[socket.socket, socket.socket]:
 def test_the_end_of_a_connection_has_its_user() -> None:
     here, there = pair()
     with here, there:
-        found = peers._other_end(here.getpeername(), here.getsockname())
+        found = peers._socket_owner(here.getpeername(), here.getsockname())
         assert found == (os.geteuid(), os.fstat(there.fileno()).st_ino)
         assert peers.is_of_this_user(here)
         there.shutdown(socket.SHUT_WR)  # it listens on
@@ -66,14 +66,14 @@ def test_whoever_has_hung_up_can_have_been_anybody() -> None:
     with here:
         there.sendall(LINE)
         there.close()
-        assert not peers._other_end(here.getpeername(), here.getsockname()).is_open
+        assert not peers._socket_owner(here.getpeername(), here.getsockname()).is_open
         assert not peers.is_of_this_user(here)
 
 
 @linux
 def test_of_an_end_that_is_nobody_s_the_kernel_says_so() -> None:
     with pytest.raises(FileNotFoundError):
-        peers._other_end(("127.0.0.1", 1), ("127.0.0.1", 2))
+        peers._socket_owner(("127.0.0.1", 1), ("127.0.0.1", 2))
 
 
 @linux
@@ -175,7 +175,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
             for words in (["show"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
                 for port in (address, address.replace("127.0.0.1", "localhost")):
                     done = inside(*words, "--port", port)
-                    done.gives(3, "another user of this computer listens")
+                    done.gives(3, "another user of this computer is listening")
         server.settimeout(HANGS_S)
         peer, _ = server.accept()
         with peer:

@@ -48,7 +48,7 @@ LISTEN = """(place) => {
 }"""
 STANDING = re.compile(r"…|^Stopping|STOP: 0 of 1")  # what it says goes on
 CONNECTED = "Connected: "
-CONFIRMED = "the robot has confirmed it|has confirmed the stop now"
+CONFIRMED = "the robot has confirmed the stop|has confirmed the stop now"
 UNCONFIRMED = "has not confirmed the stop"
 
 

@@ -776,7 +776,7 @@ def test_more_cases_of_an_if(page: Page) -> None:
     for name, wanted in (
         ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
         ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSEIF(TRUE);\nELSE;\nENDIF;\n"),
-        ("Take the last case away", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
+        ("Remove the last case", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
     ):
         href = "more.svg" if name.startswith("Add") else "less.svg"
         page.locator(f"#blocks .blocklyBlockCanvas image[*|href$='{href}']").first.click()

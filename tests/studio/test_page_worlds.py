@@ -392,7 +392,7 @@ def test_a_damaged_world_does_no_harm(page: Page) -> None:
     page.reload()
     checked(page)
     assert page.input_value("#world") == "obstacles"
-    said(page, "cannot be read any more")
+    said(page, "drew can no longer be read.")
     page.click("#run")
     in_phase(page, "running")
     page.keyboard.press("Escape")

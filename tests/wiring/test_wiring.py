@@ -220,7 +220,7 @@ def test_what_a_robot_does_not_have_is_not_said() -> None:
     assert "tsc doctor --module --port P --baud 57600" in said["grabber"]
     assert "tsc doctor --module" not in said["tinibot"]
     assert "STATE tells" in said["tinibot"]
-    assert "STATE stays free" in said["liner"]
+    assert "STATE stays unconnected" in said["liner"]
     assert "resistors of 10 kΩ at STBY" in said["liner"]
     assert "Unplug the HC-05" in said["liner"]
 

@@ -50,7 +50,7 @@ def built(name: str, sources: Path = SOURCES, *more: str, chip: str = CHIP) -> b
         sources / "extras" / "chip" / "text.cpp",
         *sorted((sources / "src" / "vm").glob("*.[cS]*")),
     ]
-    code += [sources / "src" / each for each in MORE.get(name, ())]
+    code += [sources / "src" / item for item in MORE.get(name, ())]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"
         flags = f"-mmcu={chip}", *FLAGS[1:], *more, *WARNINGS
@@ -76,8 +76,8 @@ def run(program: bytes, request: bytes, chip: str = CHIP, limit_s: int = 120) ->
             capture_output=True,
             timeout=limit_s,
         )
-    said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", completed.stdout + completed.stderr)
-    lines = [line.decode() for line in said]
+    text = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", completed.stdout + completed.stderr)
+    lines = [line.decode() for line in text]
     if not lines or lines.pop() != "END":
         raise RuntimeError(
             f"the chip did not end: {(completed.stdout + completed.stderr)[-2000:]!r}"

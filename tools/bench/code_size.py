@@ -75,8 +75,8 @@ def measure() -> Measured:
 
 
 def main() -> None:
-    found = measure()
-    print(f"A statement takes {found.per_statement:.1f} bytes.")
+    result = measure()
+    print(f"A statement takes {result.per_statement:.1f} bytes.")
 
 
 if __name__ == "__main__":

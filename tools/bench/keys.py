@@ -91,15 +91,15 @@ class Hand:
 
     def _ms_from(self, begun: int, told: int, are_on: bool) -> float:
         """Raises RuntimeError where the motors are not as they must be in the end."""
-        found = [
+        matches = [
             event
             for event in self._board.events[told:]
             if event.what == "pin" and event["pin"] in MOTORS
         ]
-        last = {event["pin"]: event["is"] for event in found}
+        last = {event["pin"]: event["is"] for event in matches}
         if {last.get(pin) for pin in PWM_PINS} != {"pwm" if are_on else "low"}:
             raise RuntimeError(f"the motors have not gone {'on' if are_on else 'off'}: {last}")
-        return (found[-1].cycle - begun) / CYCLES_PER_MS
+        return (matches[-1].cycle - begun) / CYCLES_PER_MS
 
 
 def measure(firmware: Path, baud: int) -> list[list[float]]:

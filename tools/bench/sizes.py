@@ -240,13 +240,15 @@ def _built(part: Part, use: str, chip: str) -> Size:
     with tempfile.TemporaryDirectory() as folder:
         source, made = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(program, encoding="utf-8")
-        _done("avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(made))
-        said = _done("avr-size", str(made))
-    text, data, bss = (int(word) for word in said.splitlines()[1].split()[:3])
+        _finished(
+            "avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(made)
+        )
+        sentence = _finished("avr-size", str(made))
+    text, data, bss = (int(word) for word in sentence.splitlines()[1].split()[:3])
     return Size(text + data, data + bss)
 
 
-def _done(*command: str) -> str:
+def _finished(*command: str) -> str:
     ran = subprocess.run(command, capture_output=True, text=True)
     if ran.returncode != 0:
         raise RuntimeError(f"{command[0]} fails:\n{ran.stderr[:4000]}")
@@ -261,7 +263,7 @@ def main() -> int:
             print(missing(chip), file=sys.stderr)
             continue
         sizes = [size(part, chip) for part in SHOWN]
-        print(f"| {chip} |", " | ".join(f"{each.flash:,} | {each.ram}" for each in sizes), "|")
+        print(f"| {chip} |", " | ".join(f"{item.flash:,} | {item.ram}" for item in sizes), "|")
     return 0
 
 

@@ -81,8 +81,8 @@ class Bench:
 def measure(bench: Bench, runs: int) -> tuple[float, float]:
     """Return the medians (ms) of an upload and of a process that does nothing, taken in turn."""
     bench.moves_ms()  # what is cached is cached now
-    found = [(bench.moves_ms(), bench.nothing_ms()) for _ in range(runs)]
-    moves_ms, nothing_ms = (statistics.median(each) for each in zip(*found, strict=True))
+    matches = [(bench.moves_ms(), bench.nothing_ms()) for _ in range(runs)]
+    moves_ms, nothing_ms = (statistics.median(item) for item in zip(*matches, strict=True))
     return moves_ms, nothing_ms
 
 

@@ -145,8 +145,8 @@ def put_own(page: Path) -> None:
 
 def coming() -> str:
     """Return what the page says before a language is there: in each."""
-    said = [(code, page_texts(code)["page_waits"]) for code in languages()]
-    return "".join(f'<span lang="{code}">{escape(str(text))}</span>' for code, text in said)
+    texts = [(code, page_texts(code)["page_waits"]) for code in languages()]
+    return "".join(f'<span lang="{code}">{escape(str(text))}</span>' for code, text in texts)
 
 
 def said_in(language: str) -> tuple[str, str]:
@@ -307,8 +307,8 @@ def run(call: list[str], *arguments: str) -> str:
         [*call, *arguments], cwd=SOURCES, capture_output=True, text=True, env=variables
     )
     if completed.returncode:
-        said = (completed.stdout + completed.stderr).strip()
-        raise CannotMake(f"{arguments[0]} failed:\n{said}")
+        text = (completed.stdout + completed.stderr).strip()
+        raise CannotMake(f"{arguments[0]} failed:\n{text}")
     return completed.stdout
 
 

@@ -27,12 +27,12 @@ def architecture_document() -> str:
     """Return `docs/develop/architecture.md` with its picture, and what each folder says."""
     rows = []
     for path in sorted(PACKAGE.glob("*/**/__init__.py")):
-        said = ast.get_docstring(ast.parse(path.read_bytes())) or ""
-        about = " ".join(said.split("\n\n")[0].split())
+        text = ast.get_docstring(ast.parse(path.read_bytes())) or ""
+        about = " ".join(text.split("\n\n")[0].split())
         rows.append((f"`{path.parent.relative_to(PACKAGE).as_posix()}/`", about))
-    made = table(("folder", "content"), rows)
-    made = spliced(_text("docs/develop/architecture.md"), "packages", made)
-    return spliced(made, "modules", _modules())
+    result = table(("folder", "content"), rows)
+    result = spliced(_text("docs/develop/architecture.md"), "packages", result)
+    return spliced(result, "modules", _modules())
 
 
 def _modules() -> str:
@@ -61,8 +61,8 @@ def text_document() -> str:
          level.room, min(CODE_BYTES, level.room))
         for level in LEVELS.values()
     ]  # fmt: skip
-    made = table(("level", "lacks", "room in bytes", "bytes of code, at most"), rows)
-    return spliced(_text("docs/develop/text.md"), "levels", made)
+    result = table(("level", "lacks", "room in bytes", "bytes of code, at most"), rows)
+    return spliced(_text("docs/develop/text.md"), "levels", result)
 
 
 def guarantees_document() -> str:
@@ -114,8 +114,10 @@ def language_document(document: str, language: str) -> str:
 
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: title and first sentence of each, in all languages side by side."""
-    found = [document for document in documents(ROOT) if document.sources.get(SOURCE) != LIST]
-    shown = [language for language in languages() if any(language in one.sources for one in found)]
+    matches = [document for document in documents(ROOT) if document.sources.get(SOURCE) != LIST]
+    shown = [
+        language for language in languages() if any(language in one.sources for one in matches)
+    ]
 
     def said(key: str) -> list[str]:
         return [text("documents", key, language) for language in shown]
@@ -128,7 +130,7 @@ def list_of_documents(command: str) -> str:
     for part in ("teach", "write", "wiring", "trust", "build"):
         rows = [
             [_linked(document.sources.get(language, "")) for language in shown]
-            for document in found
+            for document in matches
             if document.part == part
         ]
         parts.append(table(said(f"part/{part}"), rows))
@@ -139,12 +141,12 @@ def _linked(source: str) -> str:
     """Return the title of a document, with a link to it, and its first sentence, or nothing."""
     if not source:
         return ""
-    title, sentence = _about((ROOT / source).read_text(encoding="utf-8"))
+    title, sentence = _title_and_readers((ROOT / source).read_text(encoding="utf-8"))
     link = f"[{title}]({Path(os.path.relpath(source, 'docs')).as_posix()})"
     return f"{link}<br>{sentence}" if sentence else link
 
 
-def _about(text: str) -> tuple[str, str]:
+def _title_and_readers(text: str) -> tuple[str, str]:
     """Return the title of a document, and the sentence that says who reads it, and for what."""
     _, _, body = f"\n{text}".partition("\n# ")
     title, *paragraphs = body.split("\n\n")
@@ -196,18 +198,18 @@ DOCUMENTS: dict[str, Callable[[], str]] = {
 def criteria() -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return its head and its rows."""
     rows: list[tuple[str, ...]] = [
-        (f"`{name}`", kind.meaning, ", ".join(_takes(kind))) for name, kind in KINDS.items()
+        (f"`{name}`", kind.meaning, ", ".join(_key_list(kind))) for name, kind in KINDS.items()
     ]
     return ("criterion", "met if", "takes"), rows
 
 
-def _takes(kind: Kind) -> list[str]:
+def _key_list(kind: Kind) -> list[str]:
     """Return the keys, with their defaults where these say something."""
-    found = ["`at`"] if kind.places else []
+    result = ["`at`"] if kind.places else []
     if kind.words:
-        found.append("`what`" if kind.words in WHATS else "`words`")
+        result.append("`what`" if kind.words in WHATS else "`words`")
     for number in kind.numbers:
         is_said = number.default is not None and number.default < number.high
-        found.append(f"`{number.key}`" + (f" ({number.default:g})" if is_said else ""))
-    found += [f"`{each}`" for each in (*kind.flags, *(AREA if kind.has_area else ()))]
-    return found
+        result.append(f"`{number.key}`" + (f" ({number.default:g})" if is_said else ""))
+    result += [f"`{item}`" for item in (*kind.flags, *(AREA if kind.has_area else ()))]
+    return result

@@ -35,7 +35,7 @@ class Row(NamedTuple):
 
     @property
     def mistakes(self) -> int:
-        return sum(each.severity == "mistake" for each in self.messages)
+        return sum(message.severity == "mistake" for message in self.messages)
 
     @property
     def warnings(self) -> int:
@@ -130,12 +130,12 @@ def _table(rows: Sequence[Row], language: str) -> list[str]:
     if has_repairs:
         heads.insert(3, text("repaired_column", language))
     widths = [max(len(each[k]) for each in (heads, *cells)) for k in range(len(heads))]
-    lines = [_laid_out(each, widths) for each in (heads, *cells)]
+    lines = [_formatted_row(each, widths) for each in (heads, *cells)]
     right = sum(not row.mistakes and not row.problem for row in rows)
     return [*lines, text("all_row", language).format(n=len(rows), right=right)]
 
 
-def _laid_out(cells: Sequence[str], widths: Sequence[int]) -> str:
+def _formatted_row(cells: Sequence[str], widths: Sequence[int]) -> str:
     """Return a row: the first and the last column begin on the left, numbers end on the right."""
     last = len(cells) - 1
     row = [

@@ -32,22 +32,22 @@ def on_boards(name: str | None, language: str, boards: Sequence[str] = BOARDS) -
 
     It answers text in `language`, if its profile names none.
     """
-    found = []
+    result = []
     for board in boards:
         try:
             robot = robots.load(robots.DEFAULT if name is None else name, board)
-            found.append(robot.speaking(language))
+            result.append(robot.speaking(language))
         except ProfileRefused:
             continue  # the board has no such pins
-    return found
+    return result
 
 
 def firmware(robot: Robot, options: Namespace, language: str) -> Ready:
     """Return the firmware of a robot on its board. Raises CommandError where it cannot be built."""
     sources = building.sources()
-    found = _ready(robot, sources)
-    if found is not None:
-        return found
+    result = _ready(robot, sources)
+    if result is not None:
+        return result
     if sources is None:
         raise CommandError(2, "flash_no_sources")
     with _built(robot, options, language) as look:

@@ -121,9 +121,9 @@ class _Marker:
                 raise file.problem
             compiled = self.compiled(given)
         except CommandError as failure:
-            said = failure.plain(self.language)
-            said = said.replace(inputs.shown(file.name), inputs.shown(name))
-            return Mark(name, UNREADABLE, 0, (("", said),))
+            text = failure.plain(self.language)
+            text = text.replace(inputs.shown(file.name), inputs.shown(name))
+            return Mark(name, UNREADABLE, 0, (("", text),))
         return self.mark(given, compiled)
 
     def compiled(self, given: inputs.Input) -> Compiled:
@@ -147,19 +147,27 @@ class _Marker:
         except NoWebAssembly as why:
             raise not_installed("virtual_needs_wasmtime", why) from None
         return Mark(
-            given.name, outcome.verdict, outcome.seed, self._said(outcome.findings), outcome.run
+            given.name,
+            outcome.verdict,
+            outcome.seed,
+            self._finding_rows(outcome.findings),
+            outcome.run,
         )
 
-    def _said(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
+    def _finding_rows(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
         return tuple((finding.kind, sentence(finding, self.language)) for finding in findings)
 
     def _mistakes(self, compiled: Compiled) -> Iterable[tuple[str, str]]:
         for diagnostic in compiled.diagnostics:
             if diagnostic.is_mistake:
-                said = message(diagnostic, compiled.source, self.language)
-                values = {"line": said.line, "task": "", "shown": said.message}
+                sentence = message(diagnostic, compiled.source, self.language)
+                values = {"line": sentence.line, "task": "", "shown": sentence.message}
                 line = text("fault_line", self.language).format(**values)
-                fix = text("lesson_try", self.language).format(fix=said.fix) if said.fix else ""
+                fix = (
+                    text("lesson_try", self.language).format(fix=sentence.fix)
+                    if sentence.fix
+                    else ""
+                )
                 yield "", f"{line}   {fix}".strip()
 
 
@@ -193,9 +201,9 @@ def _name_notes(marks: Sequence[Mark], options: Namespace, language: str) -> Non
     if len(notes) == len(marks):
         raise CommandError(2, "lesson_empty", file=inputs.shown(options.program))
     if notes:
-        said = text("lesson_notes", language)
+        sentence = text("lesson_notes", language)
         number = inputs.shown(options.number)
-        print(said.format(files=", ".join(notes), number=number), file=sys.stderr)
+        print(sentence.format(files=", ".join(notes), number=number), file=sys.stderr)
 
 
 def _is_note(file: ProgramFile) -> bool:
@@ -239,7 +247,7 @@ def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: s
 def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> None:
     """Print a row for each program: its name, the verdict, and the first sentence."""
     rows = [
-        (inputs.shown(mark.name), text(f"verdict_{mark.verdict}", language), _first(mark))
+        (inputs.shown(mark.name), text(f"verdict_{mark.verdict}", language), _first_error(mark))
         for mark in marks
     ]
     wide = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
@@ -263,7 +271,7 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
     print(count.format(passed=passed, all=programs, number=number))
 
 
-def _first(mark: Mark) -> str:
+def _first_error(mark: Mark) -> str:
     sentence = printable(mark.said[0][1], 300) if mark.said else ""
     return f"[{mark.seed}] {sentence}" if mark.seed else sentence
 

@@ -47,9 +47,9 @@ class Options(ArgumentParser):
         self.language = language
         self.table = of_verb(command)
         for option in self.table:
-            self._take(option)
+            self._add_option(option)
 
-    def _take(self, option: Option) -> None:
+    def _add_option(self, option: Option) -> None:
         if option.is_argument:
             self.add_argument(option.name, nargs="*" if option.repeats else "?")
         elif option.kind is None:
@@ -79,7 +79,7 @@ class Options(ArgumentParser):
             from tiniscript.cli.windows_names import matching
 
             options.programs = [
-                each for name in options.programs for each in matching(name) or [name]
+                item for name in options.programs for item in matching(name) or [name]
             ]
         paths.check(options, self.language)
         return options
@@ -206,14 +206,15 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
     sensors = robot.kit.readings
     names = [device.name for device in sensors]
     lists: dict[int, list[int]] = {}
-    for each in texts:
-        name, equals, values = each.partition("=")
+    for sentence in texts:
+        name, equals, values = sentence.partition("=")
         name = name.strip().upper()
         if not name or name not in names:
             known = ", ".join(sensor.name for sensor in robot.kit.sensors) or text(
                 "no_sensors", language
             )
-            raise CommandError(2, "no_sensor", robot=robot.name, found=name or each, known=known,
+            raise CommandError(2, "no_sensor", robot=robot.name, found=name or sentence,
+                known=known,
                           near=_suggestion(name, [*filter(None, names)]))  # fmt: skip
         number = names.index(name)
         device = sensors[number]

@@ -34,14 +34,14 @@ def programs(names: Sequence[str]) -> Iterator[ProgramFile]:
     """Yield the programs that are named, each once. Raises CommandError for an empty folder."""
     seen: set[str] = set()
     for name in names:
-        found = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
-        if not found:
+        result = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
+        if not result:
             raise CommandError(2, "no_programs", file=inputs.shown(name))
-        for each in found:
-            real = os.path.realpath(each)
+        for item in result:
+            real = os.path.realpath(item)
             if real not in seen:
                 seen.add(real)
-                yield read(each)
+                yield read(item)
 
 
 def _is_folder(name: str) -> bool:

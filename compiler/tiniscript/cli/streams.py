@@ -35,15 +35,15 @@ PLAIN = {**dict(zip(*_SAME_WIDTH, strict=True)), **_WORDS}
 
 def register() -> None:
     """Make the handler known to Python's streams."""
-    codecs.register_error(NAME, _plain)
+    codecs.register_error(NAME, _replacement)
 
 
-def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
+def _replacement(error: UnicodeError) -> tuple[str | bytes, int]:
     if isinstance(error, UnicodeEncodeError):
         end = error.start + 1
-        found = PLAIN.get(error.object[error.start : end])
-        if found is not None:
-            return found, end
+        result = PLAIN.get(error.object[error.start : end])
+        if result is not None:
+            return result, end
         error.end = end
     return codecs.backslashreplace_errors(error)
 
@@ -73,8 +73,8 @@ def are_read(stream: TextIO) -> bool:
         return False
     if mode.value & VIRTUAL_TERMINAL_PROCESSING:
         return True
-    wanted = mode.value | PROCESSED_OUTPUT | VIRTUAL_TERMINAL_PROCESSING
-    return bool(console.SetConsoleMode(handle, wintypes.DWORD(wanted)))
+    expected = mode.value | PROCESSED_OUTPUT | VIRTUAL_TERMINAL_PROCESSING
+    return bool(console.SetConsoleMode(handle, wintypes.DWORD(expected)))
 
 
 def has_colors(stream: TextIO) -> bool:

@@ -323,7 +323,7 @@ def _assembled(out: Emitter) -> Lowered:
         short = {
             k
             for k, item in enumerate(out.items)
-            if item.to is not None and not _reaches(item, starts[k], targets[item.to])
+            if item.to is not None and not _is_in_reach(item, starts[k], targets[item.to])
         }
         if not short or offset > 2 * CODE_BYTES:  # then it is refused, however long it is
             break
@@ -337,7 +337,7 @@ def _assembled(out: Emitter) -> Lowered:
     return Lowered(bytes(code), tuple(places))
 
 
-def _reaches(item: Item, start: int, target: int) -> bool:
+def _is_in_reach(item: Item, start: int, target: int) -> bool:
     distance = abs(target - (start + item.op.size))
     return distance <= item.op.operands[-1].kind.high
 

@@ -100,7 +100,7 @@ class Diagnosis(NamedTuple):
 def diagnose(doors: Doors, question: Question) -> Diagnosis:
     doors.on_step("computer")
     computer = inspect_computer(doors.system)
-    port = question.port or question.last or _only(computer, question.virtual)
+    port = question.port or question.last or _only_port(computer, question.virtual)
     if port is None:
         return Diagnosis(None, _without_port(computer, question.virtual), computer, False)
     question = question._replace(expected=question.expected._replace(port=port))
@@ -115,7 +115,7 @@ def diagnose(doors: Doors, question: Question) -> Diagnosis:
     finally:
         if client is not None:
             client.close()
-    held = _held(doors.system, computer, port)
+    held = _port_in_use(doors.system, computer, port)
     if held is not None:
         return Diagnosis(port, (held,), computer, False)
     is_radio = doors.is_radio(port) or port.startswith(PSEUDO)
@@ -130,7 +130,9 @@ def _opened(
     try:
         wire = doors.open_wire(port, question.baud)
     except PortError as failure:
-        return Diagnosis(port, (_unopened(failure, computer, port, doors.system),), computer, False)
+        return Diagnosis(
+            port, (_open_failure(failure, computer, port, doors.system),), computer, False
+        )
     is_radio = is_radio and not port.startswith(PSEUDO)
     asked = Line(question.baud, is_radio, question.nonce)
     expected, heard = question.expected, list[Heard]()
@@ -154,7 +156,7 @@ def _opened(
     return Diagnosis(port, tuple(findings), computer, True)
 
 
-def _only(computer: Computer, virtual: tuple[str, ...]) -> str | None:
+def _only_port(computer: Computer, virtual: tuple[str, ...]) -> str | None:
     """Return the only port that may be a robot's: of USB or Bluetooth, else of a virtual one."""
     names = [
         port.port for port in computer.ports
@@ -170,13 +172,13 @@ def _without_port(computer: Computer, virtual: tuple[str, ...]) -> tuple[Finding
     listed = ", ".join([*(port.port for port in computer.ports), *virtual])
     if len(computer.ports) > 1:
         return (sure("which_port", ports=listed),)
-    absent = _absent(computer)
+    absent = _no_port_finding(computer)
     if listed and absent.cause in ("no_port", "charging_cable"):
         return (absent._replace(values={**absent.values, "ports": listed}),)
     return (absent,)
 
 
-def _absent(computer: Computer) -> Finding:
+def _no_port_finding(computer: Computer) -> Finding:
     """Return why an adapter, or any at all, has no port."""
     for adapter in without_driver(computer.adapters or ()):
         if adapter.driver == "usbfs" or "brltty" in computer.programs:
@@ -202,7 +204,7 @@ def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[F
         return (sure("port_gone"),)
 
 
-def _held(system: System, computer: Computer, port: str) -> Finding | None:
+def _port_in_use(system: System, computer: Computer, port: str) -> Finding | None:
     """Return why this user cannot have the port now, as far as it is known without opening it."""
     who = access(system, same_for_all(port))
     if not who.may_use and who.is_joined:
@@ -218,17 +220,17 @@ def _held(system: System, computer: Computer, port: str) -> Finding | None:
 
 def _is_listed(system: System, computer: Computer, port: str) -> bool:
     return is_address(port) or system.owner(port) is not None or any(
-        each.port.lower() == port.lower() for each in computer.ports
+        item.port.lower() == port.lower() for item in computer.ports
     )  # fmt: skip
 
 
 def unopened(system: System, port: str, failure: PortError) -> Finding:
     """Return why a port that somebody has tried to open did not open."""
     computer = inspect_computer(system)
-    return _held(system, computer, port) or _unopened(failure, computer, port, system)
+    return _port_in_use(system, computer, port) or _open_failure(failure, computer, port, system)
 
 
-def _unopened(failure: PortError, computer: Computer, port: str, system: System) -> Finding:
+def _open_failure(failure: PortError, computer: Computer, port: str, system: System) -> Finding:
     """Return why a port did not open."""
     if failure.reason == errors.MISSING:
         return _missing(computer, port, system)
@@ -263,5 +265,5 @@ def _missing(computer: Computer, port: str, system: System) -> Finding:
         if computer.platform == "linux" and "rfcomm" in port:
             return Finding("no_rfcomm", bool(computer.has_module), {"number": port[-1:]})
     if without_driver(computer.adapters or ()) or not computer.ports:
-        return _absent(computer)
+        return _no_port_finding(computer)
     return sure("port_missing", ports=", ".join(port.port for port in computer.ports))

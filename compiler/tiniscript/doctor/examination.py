@@ -100,16 +100,16 @@ def examine(
     findings = [*_versions(hello), *_kit(hello, expected), *_owner(robot, hello, expected)]
     if hello.features & WIFI_RESTS:
         findings.append(sure("wifi_rests"))
-    expected.note(_about(hello, expected))
+    expected.note(_report_fields(hello, expected))
     before = robot.status()
     restarts: list[Restart] = []
     if before is not None:
-        findings += _told(before)
-        lost, trips_ms = _hearing(robot, before, expected, on_step)
+        findings += _status_findings(before)
+        lost, trips_ms = _link_findings(robot, before, expected, on_step)
         findings += lost
         expected.hear(Heard(hello, before, _trim(robot, hello), trips_ms))
         on_step("watch")
-        restarts = _watched(robot, hello, watch_ms)
+        restarts = _watch_restarts(robot, hello, watch_ms)
     after = robot.status() if before is not None else None
     if restarts:
         findings += _restarts(restarts)
@@ -132,7 +132,7 @@ def examine(
     return findings
 
 
-def _about(hello: HelloReply, expected: Expected) -> dict[str, str]:
+def _report_fields(hello: HelloReply, expected: Expected) -> dict[str, str]:
     """Return what a report tells of a robot: not whose it is."""
     features = [name for bit, name, _ in FEATURES if hello.features & bit]
     return {
@@ -166,11 +166,11 @@ def _versions(hello: HelloReply) -> list[Finding]:
 
 
 def _kit(hello: HelloReply, expected: Expected) -> list[Finding]:
-    found = expected.names(hello.kit)
+    result = expected.names(hello.kit)
     kit = f"{hello.kit:04x}"
     if expected.kit is not None and hello.kit != expected.kit:
-        return [sure("wrong_kit", kit=kit, robot=found or kit, expected=expected.name)]
-    if expected.kit is None and found is None:
+        return [sure("wrong_kit", kit=kit, robot=result or kit, expected=expected.name)]
+    if expected.kit is None and result is None:
         return [sure("unknown_kit", kit=kit)]
     return []
 
@@ -182,7 +182,7 @@ def _owner(robot: Robot, hello: HelloReply, expected: Expected) -> list[Finding]
     return [sure("of_another_owner")] if is_others else []
 
 
-def _told(status: StatusReply) -> list[Finding]:
+def _status_findings(status: StatusReply) -> list[Finding]:
     """Return what the robot says of its supply, its latch and its program."""
     findings = []
     if status.saved == SAVED_LOW_SUPPLY:
@@ -196,7 +196,7 @@ def _told(status: StatusReply) -> list[Finding]:
     return findings
 
 
-def _hearing(
+def _link_findings(
     robot: Robot, before: StatusReply, expected: Expected, on_step: Callable[[str], None]
 ) -> tuple[list[Finding], tuple[float, ...]]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
@@ -206,7 +206,7 @@ def _hearing(
     after = robot.status()
     damaged_count = 0
     if after is not None:
-        pairs = zip(_four(before), _four(after), strict=True)
+        pairs = zip(_error_counts(before), _error_counts(after), strict=True)
         damaged_count = sum((now - then) & 0xFF for then, now in pairs)
     values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged_count)}
     expected.note({"good": str(len(trips_ms)), **values})
@@ -241,11 +241,11 @@ def _trim(robot: Robot, hello: HelloReply) -> TrimReply | None:
     return values if isinstance(values, TrimReply) else None
 
 
-def _four(status: StatusReply) -> tuple[int, int, int, int]:
+def _error_counts(status: StatusReply) -> tuple[int, int, int, int]:
     return status.damaged, status.dropped, status.framing, status.overrun
 
 
-def _watched(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Restart]:
+def _watch_restarts(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Restart]:
     """Look for a while whether the robot restarts: then its nonce is another one."""
     restarts = []
     nonce, is_running = hello.nonce, hello.state == STATE_RUNNING

@@ -40,8 +40,8 @@ def _query(system: System, *words: str) -> str | None:
 
 
 def _chips(said: str) -> list[str]:
-    found = (chip_of(vendor.lower(), product.lower()) for vendor, product in _USB.findall(said))
-    return list(dict.fromkeys(chip[0] for chip in found if chip is not None))
+    result = (chip_of(vendor.lower(), product.lower()) for vendor, product in _USB.findall(said))
+    return list(dict.fromkeys(chip[0] for chip in result if chip is not None))
 
 
 def _names(said: str) -> list[str]:

@@ -69,14 +69,14 @@ def find_avrdude() -> list[str] | None:
             pass
         else:
             return [str(get_avrdude_path())]
-    for program in _elsewhere(Path.home()):
+    for program in _bundled_avrdudes(Path.home()):
         for settings in (program.parent.parent / "etc", program.parent):
             if (settings / "avrdude.conf").is_file():
                 return [str(program), "-C", str(settings / "avrdude.conf")]
     return None
 
 
-def _elsewhere(home: Path) -> list[Path]:
+def _bundled_avrdudes(home: Path) -> list[Path]:
     """Return the avrdudes of the Arduino IDE and of PlatformIO, the newest first."""
     name = "avrdude.exe" if sys.platform == "win32" else "avrdude"
     folders = [home / ".arduino15", home / "Library" / "Arduino15"]

@@ -117,9 +117,9 @@ def platformio() -> list[str] | None:
         return [sys.executable, "-m", "platformio"]
     home = Path.home() / ".platformio" / "penv"
     for name in ("pio", "platformio", str(home / "bin" / "pio"), str(home / "Scripts" / "pio.exe")):
-        found = shutil.which(name)
-        if found:
-            return [found]
+        result = shutil.which(name)
+        if result:
+            return [result]
     return None
 
 
@@ -230,9 +230,9 @@ def _environment() -> dict[str, str]:
 
 def seen(said: str, files: int) -> StepProgress | None:
     """Return the progress, from its whole output; `files` is the total number of files."""
-    written = _WRITING.findall(said)
-    if written:
-        return StepProgress(WRITING, min(100, int(written[-1])))
+    text = _WRITING.findall(said)
+    if text:
+        return StepProgress(WRITING, min(100, int(text[-1])))
     compiled = len(_COMPILING.findall(said))
     if compiled:
         return StepProgress(COMPILING, min(99, 100 * compiled // files))

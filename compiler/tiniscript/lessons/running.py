@@ -100,9 +100,9 @@ def run(image: Image, profile: Robot, lesson: Lesson, seed: int) -> Run:
 
     Raises WorldRefused where the robot does not fit into that world.
     """
-    found = Trial(image, profile, lesson, seed).go()
-    assert found is not None, "it goes on to the end"
-    return found
+    run = Trial(image, profile, lesson, seed).go()
+    assert run is not None, "it goes on to the end"
+    return run
 
 
 class Trial:
@@ -118,7 +118,7 @@ class Trial:
         self._asks = image.start == "PING"
         if self._asks:
             return
-        self._computer = _bring(robot, image)
+        self._computer = _upload(robot, image)
         self._witness.look()
         end_ms = robot.now_ms + BRINGING_MS
         while self._witness.started_ms is None and robot.now_ms < end_ms:
@@ -162,7 +162,7 @@ class Trial:
         self._computer.wait(until_ms - robot.now_ms)
 
 
-def _bring(robot: VirtualRobot, image: Image) -> Computer:
+def _upload(robot: VirtualRobot, image: Image) -> Computer:
     """Bring a program to the robot and start it, by its button where it begins with SB."""
     computer = Computer(robot, robot.settings.seed)
     session = computer.session
@@ -208,7 +208,7 @@ class _Witness:
                 self.started_ms = event.time_ms
                 self._track.append(Sample(0, robot.world.start))
             elif self.started_ms is not None:
-                self._take(event, event.time_ms - self.started_ms, pose)
+                self._record_event(event, event.time_ms - self.started_ms, pose)
         if self.started_ms is None:
             return
         ms = robot.now_ms - self.started_ms
@@ -216,9 +216,9 @@ class _Witness:
             self._track.append(Sample(ms, pose))
         if robot.driving.bumps != self._bumps:
             self._bumps = robot.driving.bumps
-            self._touches.append(Touch(ms, self._touched(pose)))
+            self._touches.append(Touch(ms, self._nearest_obstacle(pose)))
 
-    def _take(self, event: Event, ms: int, pose: Pose) -> None:
+    def _record_event(self, event: Event, ms: int, pose: Pose) -> None:
         if event.what == "MOTORS":
             before = self._motors[-1][1:] if self._motors else (0, 0)
             self._motors.append((ms, event.values[0], event.values[1]))
@@ -249,7 +249,7 @@ class _Witness:
             at_once += 1
         self._happened.insert(len(self._happened) - at_once, "stops")
 
-    def _touched(self, pose: Pose) -> str:
+    def _nearest_obstacle(self, pose: Pose) -> str:
         """Return what the robot is nearest to."""
         world, hull = self.robot.world, self.robot.driving.hull
         kinds = {

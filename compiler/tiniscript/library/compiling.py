@@ -88,8 +88,8 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
 
 def _kit_in(text: str, kit: Kit) -> Kit:
     """Return the kit as a program has it: without the words that have given way there."""
-    written = text.upper()
-    if not any(word in written for word in KIT_WORDS_SINCE):
+    sentence = text.upper()
+    if not any(word in sentence for word in KIT_WORDS_SINCE):
         return kit
     from tiniscript.syntax.later_words import in_program
 
@@ -132,7 +132,7 @@ def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
         if span is not None and lacks(need, robot)
     ]
     if asks_remote and not has_remote(robot):
-        lacking.append(_no_remote(compiled, robot))
+        lacking.append(_remote_missing(compiled, robot))
     if not lacking:
         return compiled
     return compiled._replace(
@@ -140,7 +140,7 @@ def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
     )
 
 
-def _no_remote(compiled: Compiled, robot: Robot) -> codes.Diagnostic:
+def _remote_missing(compiled: Compiled, robot: Robot) -> codes.Diagnostic:
     """Return the mistake of a program that asks a remote control which the robot does not have."""
     from tiniscript.bytecode.disassembly import devices_of, rows
 
@@ -209,10 +209,10 @@ def compile_source(
     unknown = None if is_chosen else unknown_robot(text)
     if unknown is not None:  # which words there are nobody knows
         return Compiled(Source(text, name), [unknown])
-    found = compile_text(text, robot.kit, name, optimize)
-    if not found.is_right:
-        return naming(found, robot, is_chosen) if names_robots else found
-    return fitting(found, robot, is_strict)
+    result = compile_text(text, robot.kit, name, optimize)
+    if not result.is_right:
+        return naming(result, robot, is_chosen) if names_robots else result
+    return fitting(result, robot, is_strict)
 
 
 def naming(compiled: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
@@ -245,8 +245,8 @@ def maker(robot: Robot) -> Callable[[str], Image | None]:
     """Return what makes the image of a text for a robot, or None where the text has mistakes."""
 
     def made(text: str) -> Image | None:
-        found = compile_source(text.encode(), robot, "", is_strict=True)
-        return image_of(found, robot) if found.is_right else None
+        result = compile_source(text.encode(), robot, "", is_strict=True)
+        return image_of(result, robot) if result.is_right else None
 
     return made
 

@@ -36,7 +36,7 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)
     if plain.length > limit:
-        place = _first_after(plain, limit)
+        place = _first_beyond(plain, limit)
         diagnostics.append(_too_many(codes.LEVEL_CODE, place, level, plain.length, limit))
         return diagnostics
     reader = Reader(tokens, kit, level.sensor_bytes)
@@ -66,10 +66,10 @@ def _values(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     return values
 
 
-def _first_after(plain: PlainCode, limit: int) -> Span:
+def _first_beyond(code: PlainCode, limit: int) -> Span:
     """Return the text of the first instruction whose code does not lie within the limit."""
-    ends = [*(place.offset for place in plain.places[1:]), plain.length]
-    return next(place.span for place, end in zip(plain.places, ends, strict=True) if end > limit)
+    ends = [*(place.offset for place in code.places[1:]), code.length]
+    return next(place.span for place, end in zip(code.places, ends, strict=True) if end > limit)
 
 
 def _too_many(code: codes.Code, place: Span, level: Level, bytes_: int, limit: int) -> Diagnostic:

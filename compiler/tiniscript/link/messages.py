@@ -462,20 +462,20 @@ def written(fields: tuple[Field, ...], values: Mapping[str, int | bytes]) -> byt
 
 def read(fields: tuple[Field, ...], payload: bytes) -> dict[str, int | bytes]:
     """Return the values in a payload. Raises Malformed if its length does not fit."""
-    found: dict[str, int | bytes] = {}
+    result: dict[str, int | bytes] = {}
     at = 0
     for field in fields:
         size = len(payload) - at if field.kind == "rest" else field.low
         if not field.low <= size <= field.high or at + size > len(payload):
             raise Malformed
         piece = payload[at : at + size]
-        found[field.name] = (
+        result[field.name] = (
             piece if field.kind == "rest" else struct.unpack("<" + KINDS[field.kind], piece)[0]
         )
         at += size
     if at != len(payload):
         raise Malformed
-    return found
+    return result
 
 
 def sizes(fields: tuple[Field, ...]) -> tuple[int, int]:

@@ -37,11 +37,11 @@ def listed() -> list[ListedPort]:
     """Return the ports that the system knows. Opens none of them, because that resets boards."""
     from tiniscript.link.transports import serial
 
-    found = []
-    for each in serial.listed():
-        description = each.description if each.description != "n/a" else ""
-        found.append(ListedPort(each.device, printable(description)))  # a device says it
-    return sorted(found)
+    matches = []
+    for item in serial.listed():
+        description = item.description if item.description != "n/a" else ""
+        matches.append(ListedPort(item.device, printable(description)))  # a device says it
+    return sorted(matches)
 
 
 def is_radio(port: str) -> bool:
@@ -54,7 +54,7 @@ def is_radio(port: str) -> bool:
     if sys.platform == "win32":
         from tiniscript.link.transports import serial
 
-        known = {each.device.lower(): each.hwid or "" for each in serial.listed()}
+        known = {item.device.lower(): item.hwid or "" for item in serial.listed()}
         return "BTHENUM" in known.get(name, "")
     return False
 

@@ -54,7 +54,7 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
                 values.get(name, "").upper() for name in (values if names is None else names)
             )
         groups.setdefault((code, key), []).append(diagnostic)
-    return codes.in_order([_together(same, source) for same in groups.values()])
+    return codes.in_order([_merge_diagnostics(same, source) for same in groups.values()])
 
 
 def _unquotes(diagnostic: Diagnostic, source: Source) -> bool:
@@ -85,7 +85,7 @@ def _unquoted(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnos
     return told
 
 
-def _together(same: Sequence[Diagnostic], source: Source) -> Diagnostic:
+def _merge_diagnostics(same: Sequence[Diagnostic], source: Source) -> Diagnostic:
     first = same[0]
     if len(same) == 1 or first.code not in (*_WITH_LINES, codes.MISSING_OPEN):
         return first

@@ -141,8 +141,8 @@ def plain(text: str) -> str:
 @cache
 def words_of(*kinds: str) -> str:
     """Return a pattern of the words that the lexicon says one of these of."""
-    found = (word for word in lexicon() if said_of(word, *kinds))
-    return f"(?:{'|'.join(map(re.escape, sorted(found, key=len, reverse=True)))})"
+    result = (word for word in lexicon() if said_of(word, *kinds))
+    return f"(?:{'|'.join(map(re.escape, sorted(result, key=len, reverse=True)))})"
 
 
 _END = re.compile(words_of("end") + "_?")
@@ -205,12 +205,12 @@ def _in_two_words(word: str) -> str | None:
     for k in range(2, min(len(word), 24) - 1):
         halves = word[:k].rstrip("_"), word[k:].lstrip("_")
         long = [half for half in halves if len(half) > 2]  # `there` is no THE RE
-        said = {half if half == "STOP" else concept_of(half) or "" for half in long}
+        texts = {half if half == "STOP" else concept_of(half) or "" for half in long}
         turns = [half for half in halves if said_of(half, "turn")]
         with_frame = halves if len(halves[1]) > 3 else halves[:1]  # `irAdelante`, and no GOAL
         beside = [*turns, *(half for half in with_frame if said_of(half, "filler"))]
-        meant = said - {"", "M", "F"} or said - {"", "M"}
-        is_framed = bool(said & {"F", "M"} or beside) or len({*map(concept_of, halves)}) == 1
+        meant = texts - {"", "M", "F"} or texts - {"", "M"}
+        is_framed = bool(texts & {"F", "M"} or beside) or len({*map(concept_of, halves)}) == 1
         is_all = all(half in beside or half == "STOP" or concept_of(half) for half in halves)
         if len(meant) == 1 and is_framed and is_all:
             only = next(iter(meant))
@@ -239,9 +239,10 @@ class _OfLine(NamedTuple):
 
 @lru_cache(REMEMBERED)
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
-    begun, counted, left = _begun_in(line)
-    found = _OfLine(
-        set(), set(), set(), set(), {}, set(), begun, _alone_in(line), _compared_in(line), counted,
+    begun, counted, left = _block_counts(line)
+    of_line = _OfLine(
+        set(), set(), set(), set(), {}, set(), begun, _standalone_words(line),
+        _compared_words(line), counted,
         left,
     )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
@@ -251,36 +252,36 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         if token.kind is not WORD:
             continue
         if depth > 0:
-            found.in_brackets.add(token.text)
+            of_line.in_brackets.add(token.text)
         elif after.text in ("=", "++", "--", "+=", "-=", ":=", "<-") and token.text not in WORDS:
-            found.variables.add(token.text)
+            of_line.variables.add(token.text)
         is_def = "DEF" in (token.text, concept_of(token.text))
         is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not
         is_def = is_def or (token.text == "TO" and at == 2 and bool(_logo_names(line[at:])))
         if is_def and after.kind is WORD and after.text not in WORDS:
             if not said_of(after.text, "main") and concept_of(after.text) != "START":
-                found.defs.add(after.text)
+                of_line.defs.add(after.text)
                 if bare := _bare_values(line[at:]):
-                    found.pairs.add((after.text, *bare))
+                    of_line.pairs.add((after.text, *bare))
                 end = closed(line, at)
                 given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
-                if all(each.isidentifier() and each not in WORDS for each in given):
-                    found.parameters[after.text] = given
+                if all(item.isidentifier() and item not in WORDS for item in given):
+                    of_line.parameters[after.text] = given
     if len(head) > 2 and "DEF" in (head[0].text, concept_of(head[0].text)):
-        row, names = _name_in_words(head[1:], ";"), found.defs
+        row, names = _name_in_words(head[1:], ";"), of_line.defs
     else:
-        row, names = _name_in_words(head, "="), found.variables
+        row, names = _name_in_words(head, "="), of_line.variables
     if row:
-        found.rows.add(row)
+        of_line.rows.add(row)
         names.add(joined(row))
-    return found
+    return of_line
 
 
 def _bare_values(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
     """Return the names of `X, Y` or `X Y`, which lack their brackets, none beside other things."""
     row = " ".join(texts(tokens)).partition(";")[0]
     names = tuple(row.replace(",", " ").split())
-    return names if all(each.isidentifier() and each not in WORDS for each in names) else ()
+    return names if all(name.isidentifier() and name not in WORDS for name in names) else ()
 
 
 def _logo_names(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
@@ -289,14 +290,14 @@ def _logo_names(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
     return names if {*signs} == {":"} and len(signs) == len(names) else ()
 
 
-def _alone_in(line: tuple[Lexeme, ...]) -> set[str]:
+def _standalone_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that stand alone between separators."""
     around = (";", *texts(line), ";")
     triples = zip(around, around[1:], around[2:], strict=False)
     return {word for before, word, after in triples if before in ";|" and after == ";"}
 
 
-def _compared_in(line: tuple[Lexeme, ...]) -> set[str]:
+def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that are compared with a number, as nothing but a value is."""
     rows = [*zip(line, line[1:], line[2:], line[3:], strict=False)]
     alone = {
@@ -369,7 +370,7 @@ class Names:
         meant = {name: self.meant(name, NEAR) for name in compared - values}
         self.strange = {name for name, its in meant.items() if not its or its in CALLED}
         self.read_as = self.known._replace(values=frozenset(values | self.strange))
-        words = (frozenset(each) for each in (self.defs, self.in_brackets, self.rows))
+        words = (frozenset(item) for item in (self.defs, self.in_brackets, self.rows))
         self._content = (
             self.read_as,
             *words,
@@ -401,17 +402,17 @@ class Names:
         end, _, block = word.partition("_")
         if said_of(end, "end") and block in (*WORDS, *self.defs):
             return (Meaning(SOME_END, KNOWN),)
-        found = meanings(word)
+        result = meanings(word)
         return tuple(
-            meaning for meaning in found if meaning.concept in WORDS or self.has(meaning.concept)
+            meaning for meaning in result if meaning.concept in WORDS or self.has(meaning.concept)
         )
 
     def meant(self, word: str, most: int = MISSPELT) -> str:
         """Return the word of the language that a word means, "" for none or a less likely one."""
         if word in WORDS and word != "SI":
             return word
-        found = self.meanings(word)
-        return found[0].concept if found and found[0].cost <= most else ""
+        result = self.meanings(word)
+        return result[0].concept if result and result[0].cost <= most else ""
 
     def has(self, concept: str) -> bool:
         """Whether a concept is a device of the kit, or the end of any block."""
@@ -443,21 +444,21 @@ class Names:
         return [text, "@word", *self._classes_of_word(text)]
 
     def _classes_of_word(self, text: str) -> list[str]:
-        said = [meaning.kind for meaning in lexicon().get(text, ())]
+        texts = [meaning.kind for meaning in lexicon().get(text, ())]
         is_own = text in self.variables or text in self.defs
-        classes = [each for each in said if each.islower() and not is_own]
+        classes = [item for item in texts if item.islower() and not is_own]
         if text not in WORDS:
-            classes += [_CLASSES[each] for each in lexicon().get(text, ()) if each in _CLASSES]
-        classes += ["@unit"] if "unit" in said and text not in WORDS and not is_own else []
+            classes += [_CLASSES[item] for item in lexicon().get(text, ()) if item in _CLASSES]
+        classes += ["@unit"] if "unit" in texts and text not in WORDS and not is_own else []
         classes += ["@cross"] if text == "X" and not is_own else []
-        if "unit" not in said and text not in WORDS and not is_own:
+        if "unit" not in texts and text not in WORDS and not is_own:
             classes += [f"@like_{way}" for way in WAYS if is_slip(text, way)]
         meant = [meaning.concept for meaning in self.meanings(text) if meaning.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
         classes += [ALIASES[word]] if word in ALIASES else []
         is_name = self.is_name(text)
         classes += meant
-        classes += [each for each in ANY if not said_of(text, "do") or each not in _NO_DO]
+        classes += [item for item in ANY if not said_of(text, "do") or item not in _NO_DO]
         if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
             classes.append("@val")
             classes += ["@measured"] if {word, text} & self.asked.keys() else []
@@ -483,7 +484,7 @@ class Names:
         return classes
 
 
-def _begun_in(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
+def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
     """Return what a line says of orders that begin blocks, and how many headers lack an end."""
     found: dict[str, str] = {}
     counted: list[str] = []
@@ -503,7 +504,7 @@ def _begun_in(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]
 
 
 def joined(row: Iterable[str]) -> str:
-    parts = [each for each in row if each != "-"]
+    parts = [item for item in row if item != "-"]
     if parts[0][0].isdecimal():  # `2PASOS`
         return "".join((*parts[1:], parts[0]))
     return "_".join(parts)

@@ -40,31 +40,35 @@ def meant_in(
     if meant is None:
         return []
     text = recovery.program
-    written = source.text
-    told = explained(written, meant)
-    if not told and meant.is_whole:
+    sentence = source.text
+    message = explained(sentence, meant)
+    if not message and meant.is_whole:
         misplaced = [each for each in diagnostics if each.code in rows.MISPLACED]
         said_of_it = misplaced or [each for each in diagnostics if each.is_mistake]
-        return [_moved(each, written, meant, recovery.kit) for each in said_of_it][:1]
-    if not told:
+        return [
+            _moved_lines_diagnostic(each, sentence, meant, recovery.kit) for each in said_of_it
+        ][:1]
+    if not message:
         return []
-    told_of = [(each, _diagnostic(each, meant, diagnostics)) for each in told]
+    told_of = [(each, _diagnostic(each, meant, diagnostics)) for each in message]
     is_part = is_sure or not meant.is_whole  # what is read of a part gives up nothing
     if is_part and difference(text, meant.text, recovery.kit).lost:
         kept = [] if is_sure else keeps_all([own for _, own in told_of], source.text, recovery.kit)
         told_of = [it for it, is_kept in zip(told_of, kept, strict=False) if is_kept]
-    others = [each for other in recovery.others for each in explained(written, other)]
-    return [_either(_carried(own, source.text), each, others) for each, own in told_of]
+    others = [each for other in recovery.others for each in explained(sentence, other)]
+    return [
+        _with_rival(_with_carried_unit(own, source.text), each, others) for each, own in told_of
+    ]
 
 
-def _carried(diagnostic: Diagnostic, text: str) -> Diagnostic:
+def _with_carried_unit(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a mistake of a unit in a variable; moves that take the value get it: `carried`."""
     set_to = (
         _SET.fullmatch(diagnostic.values.get("fix", "")) if diagnostic.code is codes.UNIT else None
     )
     unit = _UNIT.search(diagnostic.values.get("found", ""))
-    way = _way(unit[0]) if unit else ""
-    uses = [*_uses(set_to[1], way).finditer(text)] if set_to and way else []
+    way = _unit_word(unit[0]) if unit else ""
+    uses = [*_move_pattern(set_to[1], way).finditer(text)] if set_to and way else []
     uses = uses or [
         use
         for head, use, _ in _in_bodies(text, text)
@@ -74,7 +78,7 @@ def _carried(diagnostic: Diagnostic, text: str) -> Diagnostic:
     ]
     if not uses or not diagnostic.repair:
         return diagnostic
-    edits = (Edit(Span(*each.span("unit")), f" {way}") for each in uses)
+    edits = (Edit(Span(*item.span("unit")), f" {way}") for item in uses)
     start, end = uses[0].span()
     place = uses[0].start("unit")
     carried = laid_out(lexemes(f"{text[start:place]} {way}{text[place:end]}"))
@@ -82,15 +86,17 @@ def _carried(diagnostic: Diagnostic, text: str) -> Diagnostic:
     return diagnostic._replace(values={**diagnostic.values, "carried": carried}, repair=repair)
 
 
-def _either(diagnostic: Diagnostic, told: Explanation, others: Sequence[Explanation]) -> Diagnostic:
+def _with_rival(
+    diagnostic: Diagnostic, explanation: Explanation, others: Sequence[Explanation]
+) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
-    fixes = (each.fix for each in others if each.place == told.place)
-    other = next((fix for fix in fixes if fix and fix != told.fix), "")
+    fixes = (item.fix for item in others if item.place == explanation.place)
+    other = next((fix for fix in fixes if fix and fix != explanation.fix), "")
     if not other:
         return diagnostic
     values = {**diagnostic.values, "rival": other}
     if diagnostic.code is codes.MISSING_CLOSE:
-        values |= dict(zip(("one", "another"), _in_brackets(told.fix, other), strict=True))
+        values |= dict(zip(("one", "another"), _in_brackets(explanation.fix, other), strict=True))
     return diagnostic._replace(values=values)
 
 
@@ -101,57 +107,61 @@ def _in_brackets(one: str, other: str) -> tuple[str, str]:
     while start > 0 and depth < 1:
         start -= 1
         depth += (one[start] == "(") - (one[start] == ")")
-    inside = [_CLOSED.match(each, start + 1) for each in (one, other)]
+    inside = [_CLOSED.match(item, start + 1) for item in (one, other)]
     return inside[0][0] if inside[0] else "", inside[1][0] if inside[1] else ""
 
 
 def _diagnostic(
-    told: Explanation, meant: Candidate, diagnostics: Sequence[Diagnostic]
+    explanation: Explanation, candidate: Candidate, diagnostics: Sequence[Diagnostic]
 ) -> Diagnostic:
     """Return an explanation as a diagnostic; as the checker has it where that counts the values."""
-    is_said = told.code is not codes.ASKED_AFTER or "BREAK" in meant.text.upper()  # how often
-    is_sure = meant.is_applied or (meant.is_whole and told.is_sure)
-    repair = Repair(tuple(told.edits), is_said and is_sure)
-    if not meant.has_sure_blocks and "FOREVER" not in told.fix:
-        told.whole = ""  # where it ends is a guess
-    code, values = _in_words(told)
+    is_said = (
+        explanation.code is not codes.ASKED_AFTER or "BREAK" in candidate.text.upper()
+    )  # how often
+    is_sure = candidate.is_applied or (candidate.is_whole and explanation.is_sure)
+    repair = Repair(tuple(explanation.edits), is_said and is_sure)
+    if not candidate.has_sure_blocks and "FOREVER" not in explanation.fix:
+        explanation.whole = ""  # where it ends is a guess
+    code, values = _in_words(explanation)
     asked = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
     counted = (each for each in diagnostics if each.code is asked)
     for each in counted if asked in _AS_CHECKED else ():
-        if told.place.start <= each.span.start < told.place.end:
-            values = {**each.values, "fix": told.fix}
-            return Diagnostic(each.code, each.span, values, told.place, repair)
+        if explanation.place.start <= each.span.start < explanation.place.end:
+            values = {**each.values, "fix": explanation.fix}
+            return Diagnostic(each.code, each.span, values, explanation.place, repair)
     if code in _AS_CHECKED[:2]:  # its values are not counted
-        code, values = codes.OTHER_CALL, told.values_as(codes.OTHER_CALL)
-    return Diagnostic(code, told.span, values, told.place, repair)
+        code, values = codes.OTHER_CALL, explanation.values_as(codes.OTHER_CALL)
+    return Diagnostic(code, explanation.span, values, explanation.place, repair)
 
 
-def _in_words(told: Explanation) -> tuple[Code, dict[str, str]]:
+def _in_words(explanation: Explanation) -> tuple[Code, dict[str, str]]:
     """Return the code of the sentence that has a word for what is told, and its values."""
-    code, slip = told.code, told.slip
+    code, slip = explanation.code, explanation.slip
     if slip and code in _WITH_RIGHT and not slips.right_of(slip):
         has_bracket = "(" in slips.before_it(slip) + slips.found_in(slip)
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
-    values = told.values_as(code)
+    values = explanation.values_as(code)
     found, suggestion = values.get("found", "").upper(), values.get("right", "")
     is_near = nearest(found, [suggestion]) or (suggestion in WAYS and is_slip(found, suggestion))
     if code is codes.OTHER_LANGUAGE and is_near:
         code = codes.UNKNOWN_WORD
         values |= {"found": values["found"].upper(), "near": suggestion}
-    elif suggestion == "FOREVER" and _ENDLESS in told.fix:
+    elif suggestion == "FOREVER" and _ENDLESS in explanation.fix:
         values["right"] = _ENDLESS  # FOREVER alone begins no block
     return code, values
 
 
-def _moved(diagnostic: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Diagnostic:
+def _moved_lines_diagnostic(
+    diagnostic: Diagnostic, text: str, candidate: Candidate, kit: Kit
+) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
-    made = _with_units(text, meant.text)
-    lost = [each for each in difference(text, made, kit).lost
-            if (unit := _UNIT.search(each)) and _way(unit[0])]  # fmt: skip
-    values = {**diagnostic.values, "whole": in_one_line(made), "lost": ", ".join(lost)}
+    result = _with_units(text, candidate.text)
+    lost = [item for item in difference(text, result, kit).lost
+            if (unit := _UNIT.search(item)) and _unit_word(unit[0])]  # fmt: skip
+    values = {**diagnostic.values, "whole": in_one_line(result), "lost": ", ".join(lost)}
     if diagnostic.code is codes.WRONG_END:
         values |= {"swapped": diagnostic.values["right"], "apart": ""}
-    elif (move := meant.move) is not None:
+    elif (move := candidate.move) is not None:
         values |= {"name": move.name, "line": str(move.before), "last": str(move.last)}
         if diagnostic.code is codes.UNKNOWN_WORD:  # `CALL SALTO`, before its DEF
             diagnostic = diagnostic._replace(code=codes.CALL_BEFORE_DEF)
@@ -159,20 +169,20 @@ def _moved(diagnostic: Diagnostic, text: str, meant: Candidate, kit: Kit) -> Dia
         values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first)}
         if move.is_end and move.last > len(text.splitlines()):
             values |= {"open": move.name}  # its end is in no line
-    repair = Repair((trimmed(0, text, made),), meant.is_applied and not lost)
+    repair = Repair((trimmed(0, text, result),), candidate.is_applied and not lost)
     return diagnostic._replace(values=values, repair=repair)
 
 
 # -- units that stand in a variable, or in the brackets of a DEF -----------------------------------
 
 
-def _way(unit: str) -> str:
+def _unit_word(unit: str) -> str:
     """Return the word for a unit behind the first value of a move, "" where none is."""
-    said = said_of(plain(unit), "unit")
-    return next((way for way, its in WAYS.items() if said and its.unit == said[0]), "")
+    text = said_of(plain(unit), "unit")
+    return next((way for way, its in WAYS.items() if text and its.unit == text[0]), "")
 
 
-def _uses(name: str, way: str) -> re.Pattern[str]:
+def _move_pattern(name: str, way: str) -> re.Pattern[str]:
     """Return the pattern of the moves that go so much of a unit, and have none."""
     moves = "|".join(move for move in MOVES if UNIT_OF[move] == way)
     return re.compile(rf"(?i)\b(?:{moves})\s*\(\s*{name}(?P<unit>)\s*,[^();\n]*\)")
@@ -182,10 +192,12 @@ def _in_bodies(written: str, meant: str) -> Iterator[tuple[Span, re.Match[str], 
     """Give where a name has a unit in the brackets of a DEF, and the moves that take it, each."""
     for head in _HEAD.finditer(written):
         body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant)
-        for each in _VALUE.finditer(written, head.start("values"), head.end()):
-            way = _way(each[2])
-            for use in _uses(each[1], way).finditer(meant, *body.span()) if body and way else ():
-                yield Span(*each.span()), use, way
+        for match in _VALUE.finditer(written, head.start("values"), head.end()):
+            way = _unit_word(match[2])
+            for use in (
+                _move_pattern(match[1], way).finditer(meant, *body.span()) if body and way else ()
+            ):
+                yield Span(*match.span()), use, way
 
 
 def _with_units(written: str, meant: str) -> str:

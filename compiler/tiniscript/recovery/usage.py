@@ -103,18 +103,18 @@ def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> l
     ]
     diagnostics = text.with_name(diagnostics)
     told: list[Diagnostic] = []
-    for each in diagnostics[:_MANY]:
-        told.append((_told(Usage(text, each)) if each.repair is None else None) or each)
+    for item in diagnostics[:_MANY]:
+        told.append((_usage_diagnostic(Usage(text, item)) if item.repair is None else None) or item)
     parts = [it for it in told if it.values.get("part")]
-    if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
+    if parts and any(item.code is codes.TASK_NOT_TOP for item in told):  # rather an IF
         part = {"part": parts[0].values["part"]}
         told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
-    if any("usage" in each.values for each in told if each.code is codes.OUT_OF_RANGE):
+    if any("usage" in item.values for item in told if item.code is codes.OUT_OF_RANGE):
         told += text.turned()
     return [
-        each
-        for each in (*told, *diagnostics[_MANY:])
-        if not (each.code in _OF_NAMES and text.is_in_wrong_def(each, told))
+        item
+        for item in (*told, *diagnostics[_MANY:])
+        if not (item.code in _OF_NAMES and text.is_in_wrong_def(item, told))
     ]
 
 
@@ -138,13 +138,13 @@ class _Text:
 
     def turned(self) -> list[Diagnostic]:
         """Return moves with the power before the time, as another call of the text has them."""
-        found: list[Diagnostic] = []
-        for each in _TURNED.finditer(self.source.text):
-            if LONG_S <= float(each[1]) <= MOST_POWER and 0 < float(each[2]) < LONG_S:
-                fix = f"{each[0][0].upper()}({each[2]}, {each[1]})"
-                values = {"time": each[1], "power": each[2], "fix": fix}
-                found.append(Diagnostic(codes.SWAPPED, Span(*each.span()), values))
-        return found
+        diagnostics: list[Diagnostic] = []
+        for match in _TURNED.finditer(self.source.text):
+            if LONG_S <= float(match[1]) <= MOST_POWER and 0 < float(match[2]) < LONG_S:
+                fix = f"{match[0][0].upper()}({match[2]}, {match[1]})"
+                values = {"time": match[1], "power": match[2], "fix": fix}
+                diagnostics.append(Diagnostic(codes.SWAPPED, Span(*match.span()), values))
+        return diagnostics
 
     def end_at(self, place: int) -> str:
         """Return the end of the innermost block that is open at a place, "" for none."""
@@ -161,8 +161,12 @@ class _Text:
 
     def with_name(self, diagnostics: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
-        nameless = [each for each in diagnostics if each.code is codes.DEF_NEEDS_NAME]
-        unknown = (each for each in diagnostics if each.code is codes.UNKNOWN_WORD)
+        nameless = [
+            diagnostic for diagnostic in diagnostics if diagnostic.code is codes.DEF_NEEDS_NAME
+        ]
+        unknown = (
+            diagnostic for diagnostic in diagnostics if diagnostic.code is codes.UNKNOWN_WORD
+        )
         wholes = ((it, self.source[instruction_at(it.span, self.source)]) for it in unknown)
         called = (it.values["found"] for it, whole in wholes if len(lexemes(whole)) == 1)
         name = next(called, "") if len(nameless) == 1 else ""
@@ -170,15 +174,15 @@ class _Text:
             return diagnostics
         own, end = nameless[0], nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
-        said = own._replace(values={"name": name}, repair=repair)
+        text = own._replace(values={"name": name}, repair=repair)
         return [
-            said if each is own else each
-            for each in diagnostics
-            if each.values.get("found") != name
+            text if diagnostic is own else diagnostic
+            for diagnostic in diagnostics
+            if diagnostic.values.get("found") != name
         ]
 
 
-def _told(place: Usage) -> Diagnostic | None:
+def _usage_diagnostic(place: Usage) -> Diagnostic | None:
     """Return what the first row that holds tells of a place, None where there is none."""
     return next((place.told(row, gaps) for row, gaps in holding(place)), None)
 
@@ -211,8 +215,8 @@ class Usage:
 
     def matched(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of a pattern whose part `here` begins at the place."""
-        found = pattern.finditer(self.text)
-        return next((it for it in found if it.start("here") == self.found.span.start), None)
+        result = pattern.finditer(self.text)
+        return next((it for it in result if it.start("here") == self.found.span.start), None)
 
     # -- classes ----------------------------------------------------------------------------------
 
@@ -224,7 +228,7 @@ class Usage:
         code, here = self.found.code, self.source[self.found.span]
         is_strange = code is codes.UNKNOWN_WORD and self.is_first and bool(self.row)
         is_strange = is_strange and not self.found.values.get("near")
-        said = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
+        text = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
         are_sentence = len(self.words) > 1 and len(self.source[self.piece]) <= _LONGEST
         labels: dict[str, object] = {
             code.number: True,
@@ -248,7 +252,7 @@ class Usage:
                 "@strange": True,
                 "@pressed": self._is_pressed(),
                 "@instead": said_instead(self.signs[0]),
-                "@switched": any(said_of(each, "on", "off") for each in said),
+                "@switched": any(said_of(each, "on", "off") for each in text),
                 "@button": any(map(self.is_button, self.words)) and self.signs[1:2] != ["("],
                 "@turned": any(said_of(each, "turn", "lap") for each in self.words),
                 "@sentence": are_sentence and not {*self.signs} & {*COMPARISONS, "(", "="},
@@ -258,7 +262,7 @@ class Usage:
     def _is_pressed(self) -> bool:
         """Whether parts of one word say that a button is pressed: `onButtonPressed(…)`."""
         parted = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
-        return len(parted) > 1 and any(self.is_button(plain(each)) for each in parted)
+        return len(parted) > 1 and any(self.is_button(plain(item)) for item in parted)
 
     def _label_of(self, k: int) -> str:
         text, span = self.row[k].text, self.spans[k + 1]
@@ -277,19 +281,19 @@ class Usage:
     def told(self, row: Row, gaps: Gaps) -> Diagnostic:
         """Return what a row tells: of the place, or where its words say."""
         values, fix = gaps.filled, gaps.filled.get("fix", "")
-        span = next((_PLACES[each](self) for each in row.how if each in _PLACES), self.found.span)
+        span = next((_PLACES[item](self) for item in row.how if item in _PLACES), self.found.span)
         code = row.code or self.found.code
         if row.code is None:
             values = {**self.found.values, **values}
         place = self.piece if {*row.how} & {"offered", "whole"} else None
         repair = Repair((Edit(self.piece, fix),), False) if "offered" in row.how else None
         if "everywhere" in row.how:
-            edits = (Edit(each, values["right"]) for each in self.renamed())
+            edits = (Edit(item, values["right"]) for item in self.renamed())
             repair = Repair(tuple(edits), False)
-        told = Diagnostic(code, span, values, place, repair)
+        diagnostic = Diagnostic(code, span, values, place, repair)
         if "again" not in row.how:
-            return told
-        return _told(Usage(self.around, told)) or told
+            return diagnostic
+        return _usage_diagnostic(Usage(self.around, diagnostic)) or diagnostic
 
     def values(self) -> dict[str, str]:
         """Return what is said before the gaps of a row are filled."""
@@ -297,10 +301,10 @@ class Usage:
 
     def several(self, name: str, gaps: Gaps) -> Mapping[str, str]:
         """Return values that come together."""
-        found = _SEVERAL[name](self, gaps.filled.get("word", ""))
-        if not found:
+        result = _SEVERAL[name](self, gaps.filled.get("word", ""))
+        if not result:
             raise NoGap
-        return found
+        return result
 
     # -- what its words say -----------------------------------------------------------------------
 
@@ -319,9 +323,9 @@ class Usage:
         is_ended = word in BLOCK_ENDS and self.around.is_ended
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
-        found = lines.read(self.row, self.names) if word == "LOOP" else []  # else a guess
-        is_head = bool(found) and [each.kind for each in found[0].items or ()] == ["open"]
-        head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
+        result = lines.read(self.row, self.names) if word == "LOOP" else []  # else a guess
+        is_head = bool(result) and [item.kind for item in result[0].items or ()] == ["open"]
+        head = laid_out(result[0].tokens).strip("; ") if is_head else _usage(word)
         return head if is_ended else f"{head}; ...; {BLOCK_ENDS[word]}"
 
     def question(self, word: str) -> str:
@@ -330,16 +334,16 @@ class Usage:
         Nothing where no number is asked for.
         """
         asked = self.asked(word)
-        if not any(each.kind is NUMBER for each in asked):
+        if not any(item.kind is NUMBER for item in asked):
             return ""
-        said = laid_out(condition_in(asked, self.names))
-        return f"{word}({said})" if said else WORDS[word].usage
+        text = laid_out(condition_in(asked, self.names))
+        return f"{word}({text})" if text else WORDS[word].usage
 
     def asked(self, word: str) -> list[Lexeme]:
         """Return what stands behind a header, up to what is done."""
         behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.row)][1:]
         begun = DONE - {"L", "R"}  # `pared a la derecha`
-        meant = [_is_over(each) or self.names.meant(each.text) in begun for each in behind]
+        meant = [_is_over(item) or self.names.meant(item.text) in begun for item in behind]
         return behind[: [*meant, True].index(True)]
 
     def is_button(self, word: str) -> bool:
@@ -370,10 +374,10 @@ class Usage:
     @cached_property
     def turn(self) -> _Turn:
         """A turn that says no way, or no number."""
-        said = (*self.words, "_".join(self.words[:2]))
+        text = (*self.words, "_".join(self.words[:2]))
         way = next((it for it in map(self.names.meant, self.words) if it in ("L", "R")), "")
         degrees = {"half": "180", "whole": "360"}
-        halves = (it for it in degrees if any(said_of(each, it) for each in said))
+        halves = (it for it in degrees if any(said_of(each, it) for each in text))
         angle = degrees.get(next(halves, ""), "")
         is_timed = any(said_of(each, "unit")[:1] not in ((), ("turns",)) for each in self.words)
         numbers = [token.text for token in self.row if token.kind is NUMBER]
@@ -435,14 +439,14 @@ class Usage:
         is_word = found.isidentifier() and found not in WORDS and not self.names.is_name(found)
         if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
             return None
-        at = min(sum(each.text == "," for each in before), len(word.arguments) - 1)
+        at = min(sum(item.text == "," for item in before), len(word.arguments) - 1)
         argument = word.arguments[at]
         unit = said_of(found, "unit")
         way = UNIT_OF.get(word.text, "")
         is_of_way = bool(way) and unit == (WAYS[way].unit, "1000")
-        said = f"{before[-1].text} {way}" if is_of_way else ""
+        text = f"{before[-1].text} {way}" if is_of_way else ""
         return (
-            _NoValue(word, argument, before[-1].text, here, unit[0] if unit else "", said)
+            _NoValue(word, argument, before[-1].text, here, unit[0] if unit else "", text)
             if (argument.unit in _WANTED)
             else None
         )
@@ -456,8 +460,8 @@ class Usage:
 
     def in_words(self, word: str) -> dict[str, str]:
         """A question in words without brackets: `IF BRIGHT THEN STOP`."""
-        said = worded(self.asked(word), self.names) or {}
-        return said if said.get("asked") or said.get("question") else {}
+        text = worded(self.asked(word), self.names) or {}
+        return text if text.get("asked") or text.get("question") else {}
 
     def in_brackets(self, word: str) -> dict[str, str]:
         """A question in words in the brackets of a header: what they ask, else an example."""
@@ -477,8 +481,8 @@ class Usage:
         called = (match["name"] or "").upper()
         rest = self.text[match.end() :] if end == right else ""
         below = _row(rest) or (_before_blocks(rest, called) if called else [])
-        calls = [each for each in below if _calls(each, called)]
-        if inside := [each for each in below if each not in calls]:
+        calls = [item for item in below if _calls(item, called)]
+        if inside := [item for item in below if item not in calls]:
             values["example"] = "; ".join((head, *inside, right, *calls))
         return values
 
@@ -487,7 +491,7 @@ class Usage:
         rows = self.text.splitlines()
         k = self.source.position(self.found.span.start)[0] - 1
         behind = without_note(self.behind_it[: len(rows[k])])[0]
-        rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]
+        rest = [item.strip() for item in behind.split("\n")[0].split(";") if _WORD.search(item)]
         below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
             begun = self.source[Span(self.found.span.start, self.piece.end)]
@@ -521,7 +525,7 @@ class Usage:
         """Return each place where a word is meant as a name: S of `F(S, 80)`, not S alone."""
         word, _, _, is_def, _, _ = self.other_name
         tokens = scan(self.text).tokens
-        places = range(len(tokens)) if word in SINCE else _meant_as_name(tokens, word, is_def)
+        places = range(len(tokens)) if word in SINCE else _words_as_names(tokens, word, is_def)
         return [
             tokens[k].span for k in places
             if tokens[k].text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
@@ -574,7 +578,7 @@ class _OtherName(NamedTuple):
     is_everywhere: bool
 
 
-def _meant_as_name(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
+def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
     """Give the places where a word of the language is meant as the name of a DEF, or a variable.
 
     A DEF is called where its name stands alone, but not in its own body.
@@ -610,16 +614,16 @@ def _is_over(token: Lexeme) -> bool:
 def _row(text: str) -> list[str]:
     """Return the instructions of a text, nothing where they are many, or a block is among them."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
-    found = [each.strip() for row in rows for each in row if each.strip()]
-    is_long = len(found) > _MANY_BELOW or any(map(_IS_BLOCK.match, found))
-    return [] if is_long else found
+    matches = [item.strip() for row in rows for item in row if item.strip()]
+    is_long = len(matches) > _MANY_BELOW or any(map(_IS_BLOCK.match, matches))
+    return [] if is_long else matches
 
 
 def _before_blocks(text: str, name: str) -> list[str]:
     """Return the instructions before the first block of a text, and before a call of a name."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
-    found = (each.strip() for row in rows for each in row if each.strip())
-    inside = [*takewhile(lambda it: not _IS_BLOCK.match(it) and not _calls(it, name), found)]
+    result = (item.strip() for row in rows for item in row if item.strip())
+    inside = [*takewhile(lambda it: not _IS_BLOCK.match(it) and not _calls(it, name), result)]
     return inside if len(inside) <= _MANY_BELOW else []
 
 
@@ -638,12 +642,12 @@ def _usage(word: str) -> str:
 # -- gaps -----------------------------------------------------------------------------------------
 
 
-def _named_by(gaps: Gaps) -> str:
+def _intended_word(gaps: Gaps) -> str:
     """The word that means what is written in its place."""
-    return _usage_at(gaps).named(_right(gaps), _usage_at(gaps).meant)
+    return _usage_at(gaps).named(_offered_word(gaps), _usage_at(gaps).meant)
 
 
-def _right(gaps: Gaps) -> str:
+def _offered_word(gaps: Gaps) -> str:
     """The word that what is offered begins with."""
     return re.split("[(;]", gaps.filled["fix"])[0]
 
@@ -658,31 +662,31 @@ def _block(gaps: Gaps) -> str:
 
 def _order(gaps: Gaps) -> str:
     """The one order that words say."""
-    said = _usage_at(gaps).orders
-    return said[0].text if len(said) == 1 and not said[0].is_side_free else ""
+    text = _usage_at(gaps).orders
+    return text[0].text if len(text) == 1 and not text[0].is_side_free else ""
 
 
-def _several(gaps: Gaps, is_sided: bool) -> str:
+def _spoken_orders(gaps: Gaps, is_sided: bool) -> str:
     """The orders that words say; `is_sided`: of one nobody says which way it turns."""
-    said = _usage_at(gaps).orders
-    is_free = any(each.is_side_free for each in said)
-    return written(said) if len(said) > 1 and is_free is is_sided else ""
+    text = _usage_at(gaps).orders
+    is_free = any(item.is_side_free for item in text)
+    return written(text) if len(text) > 1 and is_free is is_sided else ""
 
 
 def _other_orders(gaps: Gaps) -> set[str]:
     """Orders beside a turn, which it alone would lose."""
-    said = _usage_at(gaps).ordered.items()
-    return {its for word, its in said if not said_of(word, "right")} - {"L", "R", "B", "S"}
+    text = _usage_at(gaps).ordered.items()
+    return {its for word, its in text if not said_of(word, "right")} - {"L", "R", "B", "S"}
 
 
-def _endless(gaps: Gaps) -> str:
+def _forever_word(gaps: Gaps) -> str:
     """The word for FOREVER, where words say no order."""
     usage = _usage_at(gaps)
-    endless = (each for each in usage.words if usage.names.meant(each) == "FOREVER")
+    endless = (word for word in usage.words if usage.names.meant(word) == "FOREVER")
     return "" if usage.meant else next(endless, "")
 
 
-def _word_said(gaps: Gaps) -> str:
+def _foreign_word(gaps: Gaps) -> str:
     """The word of another language that begins an instruction, or says one."""
     usage = _usage_at(gaps)
     return next(filter(usage.names.meant, (*usage.words[:1], usage.meant)), "")
@@ -690,7 +694,7 @@ def _word_said(gaps: Gaps) -> str:
 
 def _concept(gaps: Gaps) -> str:
     """The word of the language that it means."""
-    found, word = _usage_at(gaps), _word_said(gaps)
+    found, word = _usage_at(gaps), _foreign_word(gaps)
     concept = found.names.meant(word)
     is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
     is_among = concept == "S" and {*found.ordered.values()} != {"S"}  # `ve para adelante`
@@ -702,7 +706,7 @@ def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
     concept, row = _concept(gaps), _usage_at(gaps).row
     if not concept or WORDS[concept].arguments:
         return ""
-    has_number = any(each.kind is NUMBER for each in row)
+    has_number = any(item.kind is NUMBER for item in row)
     return concept if (has_number if is_numbered else len(row) == 1) else ""
 
 
@@ -712,7 +716,7 @@ def _asking(word: str) -> str:
 
 def _variable(gaps: Gaps) -> str:
     usage = _usage_at(gaps)
-    return next((each for each in usage.words if each in usage.names.variables), "")
+    return next((word for word in usage.words if word in usage.names.variables), "")
 
 
 def _own_example(gaps: Gaps) -> str:
@@ -722,7 +726,7 @@ def _own_example(gaps: Gaps) -> str:
     return example if lines.is_right(lexemes(example.split("; ")[-1]), usage.names) else ""
 
 
-def _often(gaps: Gaps) -> str:
+def _loop_of_repeated(gaps: Gaps) -> str:
     """The loop of a word that stands several times."""
     own = _usage_at(gaps).own
     return f"LOOP({own.times});{own.name};END_LOOP" if own.times > 1 else ""
@@ -740,7 +744,7 @@ def _end(gaps: Gaps) -> str:
     return next(named, "") or usage.around.end_at(usage.piece.start)
 
 
-def _done(gaps: Gaps) -> str:
+def _method_call(gaps: Gaps) -> str:
     """What a part of a thing does, if that is a call: WRITE of `servo.write`."""
     thing, _, done = plain(gaps.place.text[slice(*_member(_usage_at(gaps)))]).rpartition(".")
     right = "" if said_of(thing, "device") else gaps.place.names.meant(done)
@@ -773,25 +777,25 @@ def _without_seconds(gaps: Gaps) -> str:
     return source[Span(piece.start, _end_of_value(usage))] + source[Span(span.end, piece.end)]
 
 
-def _no_value(gaps: Gaps, is_unit: bool) -> _NoValue | None:
-    found = _usage_at(gaps).no_value
-    return found if found and bool(found.unit) is is_unit else None
+def _missing_value(gaps: Gaps, is_unit: bool) -> _NoValue | None:
+    result = _usage_at(gaps).no_value
+    return result if result and bool(result.unit) is is_unit else None
 
 
 def _number_said(gaps: Gaps) -> str:
     """A number with a unit that values have, or with that of a way."""
-    said = _no_value(gaps, is_unit=True)
-    is_own = said is not None and (said.unit == said.argument.unit or bool(said.right))
+    text = _missing_value(gaps, is_unit=True)
+    is_own = text is not None and (text.unit == text.argument.unit or bool(text.right))
     here = _usage_at(gaps).source[_usage_at(gaps).found.span]
-    return f"{said.number} {here}" if said and is_own else ""
+    return f"{text.number} {here}" if text and is_own else ""
 
 
-def _way_said(gaps: Gaps) -> str:
-    said = _no_value(gaps, is_unit=True)
-    return said.right if said and said.unit != said.argument.unit else ""
+def _spoken_direction(gaps: Gaps) -> str:
+    text = _missing_value(gaps, is_unit=True)
+    return text.right if text and text.unit != text.argument.unit else ""
 
 
-def _foreign(gaps: Gaps) -> str:
+def _other_robots_word(gaps: Gaps) -> str:
     """A word with values that this robot does not have: whoever writes it wants the word."""
     usage = _usage_at(gaps)
     word = "".join(usage.words[:1])
@@ -806,7 +810,7 @@ def _in_words(gaps: Gaps) -> str:
     return "" if {*usage.words} <= own else usage.header()
 
 
-def _in_dark(gaps: Gaps) -> str:
+def _worded_header(gaps: Gaps) -> str:
     """The header of a name that asks something in words: DARK of `X > 5 OR DARK`."""
     usage = _usage_at(gaps)
     name = plain(usage.source[usage.found.span])
@@ -821,11 +825,11 @@ def _endless_move(gaps: Gaps) -> str:
     if not is_endless or not usage.signs or usage.signs[0] not in MOVES:
         return ""
     start, end = (place - usage.piece.start for place in usage.found.span)
-    said = usage.source[usage.piece]
-    return f"{said[:start]}FOREVER{said[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
+    text = usage.source[usage.piece]
+    return f"{text[:start]}FOREVER{text[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
 
 
-def _forever_first(gaps: Gaps) -> str:
+def _swapped_forever(gaps: Gaps) -> str:
     """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
     match = _FOREVER_BEHIND.fullmatch(_usage_at(gaps).source[_usage_at(gaps).piece])
     if match is None:
@@ -834,11 +838,11 @@ def _forever_first(gaps: Gaps) -> str:
     return f"{match[1].upper()}(FOREVER, {match[2].strip()}){until}"
 
 
-def _asked_behind(gaps: Gaps) -> str:
+def _until_with_move(gaps: Gaps) -> str:
     """An UNTIL with the move that it lacks."""
     usage = _usage_at(gaps)
-    asked = re.match(r"\s*(\([^()\n]+\))", usage.text[usage.found.span.start + 5 :])
-    return f"F(2, 80) UNTIL{asked[1]}" if asked else ""
+    match = re.match(r"\s*(\([^()\n]+\))", usage.text[usage.found.span.start + 5 :])
+    return f"F(2, 80) UNTIL{match[1]}" if match else ""
 
 
 def _arm(gaps: Gaps) -> str:
@@ -848,7 +852,7 @@ def _arm(gaps: Gaps) -> str:
     return arm if arm == "ELSE" and len(usage.row) == 2 else ""
 
 
-def _begun_again(gaps: Gaps) -> str:
+def _second_start(gaps: Gaps) -> str:
     """A beginning in the midst of a program, with its bar."""
     usage = _usage_at(gaps)
     is_bar = usage.behind_it.lstrip()[:1] == "|"
@@ -857,7 +861,7 @@ def _begun_again(gaps: Gaps) -> str:
 
 def _question_begun(gaps: Gaps) -> str:
     """IF, where SI has no bar behind it."""
-    return "IF" if _begun_again(gaps) == "SI" else ""
+    return "IF" if _second_start(gaps) == "SI" else ""
 
 
 def _saying_button(gaps: Gaps) -> str:
@@ -881,14 +885,14 @@ def _two_digits(gaps: Gaps) -> str:
     return around if re.fullmatch("[0-9]:[0-9]", around) else ""
 
 
-def _quoted(usage: Usage) -> Span:
+def _quoted_span(usage: Usage) -> Span:
     """Return the place from a quotation mark to the next one of its line."""
     start, end = usage.found.span
     closed = re.compile(rf"[^\n]*?{usage.text[start:end]}").match(usage.text, end)
     return Span(start, closed.end() if closed else end)
 
 
-def _dotted(usage: Usage) -> Span:
+def _dotted_span(usage: Usage) -> Span:
     match = usage.matched(_DOTS)
     return Span(*match.span("here")) if match else usage.found.span
 
@@ -896,7 +900,7 @@ def _dotted(usage: Usage) -> Span:
 def _rows_of_name(gaps: Gaps) -> list[str]:
     """The lines in which a word is meant as a name."""
     usage = _usage_at(gaps)
-    return [str(usage.source.position(each.start)[0]) for each in usage.renamed()]
+    return [str(usage.source.position(item.start)[0]) for item in usage.renamed()]
 
 
 def _other_rows(gaps: Gaps) -> list[str]:
@@ -906,15 +910,15 @@ def _other_rows(gaps: Gaps) -> list[str]:
 def _later_rows(gaps: Gaps) -> list[str]:
     """The lines in which TIME stands behind the first place."""
     usage = _usage_at(gaps)
-    places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", usage.text)][1:]
+    places = [match.start() for match in re.finditer(r"(?i)\bTIME\b", usage.text)][1:]
     return [str(usage.source.position(place)[0]) for place in places]
 
 
-def _one(lines: Sequence[str]) -> str:
+def _single_line(lines: Sequence[str]) -> str:
     return lines[0] if len(lines) == 1 else ""
 
 
-def _many(lines: Sequence[str]) -> str:
+def _line_list(lines: Sequence[str]) -> str:
     return "" if len(lines) == 1 else ", ".join(lines)
 
 
@@ -926,22 +930,22 @@ def _times_in_line(gaps: Gaps) -> str:
 def _words_behind(gaps: Gaps) -> str:
     """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
     usage = _usage_at(gaps)
-    said = usage.source[_behind(usage)]
-    right = lines.right(lexemes(said), usage.names)
-    return shortened(said) if isinstance(right, Failure) and right.at == 0 else ""
+    text = usage.source[_following_span(usage)]
+    right = lines.right(lexemes(text), usage.names)
+    return shortened(text) if isinstance(right, Failure) and right.at == 0 else ""
 
 
-def _behind(usage: Usage) -> Span:
+def _following_span(usage: Usage) -> Span:
     return Span(usage.found.span.start, usage.piece.end)
 
 
-def _plain_letters(gaps: Gaps) -> str:
+def _unaccented_name(gaps: Gaps) -> str:
     """A name in the letters that a name has, which the language knows."""
     right, concept = _usage_at(gaps).letters
     return right if concept in WORDS or _usage_at(gaps).names.has(concept) else ""
 
 
-def _called_here(gaps: Gaps) -> str:
+def _called_name(gaps: Gaps) -> str:
     usage = _usage_at(gaps)
     is_call = usage.behind_it.lstrip(" ").startswith("(")
     return usage.source[usage.found.span].upper() if is_call else ""
@@ -955,14 +959,14 @@ def _lamp_here(gaps: Gaps) -> str:
     return word if usage.is_first and not has_lamp and concept_of(plain(word)) == "LED" else ""
 
 
-def _said_first(gaps: Gaps) -> str:
+def _leading_filler(gaps: Gaps) -> str:
     """A word that says nothing, or the button, and begins an instruction."""
     found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     is_said = said_of(right, "filler") or found.is_button(right)
     return right if found.is_first and is_said else ""
 
 
-def _cased(gaps: Gaps) -> str:
+def _in_capitals(gaps: Gaps) -> str:
     found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     return right if found.source[found.found.span].isupper() else right.capitalize()
 
@@ -977,14 +981,15 @@ def _usage_at(gaps: Gaps) -> Usage:
     return gaps.place
 
 
-def _of(get: Callable[[Usage], str | None]) -> Callable[[Gaps], str]:
+def _gap_of(get: Callable[[Usage], str | None]) -> Callable[[Gaps], str]:
     return lambda gaps: get(_usage_at(gaps)) or ""
 
 
 # Where a row tells what it says, but where it was found.
 _PLACES: dict[str, Callable[[Usage], Span]] = {
-    "here": lambda it: it.piece, "behind": _behind, "member": _member, "quoted": _quoted,
-    "dots": _dotted,
+    "here": lambda it: it.piece, "behind": _following_span, "member": _member,
+    "quoted": _quoted_span,
+    "dots": _dotted_span,
     "first": lambda it: Span(it.piece.start, it.piece.start + len(it.words[0])),
     "amount": _amount_place,
 }  # fmt: skip
@@ -997,76 +1002,80 @@ _SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
 }  # fmt: skip
 GAPS: dict[str, Callable[[Gaps], str]] = {
-    "said": _of(lambda it: it.source[it.piece]), "here": _of(lambda it: it.source[it.found.span]),
-    "first": _of(lambda it: it.signs[0]), "sign": _of(lambda it: it.signs[1]),
-    "step": _of(lambda it: it.signs[1][0]), "number": _of(lambda it: it.number),
-    "found": _of(lambda it: it.found.values["found"]),
-    "word": _of(lambda it: it.found.values["word"]),
-    "right": _right, "named": _named_by,
-    "named_first": lambda gaps: _usage_at(gaps).named(_right(gaps), _usage_at(gaps).signs[0]),
-    "usage": lambda gaps: _usage(_right(gaps)),
-    "takes": lambda gaps: _usage(_right(gaps)) if _usage_at(gaps).orders[0].samples else "",
-    "block": _block, "order": _order, "sided": lambda gaps: _several(gaps, is_sided=True),
-    "several": lambda gaps: _several(gaps, is_sided=False),
-    "made_up": _of(lambda it: made_up(it.orders)), "endless": _endless,
+    "said": _gap_of(lambda it: it.source[it.piece]),
+    "here": _gap_of(lambda it: it.source[it.found.span]),
+    "first": _gap_of(lambda it: it.signs[0]), "sign": _gap_of(lambda it: it.signs[1]),
+    "step": _gap_of(lambda it: it.signs[1][0]), "number": _gap_of(lambda it: it.number),
+    "found": _gap_of(lambda it: it.found.values["found"]),
+    "word": _gap_of(lambda it: it.found.values["word"]),
+    "right": _offered_word, "named": _intended_word,
+    "named_first": lambda gaps: _usage_at(gaps).named(_offered_word(gaps),
+        _usage_at(gaps).signs[0]),
+    "usage": lambda gaps: _usage(_offered_word(gaps)),
+    "takes": lambda gaps: _usage(_offered_word(gaps)) if _usage_at(gaps).orders[0].samples else "",
+    "block": _block, "order": _order, "sided": lambda gaps: _spoken_orders(gaps, is_sided=True),
+    "several": lambda gaps: _spoken_orders(gaps, is_sided=False),
+    "made_up": _gap_of(lambda it: made_up(it.orders)), "endless": _forever_word,
     "others": lambda gaps: ", ".join(_other_orders(gaps)),
-    "way": _of(lambda it: it.turn.way), "angle": _of(lambda it: it.turn.angle),
-    "side": _of(lambda it: {"L": "left", "R": "right"}.get(it.turn.way)),
-    "turned": _of(lambda it: it.turn.values), "way_usage": _of(lambda it: _usage(it.turn.way)),
-    "word_said": _word_said, "concept": _concept, "asking": lambda gaps: _asking(_concept(gaps)),
+    "way": _gap_of(lambda it: it.turn.way), "angle": _gap_of(lambda it: it.turn.angle),
+    "side": _gap_of(lambda it: {"L": "left", "R": "right"}.get(it.turn.way)),
+    "turned": _gap_of(lambda it: it.turn.values),
+    "way_usage": _gap_of(lambda it: _usage(it.turn.way)),
+    "word_said": _foreign_word, "concept": _concept, "asking": lambda gaps: _asking(_concept(gaps)),
     "concept_alone": lambda gaps: _concept_alone(gaps, is_numbered=False),
     "concept_numbered": lambda gaps: _concept_alone(gaps, is_numbered=True),
     "concept_usage": lambda gaps: _usage_at(gaps).usage(_concept(gaps)), "variable": _variable,
-    "often_taught": _of(lambda it: "LOOP" * it.own.is_often),
-    "taught": _of(lambda it: it.own.taught),
-    "untaught": _of(lambda it: it.own.name * it.own.is_taught), "often": _often,
-    "likely": _of(lambda it: likely_word(it.signs[0], it.source[it.piece])),
-    "plus": _of(lambda it: "-" if f"-{it.number}" in "".join(it.signs) else "+"),
+    "often_taught": _gap_of(lambda it: "LOOP" * it.own.is_often),
+    "taught": _gap_of(lambda it: it.own.taught),
+    "untaught": _gap_of(lambda it: it.own.name * it.own.is_taught), "often": _loop_of_repeated,
+    "likely": _gap_of(lambda it: likely_word(it.signs[0], it.source[it.piece])),
+    "plus": _gap_of(lambda it: "-" if f"-{it.number}" in "".join(it.signs) else "+"),
     "own_example": _own_example,
-    "own": _own_name, "end": _end, "done": _done,
-    "done_usage": lambda gaps: _usage_at(gaps).usage(_done(gaps)),
-    "member": _of(lambda it: it.text[slice(*_member(it))]),
-    "bare_asking": _of(lambda it: _asking(it.found.values["word"])),
-    "bare_example": _of(lambda it: WORDS[it.meant].example
+    "own": _own_name, "end": _end, "done": _method_call,
+    "done_usage": lambda gaps: _usage_at(gaps).usage(_method_call(gaps)),
+    "member": _gap_of(lambda it: it.text[slice(*_member(it))]),
+    "bare_asking": _gap_of(lambda it: _asking(it.found.values["word"])),
+    "bare_example": _gap_of(lambda it: WORDS[it.meant].example
                         if len(it.row) == 1 and it.meant in WORDS and WORDS[it.meant].arguments
                         else ""),
-    "bare_usage": _of(lambda it: it.usage(it.found.values["word"])),
-    "first_usage": _of(lambda it: it.usage(it.signs[0])),
+    "bare_usage": _gap_of(lambda it: it.usage(it.found.values["word"])),
+    "first_usage": _gap_of(lambda it: it.usage(it.signs[0])),
     "unit": _unit_behind, "without_seconds": _without_seconds, "number_said": _number_said,
-    "way_said": _way_said,
-    "value_name": lambda gaps: it.argument.name if (it := _no_value(gaps, True)) else "",
-    "wanted": lambda gaps: _WANTED[it.argument.unit] if (it := _no_value(gaps, True)) else "",
-    "extra": lambda gaps: it.found if (it := _no_value(gaps, False)) else "",
-    "value_found": _of(lambda it: it.no_value and it.no_value.found),
-    "value_word": _of(lambda it: it.no_value and it.no_value.word.text),
-    "value_usage": _of(lambda it: it.no_value and it.no_value.word.usage),
-    "foreign": _foreign, "in_words": _in_words, "in_dark": _in_dark,
-    "amount": _of(lambda it: it.amount.get("amount")),
-    "endless_move": _endless_move, "forever_first": _forever_first, "asked_behind": _asked_behind,
-    "arm": _arm, "begun_again": _begun_again, "question_begun": _question_begun,
-    "twice": lambda gaps: _begun_again(gaps) if _usage_at(gaps).around.begun == "SB" else "",
-    "named_endless": lambda gaps: _usage_at(gaps).named("LOOP", _endless(gaps)),
-    "instead": _of(lambda it: it.around.begun), "saying_button": _saying_button,
+    "way_said": _spoken_direction,
+    "value_name": lambda gaps: it.argument.name if (it := _missing_value(gaps, True)) else "",
+    "wanted": lambda gaps: _WANTED[it.argument.unit] if (it := _missing_value(gaps, True)) else "",
+    "extra": lambda gaps: it.found if (it := _missing_value(gaps, False)) else "",
+    "value_found": _gap_of(lambda it: it.no_value and it.no_value.found),
+    "value_word": _gap_of(lambda it: it.no_value and it.no_value.word.text),
+    "value_usage": _gap_of(lambda it: it.no_value and it.no_value.word.usage),
+    "foreign": _other_robots_word, "in_words": _in_words, "in_dark": _worded_header,
+    "amount": _gap_of(lambda it: it.amount.get("amount")),
+    "endless_move": _endless_move, "forever_first": _swapped_forever,
+    "asked_behind": _until_with_move,
+    "arm": _arm, "begun_again": _second_start, "question_begun": _question_begun,
+    "twice": lambda gaps: _second_start(gaps) if _usage_at(gaps).around.begun == "SB" else "",
+    "named_endless": lambda gaps: _usage_at(gaps).named("LOOP", _forever_word(gaps)),
+    "instead": _gap_of(lambda it: it.around.begun), "saying_button": _saying_button,
     "part": _part_of_when, "two_digits": _two_digits,
-    "sign_means": _of(lambda it: concept_of(it.source[it.found.span])),
-    "sign_usage": _of(lambda it: _usage(concept_of(it.source[it.found.span]) or "")),
-    "everywhere": _of(lambda it: it.other_name.right if it.other_name.is_everywhere else ""),
-    "since": _of(lambda it: SINCE.get(it.other_name.word)),
+    "sign_means": _gap_of(lambda it: concept_of(it.source[it.found.span])),
+    "sign_usage": _gap_of(lambda it: _usage(concept_of(it.source[it.found.span]) or "")),
+    "everywhere": _gap_of(lambda it: it.other_name.right if it.other_name.is_everywhere else ""),
+    "since": _gap_of(lambda it: SINCE.get(it.other_name.word)),
     "name_line": lambda gaps: "".join(_other_rows(gaps)[:1]),
-    "name_lines": lambda gaps: _many(_other_rows(gaps)), "name_times": _times_in_line,
-    "name_right": _of(lambda it: it.other_name.suggestion or it.other_name.right),
-    "time_right": _of(lambda it: it.other_name.right
+    "name_lines": lambda gaps: _line_list(_other_rows(gaps)), "name_times": _times_in_line,
+    "name_right": _gap_of(lambda it: it.other_name.suggestion or it.other_name.right),
+    "time_right": _gap_of(lambda it: it.other_name.right
                       if it.other_name.is_set and it.other_name.is_set[1] else ""),
-    "clock": _of(lambda it: it.other_name.right
+    "clock": _gap_of(lambda it: it.other_name.right
                  if it.other_name.is_set and not it.other_name.is_set[1] else ""),
-    "time_line": lambda gaps: _one(_later_rows(gaps)),
-    "time_lines": lambda gaps: _many(_later_rows(gaps)),
-    "note": _of(lambda it: "/*" if it.text.startswith("/*", it.found.span.start) else ""),
-    "sensor": _of(lambda it: it.function if it.function in it.names.sensors else ""),
-    "input": _of(lambda it: it.function if said_of(it.function, "input") else ""),
-    "words_behind": _words_behind, "before": _of(lambda it: it.found.values["before"]),
-    "plain_letters": _plain_letters, "letters_mean": _of(lambda it: it.letters[1]),
-    "letters_usage": _of(lambda it: it.usage(it.letters[1])), "called_here": _called_here,
+    "time_line": lambda gaps: _single_line(_later_rows(gaps)),
+    "time_lines": lambda gaps: _line_list(_later_rows(gaps)),
+    "note": _gap_of(lambda it: "/*" if it.text.startswith("/*", it.found.span.start) else ""),
+    "sensor": _gap_of(lambda it: it.function if it.function in it.names.sensors else ""),
+    "input": _gap_of(lambda it: it.function if said_of(it.function, "input") else ""),
+    "words_behind": _words_behind, "before": _gap_of(lambda it: it.found.values["before"]),
+    "plain_letters": _unaccented_name, "letters_mean": _gap_of(lambda it: it.letters[1]),
+    "letters_usage": _gap_of(lambda it: it.usage(it.letters[1])), "called_here": _called_name,
     "lamp_here": _lamp_here,
-    "said_first": _said_first, "cased": _cased,
+    "said_first": _leading_filler, "cased": _in_capitals,
 }  # fmt: skip

@@ -41,10 +41,10 @@ def parse_toml(text: str) -> dict[str, object] | Reason:
 @contextmanager
 def root_of(text: str, refused: type[ProfileRefused]) -> Iterator[Table]:
     """Yield the table of a whole file. Raises `refused` with all that has been complained of."""
-    found = parse_toml(text)
-    if isinstance(found, tuple):
-        raise refused(found)
-    root = Table(found, "", [])
+    result = parse_toml(text)
+    if isinstance(result, tuple):
+        raise refused(result)
+    root = Table(result, "", [])
     yield root
     root.finish()
     if root.reasons:
@@ -140,14 +140,14 @@ class Table:
         if not isinstance(value, list) or len(value) != 2:
             self.expect("pair", key, value)
             return 0, 0
-        first, second = (self._thousandths(key, each, LOWEST, HIGHEST) for each in value)
+        first, second = (self._thousandths(key, item, LOWEST, HIGHEST) for item in value)
         return first, second
 
     def pairs(self, key: str, low: int, high: int, example: str) -> list[tuple[int, int]] | None:
         """Return the thousandths of `[[x, y], ...]`, each from `low` to `high`; None: no list."""
         value = self.get(key, example)
         if not isinstance(value, list) or not all(
-            isinstance(each, list) and len(each) == 2 for each in value
+            isinstance(item, list) and len(item) == 2 for item in value
         ):
             self.expect("pairs", key, value)
             return None

@@ -55,7 +55,7 @@ class Scope:
         }
         self.set_somewhere = self._first.keys()
         self.parsed = parsed
-        self.def_names = {each.name for each in parsed.body if isinstance(each, ast.Def)}
+        self.def_names = {item.name for item in parsed.body if isinstance(item, ast.Def)}
         self.wanted: dict[str, list[str]] = {}  # the names in a DEF that nothing gives a value
 
     def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
@@ -65,7 +65,7 @@ class Scope:
         """Say that `name` is used before it has a value, and how it gets one first."""
         said = self._line_to_move_up(name, used)
         body = self.parsed.body
-        around = next((each for each in body if each.span.end > used.start), body[0])
+        around = next((item for item in body if item.span.end > used.start), body[0])
         row = self.source.position(around.span.start)[0]
         if said["line"] and row < self.source.position(used.start)[0]:
             said = {**said, "row": str(row)}  # inside a block it would be done again and again

@@ -111,8 +111,8 @@ def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
     """
     if part in names or len(scope.diagnostics) >= ENOUGH:
         return ""
-    found = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
-    return found[0] if len(found) == 1 else ""
+    matches = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
+    return matches[0] if len(matches) == 1 else ""
 
 
 def _is_shortened(one: str, other: str) -> bool:
@@ -136,12 +136,12 @@ def report_not_callable(scope: Scope, node: ast.Command) -> None:
     if re.search(rf"(?i)\bDEF\s+{node.word}[ \t]*\([^)\n]*\w", scope.source.text):
         return  # what is wrong in the brackets of the DEF has been said
     texts = [scope.source[argument.span] for argument in node.arguments or ()]
-    said = {"named": node.word} if node.word in scope.def_names else {}
+    text = {"named": node.word} if node.word in scope.def_names else {}
     fix, names = "", _wanted(scope, node.word)
-    if said and texts and len(names) == len(texts):
-        said["head"] = f"DEF {node.word}({', '.join(names)})"
-    elif said and len(texts) == 1 and texts[0].isdecimal() and 1 < int(texts[0][:9]) <= MANY_TIMES:
-        said["times"] = texts[0]
+    if text and texts and len(names) == len(texts):
+        text["head"] = f"DEF {node.word}({', '.join(names)})"
+    elif text and len(texts) == 1 and texts[0].isdecimal() and 1 < int(texts[0][:9]) <= MANY_TIMES:
+        text["times"] = texts[0]
         fix = f"LOOP({texts[0]});{node.word};{BLOCK_ENDS['LOOP']}"
-    place = node.span if "times" in said else None
-    scope.report(codes.NOT_CALLABLE, node.span, place, name=node.word, fix=fix, **said)
+    place = node.span if "times" in text else None
+    scope.report(codes.NOT_CALLABLE, node.span, place, name=node.word, fix=fix, **text)

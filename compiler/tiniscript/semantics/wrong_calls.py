@@ -104,8 +104,8 @@ class WrongCalls:
         call = source[Span(node.span.start, start)].rstrip()
         own = self.scope.names.get(node.word)
         role = word.role.name if word else own.what if own else "def"
-        said = _ENDED.get(role, "F(5, 60) UNTIL({c})")
-        example = said.format(call=call, c=source[until.span])
+        text = _ENDED.get(role, "F(5, 60) UNTIL({c})")
+        example = text.format(call=call, c=source[until.span])
         place = Span(start, node.span.end)
         self.scope.report(codes.UNTIL_NOT_HERE, place, word=node.word, example=example)
 
@@ -133,7 +133,7 @@ class WrongCalls:
         values = {
             "usage": word.usage,
             "example": "" if texts else word.example,
-            **_said_of_count(texts, word, _UNTIL.search(source[span])),
+            **_count_values(texts, word, _UNTIL.search(source[span])),
             **self._as_way(texts, word),
             "wanted": str(len(word.arguments)),
             "found": str(len(arguments)),
@@ -180,11 +180,11 @@ class WrongCalls:
     ) -> None:  # fmt: skip
         """`number`, in thousandths, is a value of the command `of`, if of one."""
         low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
-        said = {} if of is None else meant(self.scope.source, *of)
-        said |= {"low": low, "high": high, "found": as_text(number)}
+        text = {} if of is None else meant(self.scope.source, *of)
+        text |= {"low": low, "high": high, "found": as_text(number)}
         place = None if of is None else _without_until(self.scope.source, of[0])
         self.scope.report(codes.OUT_OF_RANGE, span, place, word=word, name=its.name,
-                          unit=its.unit, **said)  # fmt: skip
+                          unit=its.unit, **text)  # fmt: skip
 
     def no_number(self, span: Span, word: str) -> None:
         """A yes or no where `word` takes a number."""
@@ -370,30 +370,30 @@ def _is_note(text: str) -> bool:
     return _is_whole(text) >= _LOW_TONE and _is_whole(text) % _ROUND != 0
 
 
-def _said_of_count(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
+def _count_values(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
     """Return what is said of a wrong number of values: `power` of F(80) is F(2, 80), `spare` of
     F(2, 80, 5) is F(2, 80).
 
     `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL the time may be FOREVER.
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
-    said = {"power": "", "spare": "", "kept": ""}
+    result = {"power": "", "spare": "", "kept": ""}
     if word.role.is_move and len(texts) == 1 and _LONG_TIME_S <= numbers[0] <= _MOST_POWER:
-        said["power"] = _call(word, [TIME.sample, texts[0]])
+        result["power"] = _call(word, [TIME.sample, texts[0]])
         if until is not None:
-            said["endless"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
-        said["number"] = texts[0]
+            result["endless"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
+        result["number"] = texts[0]
     elif len(texts) > len(word.arguments) and min(numbers) >= 0:
         is_sound = word.role.name == "beep" and numbers[1] > _LOWEST_HERTZ
         if is_sound or len(word.arguments) == 1:
-            said["spare"] = _call(word, texts[: len(word.arguments)])
+            result["spare"] = _call(word, texts[: len(word.arguments)])
         if word.role.is_move and numbers[0] < _LONG_TIME_S <= numbers[1] <= _MOST_POWER:
-            said["spare"] = _call(word, texts[:2])
+            result["spare"] = _call(word, texts[:2])
         is_timed = word.role.name == "wait" and len(texts) == len(_TIME_AND_POWER)
         for first, second in (_TIME_AND_POWER, _TIME_AND_POWER[::-1]):
             if is_timed and 0 <= numbers[first] < _LONG_TIME_S <= numbers[second] <= _MOST_POWER:
-                said["kept"] = _call(word, [texts[first]])
-    return said
+                result["kept"] = _call(word, [texts[first]])
+    return result
 
 
 def _call(word: Word, texts: Sequence[str]) -> str:

@@ -98,8 +98,8 @@ class WrongValues:
         scope = self.scope
         if not is_amount(name) and not said_of(name, "power"):
             return {}
-        said = with_number(scope.source.text, span, scope.set_somewhere)
-        return said if is_amount(name) or "(" in said.get("example", "") else {}
+        text = with_number(scope.source.text, span, scope.set_somewhere)
+        return text if is_amount(name) or "(" in text.get("example", "") else {}
 
     def _is_said(self, span: Span) -> bool:
         """Whether the example for a value of the same call has a number for this one, too."""
@@ -135,19 +135,19 @@ class WrongValues:
         `X = 5 OR 6` means `X = 5 OR X = 6`, and `X AND Y > 5` means `X > 5 AND Y > 5`.
         """
         span = Span(operand.start, operand.end)
-        found = self.scope.source[span]
+        result = self.scope.source[span]
         values = self.condition(span)
         if by == "NOT" and "example" in values:  # NOT X is `X = 0`, as other languages have it
-            values = {**values, "example": f"{found.upper()} > 0"}
+            values = {**values, "example": f"{result.upper()} > 0"}
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
             before, after = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
-            is_sensor = found.upper() in (reading.name for reading in self.scope.kit.readings)
+            is_sensor = result.upper() in (reading.name for reading in self.scope.kit.readings)
             if other.start < operand.start and before and not is_sensor:
-                values = {"fix": f"{before[0]} {found}"}
-            elif after and found.isidentifier():
-                values = {"fix": f"{found} {after[1]}"}
-        self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=found, **values)
+                values = {"fix": f"{before[0]} {result}"}
+            elif after and result.isidentifier():
+                values = {"fix": f"{result} {after[1]}"}
+        self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=result, **values)
 
     def condition(self, span: Span) -> dict[str, str]:
         """Return the yes or no that a number alone means, or an example of a condition with it."""
@@ -167,10 +167,10 @@ class WrongValues:
         """`BUTTON = 1` is `BUTTON`, and `BUTTON = 0` is `NOT BUTTON`."""
         number, answer = (left, right) if left.type == NUMBER else (right, left)
         digit = self.scope.source[Span(number.start, number.end)]
-        found = self.scope.source[Span(answer.start, answer.end)]
-        if digit not in ("0", "1") or op not in _EQUAL or not found.isidentifier():
+        result = self.scope.source[Span(answer.start, answer.end)]
+        if digit not in ("0", "1") or op not in _EQUAL or not result.isidentifier():
             return ""
-        return found.upper() if (digit == "1") == (op == "EQ") else f"NOT {found.upper()}"
+        return result.upper() if (digit == "1") == (op == "EQ") else f"NOT {result.upper()}"
 
 
 def value_of_def(scope: Scope, span: Span) -> dict[str, str]:

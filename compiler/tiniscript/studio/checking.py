@@ -79,7 +79,8 @@ def check(data: bytes, robot: str, language: str) -> Checked:
         return Checked(b"", 0, findings, (), (), (), "", profile.name, names_robot)
     variables = tuple(map(Variable, compiled.program.variables, compiled.yes_no))
     places = source_map.made(compiled)
-    return Checked(compiled.image, len(compiled.code), findings, places.places, _shows(places),
+    return Checked(compiled.image, len(compiled.code), findings, places.places,
+        _show_places(places),
                    variables, compiled.program.start, profile.name, names_robot,
                    _remote(compiled, profile.kit))  # fmt: skip
 
@@ -90,10 +91,10 @@ def _remote(compiled: Compiled, kit: Kit) -> tuple[str, ...]:
     return tuple(device.name for k, device in enumerate(REMOTE) if k in read)
 
 
-def _shows(places: source_map.Map) -> tuple[tuple[int, Show], ...]:
+def _show_places(places: source_map.Map) -> tuple[tuple[int, Show], ...]:
     shows = Shows(places)
-    found = ((place.offset, shows.at(place.offset)) for place in places.places)
-    return tuple((offset, show) for offset, show in found if show)
+    result = ((place.offset, shows.at(place.offset)) for place in places.places)
+    return tuple((offset, show) for offset, show in result if show)
 
 
 def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
@@ -101,14 +102,14 @@ def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
 
     `which` counts the findings of this text from 0.
     """
-    found = _compiled(data, robot)
+    result = _compiled(data, robot)
 
     def check(text: str) -> list[Diagnostic]:
         changed = text.encode()
         return compile_source(changed, profile_for(changed, robot), "", is_strict=True).diagnostics
 
-    edits = offer(found.source.text, found.diagnostics, which, check)
-    return tuple(_change(edit, found.source) for edit in edits)
+    edits = offer(result.source.text, result.diagnostics, which, check)
+    return tuple(_change(edit, result.source) for edit in edits)
 
 
 def opened(data: bytes, robot: str, language: str) -> str | Message:
@@ -125,13 +126,13 @@ def line(data: bytes, robot: str, language: str) -> str | Message:
     Or what is wrong, where such a robot cannot read it.
     """
     profile = profile_for(data, robot)
-    found = compile_source(data, profile, "", is_strict=True)
-    if not found.is_right or found.program is None:
-        mistake = next(diagnostic for diagnostic in found.diagnostics if diagnostic.is_mistake)
-        return message(mistake, found.source, language)
+    result = compile_source(data, profile, "", is_strict=True)
+    if not result.is_right or result.program is None:
+        mistake = next(diagnostic for diagnostic in result.diagnostics if diagnostic.is_mistake)
+        return message(mistake, result.source, language)
     level = level_of(profile.board.chip, profile.board.discs is not None)
-    lacking = misfits(found.source, found.program, profile.kit, level)
-    return message(lacking[0], found.source, language) if lacking else line_of(found.source)
+    lacking = misfits(result.source, result.program, profile.kit, level)
+    return message(lacking[0], result.source, language) if lacking else line_of(result.source)
 
 
 @cache

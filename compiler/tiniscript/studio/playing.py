@@ -87,7 +87,7 @@ def ready(recording: Recording) -> Ready:
              if its.span.start in sensors}  # fmt: skip
     names = {device.name for device in profile.kit.readings}
     lines = compiled.source.text.split("\n")
-    reads = tuple(each.offset for each in places.places if names & _words(lines, each))
+    reads = tuple(item.offset for item in places.places if names & _words(lines, item))
     return Ready(recording, compiled.image, places, shows, reads)
 
 
@@ -252,19 +252,19 @@ class Played(Simulation):
         for _ in range(duration_ms):
             if self._is_over:
                 return
-            self._pass()
+            self._replace_readings()
             super()._go(1)
-            self._pass()
+            self._replace_readings()
             started_ms = self.robot.started_ms or 0
             is_late = self.robot.now_ms - started_ms >= self._until_ms()
             has_more = len(self._virtual) > len(self.recording.rows)
             has_ended = self.robot.started_ms is not None and not self.robot.is_running
             if is_late or has_more or has_ended:
                 if self.parting is None:
-                    self.parting = self._compared()
+                    self.parting = self._compare_runs()
                 return self._end()
 
-    def _pass(self) -> None:
+    def _replace_readings(self) -> None:
         """At each SHOW the sensor that it shows has the reading that the robot has shown."""
         self._listen()
         while self.held_at is not None:
@@ -276,10 +276,10 @@ class Played(Simulation):
 
     def _tell_shown(self, at: int) -> None:
         sensor, place = self.ready.shows[at], self.ready.places.at(at)
-        said = [row.event for row in self.recording.rows if _is_told(row)]
-        told = said[len(self._places)] if len(self._places) < len(said) else ""
-        if sensor is not None and told.startswith("SHOW"):
-            self.robot.sensing.tell(sensor, _number(told.removeprefix("SHOW ")))
+        texts = [row.event for row in self.recording.rows if _is_told(row)]
+        message = texts[len(self._places)] if len(self._places) < len(texts) else ""
+        if sensor is not None and message.startswith("SHOW"):
+            self.robot.sensing.tell(sensor, _number(message.removeprefix("SHOW ")))
             self._known.add(sensor)
         self._places.append(place.line if place is not None else 0)
 
@@ -323,31 +323,31 @@ class Played(Simulation):
         By its button its first row is waited for, whose time the recording does not have.
         """
         recording = self.recording
-        told = [row for row in recording.rows if _is_told(row)]
-        if not recording.is_by_button or not told:
+        messages = [row for row in recording.rows if _is_told(row)]
+        if not recording.is_by_button or not messages:
             return recording.end_ms + _off_ms(recording.end_ms)
-        said = [row for row in self._virtual if _is_told(row)]
-        if not said:
+        texts = [row for row in self._virtual if _is_told(row)]
+        if not texts:
             return MOST_MS
-        late_ms = said[0].ms - told[0].ms
+        late_ms = texts[0].ms - messages[0].ms
         return recording.end_ms + late_ms + _off_ms(recording.end_ms + late_ms)
 
-    def _compared(self) -> Parting:
+    def _compare_runs(self) -> Parting:
         rows = self.recording.rows
-        told = [row for row in rows if _is_told(row)]
+        messages = [row for row in rows if _is_told(row)]
         virtual = [row for row in self._virtual if _is_told(row)]
         if not rows or rows[0].event == "LOST":
             return Parting("empty")
         late_ms = 0
-        if self.recording.is_by_button and told and virtual:
-            late_ms = virtual[0].ms - told[0].ms
-        told = [row._replace(ms=row.ms + late_ms) for row in told]
+        if self.recording.is_by_button and messages and virtual:
+            late_ms = virtual[0].ms - messages[0].ms
+        messages = [row._replace(ms=row.ms + late_ms) for row in messages]
         end_ms = self.recording.end_ms + late_ms
         started_ms = self.robot.started_ms or 0
         before = len(virtual)  # rows of the virtual robot before it read what nobody knows
         if self._unread is not None:
             before = self._virtual.index(self._unread[1])
-        for count, recorded_row in enumerate(told):
+        for count, recorded_row in enumerate(messages):
             line = self._places[count] if count < len(self._places) else 0
             virtual_row = virtual[count] if count < len(virtual) else None
             if self._unread is not None and count >= before:
@@ -366,7 +366,7 @@ class Played(Simulation):
                 return Parting(
                     "time", count, line, recorded_row, virtual_row, "", virtual_row.ms + started_ms
                 )
-        count = len(told)
+        count = len(messages)
         cut = rows[-1].event if rows[-1].event in CUT else ""
         if self._unread is not None:
             return self._unread_parting(count, started_ms)

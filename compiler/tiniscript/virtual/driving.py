@@ -76,15 +76,15 @@ class Hull:
     def outline(self, pose: Pose, corners: int = 24) -> list[Point]:
         """Return points around the robot, for a picture."""
         back, front = self.spine(pose)
-        found = []
+        points = []
         for k in range(corners):
             middle = front if k < corners // 2 else back
             angle = math.radians(pose.heading - 90) + math.pi * (
                 k / (corners // 2 - 1) if k < corners // 2 else (k - 1) / (corners // 2 - 1)
             )
             x, y = self.radius_cm * math.cos(angle), self.radius_cm * math.sin(angle)
-            found.append(Point(middle.x + x, middle.y + y))
-        return found
+            points.append(Point(middle.x + x, middle.y + y))
+        return points
 
 
 class Drive(NamedTuple):
@@ -150,10 +150,10 @@ class Driving:
         """Return the pose at `now_ms`. This does not change the later path."""
         while self._kept_ms + STRIDE_MS <= now_ms:
             self._keep(STRIDE_MS)
-        return self._driven(self._pose, self._free_cm, now_ms - self._kept_ms).way[-1]
+        return self._drive_free(self._pose, self._free_cm, now_ms - self._kept_ms).way[-1]
 
     def _keep(self, duration_ms: float) -> None:
-        drive = self._driven(self._pose, self._free_cm, duration_ms)
+        drive = self._drive_free(self._pose, self._free_cm, duration_ms)
         self._kept_ms += duration_ms
         before = self._pose
         self._pose, self._free_cm = drive.way[-1], drive.free_cm
@@ -180,7 +180,7 @@ class Driving:
         bx, by = third.x_cm - second.x_cm, third.y_cm - second.y_cm
         return abs(ax * by - ay * bx) < 1e-6 and ax * bx + ay * by >= 0
 
-    def _driven(self, pose: Pose, free_cm: float, duration_ms: float) -> Drive:
+    def _drive_free(self, pose: Pose, free_cm: float, duration_ms: float) -> Drive:
         """Return the way from a pose on, of which `free_cm` are known to be free."""
         if (not self.left and not self.right) or duration_ms <= 0:
             return Drive([pose], free_cm)
@@ -198,8 +198,8 @@ class Driving:
                 free_cm -= speed * step_ms
                 is_known = False
             else:
-                wanted = moved(self.body, pose, *self._slowed(pose), step_ms)
-                pushed, free_cm = self._pushed(pose, wanted)
+                expected = moved(self.body, pose, *self._pushed_wheel_speeds(pose), step_ms)
+                pushed, free_cm = self._slide_along(pose, expected)
                 way.append(pushed)
                 is_known = True
             pose = way[-1]
@@ -213,7 +213,7 @@ class Driving:
         turning = abs(self.right - self.left) / 200 * math.radians(self.body.turn_s) / 1000
         return ahead + turning * self.hull.reach_cm
 
-    def _slowed(self, pose: Pose) -> tuple[float, float]:
+    def _pushed_wheel_speeds(self, pose: Pose) -> tuple[float, float]:
         """Return how fast the wheels are, in percent, where an obstacle pushes against the body.
 
         It pushes as much as keeps the body out. Each motor is slower by what pushes against it,
@@ -243,7 +243,7 @@ class Driving:
         push = comes / (ahead * ahead + turning * turning)
         return left - push * (ahead - turning), right - push * (ahead + turning)
 
-    def _pushed(self, before: Pose, pose: Pose) -> tuple[Pose, float]:
+    def _slide_along(self, before: Pose, pose: Pose) -> tuple[Pose, float]:
         """Return where a robot ends up on its way to `pose`, and the free distance there.
 
         It is pushed out of every obstacle; if that is not possible it stays where it was.

@@ -33,9 +33,9 @@ class Heartbeat:
         self._heard_s = wall_s
         *whole, self._open = (self._open + data).split(b"\0")
         self._open = self._open[:LONGEST]
-        for each in whole:
-            if each and len(each) < LONGEST:
-                self._frame = b"\0" + each + b"\0"  # it is repeated
+        for item in whole:
+            if item and len(item) < LONGEST:
+                self._frame = b"\0" + item + b"\0"  # it is repeated
 
     def forget(self) -> None:
         """Forget the last frame, because another client connects."""

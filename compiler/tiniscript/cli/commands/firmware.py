@@ -35,7 +35,7 @@ def run(options: Namespace, language: str) -> int:
         return 0
     if options.chip is None and inputs.robot(options, language).board.chip in ESP32S:
         return _esp32(options, language)
-    robot, bootloaders = _chosen(options, language)
+    robot, bootloaders = _selected_robot(options, language)
     if options.build:
         print(
             firmware_build.row(robot, firmware_build.firmware(robot, options, language), language)
@@ -69,7 +69,7 @@ def _esp32(options: Namespace, language: str) -> int:
     return 0
 
 
-def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader, ...]]:
+def _selected_robot(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader, ...]]:
     """Return the robot of the options, on its board, and the bootloaders that it may have."""
     if options.chip is not None and options.chip not in BOARDS:
         raise bad_choice("--chip", list(BOARDS), options.chip, language)
@@ -107,7 +107,7 @@ def _write(
     for bootloader in bootloaders:
         if bootloader is not bootloaders[0]:
             say_aside("flash_older", language)
-        ended = _written(command, bootloader, port, firmware, language)
+        ended = _write_firmware(command, bootloader, port, firmware, language)
         if ended.how != avrdude.NOBODY:
             break
     if ended.how != avrdude.DONE:
@@ -115,7 +115,7 @@ def _write(
         raise CommandError(3, f"flash_{ended.how}", **values)
 
 
-def _written(
+def _write_firmware(
     command: list[str], bootloader: Bootloader, port: str, firmware: Ready, language: str
 ) -> Ended:
     progress = Progress(language, 100)

@@ -73,7 +73,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             shown(device_info.name) or shipped_of_kit(device_info.kit) or f"{device_info.id:08x}"
         )
         owner = whose(device_info)
-        said = text("port_whose", language).format(
+        sentence = text("port_whose", language).format(
             said=text("port_robot", language).format(name=called),
             whose=text(f"whose_{owner}", language),
         )
@@ -82,7 +82,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "id": f"{device_info.id:08x}",
             "kit": f"{device_info.kit:04x}",
             "owner": owner,
-            "said": said,
+            "said": sentence,
         }
     if found is not None and (found.has_row or found.is_sure):
         return {"answer": None, "said": Said(told(found, language).said.rstrip("."))}

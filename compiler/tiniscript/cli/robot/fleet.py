@@ -113,7 +113,7 @@ class Fleet:
                     self._news.wait(LOOK_S)
                     self._news.clear()
                 self._refuse_unread()
-                self._tell(untold, table)
+                self._print_results(untold, table)
             except KeyboardInterrupt:
                 if self.is_interrupted:
                     return
@@ -132,7 +132,7 @@ class Fleet:
         if is_driving and not self.is_interrupted:
             streams.refuse_unread()
 
-    def _tell(self, untold: list[Member], table: FleetTable | None) -> None:
+    def _print_results(self, untold: list[Member], table: FleetTable | None) -> None:
         """Print the results that are new, and take those robots out of `untold`."""
         for member in [member for member in untold if member.result is not None]:
             if member.bug is not None:

@@ -54,12 +54,12 @@ def _upload(
     if not runs or options.detach:
         key = "how_waits" if not runs else "how_detached"
         printer.end = text(key, language).format(start=ready.image.start)
-    said = printer.end
+    sentence = printer.end
     if options.verbose:
-        said = text("crew_uploaded", language).format(
-            checksum=receipt["checksum"], code=receipt["code_bytes"], how=said
+        sentence = text("crew_uploaded", language).format(
+            checksum=receipt["checksum"], code=receipt["code_bytes"], how=sentence
         )
-    return Result(code == 0, said, {"checksum": receipt["checksum"]})
+    return Result(code == 0, sentence, {"checksum": receipt["checksum"]})
 
 
 class MemberPrinter(EventPrinter):
@@ -82,7 +82,7 @@ class MemberPrinter(EventPrinter):
         if name == "SHOW":
             self.member.value = line
         elif name != "SAVED":
-            self.end = "  ".join(each.strip() for each in line.splitlines())
+            self.end = "  ".join(item.strip() for item in line.splitlines())
         if self.is_json:
             super().say(since_ms, name, what, said, cell, is_bad=is_bad, **fields)
         elif name == "SHOW" and not sys.stderr.isatty():  # there is no table

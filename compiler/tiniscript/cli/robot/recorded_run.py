@@ -56,15 +56,15 @@ def record(given: Input, options: Namespace, language: str) -> int:
     known_robot(robot)
     max_ms = thousandths("--max-time", options.max_time, MAX_MS, 0, MOST_MS, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
-    told = sensor_lists(options.sensor, robot, language)
+    message = sensor_lists(options.sensor, robot, language)
     world, form = recordings.kept(world_of(options, language))
-    found = images.ready(given, robot, language, is_strict=True)
-    if found is None:
+    result = images.ready(given, robot, language, is_strict=True)
+    if result is None:
         return 1
-    image = found.image
+    image = result.image
     data = pack(image.start, image.devices, image.code, image.later, image.needs)
     with refusing(world.name, language):
-        run = Simulation(robot.name, world, data, settings=Settings(seed=seed, told=told))
+        run = Simulation(robot.name, world, data, settings=Settings(seed=seed, told=message))
     if image.start == "SB":
         run.push()
     started_ms = run.robot.started_ms or 0
@@ -76,12 +76,14 @@ def record(given: Input, options: Namespace, language: str) -> int:
     end_ms = rows[-1].ms if run.is_full and rows else run.robot.now_ms
     run.close()
     _print(rows, started_ms)
-    head = recordings.head(VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=told)
+    head = recordings.head(
+        VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=message
+    )
     whole = recordings.written(head, rows, end_ms)
     outputs.write(Path(options.record), whole.encode(), "unwritable_more --record")
     if fault:
-        said = fault_text(fault, fault_at or 0, found.places, given.is_image, language)
-        print(said, file=sys.stderr)
+        text = fault_text(fault, fault_at or 0, result.places, given.is_image, language)
+        print(text, file=sys.stderr)
     return int(bool(fault))
 
 
@@ -126,13 +128,13 @@ def sentence(parting: Parting, started_ms: int, language: str) -> str:
     return text(f"replay_{parting.what}", language).format(
         count=parting.agreed,
         place=place.format(line=parting.line),
-        robot=_told(parting.robot, started_ms, language),
-        virtual=_told(parting.virtual, started_ms, language),
+        robot=_row_text(parting.robot, started_ms, language),
+        virtual=_row_text(parting.virtual, started_ms, language),
         sensor=parting.sensor,
     )
 
 
-def _told(row: Row | None, started_ms: int, language: str) -> str:
+def _row_text(row: Row | None, started_ms: int, language: str) -> str:
     if row is None:
         return text("replay_nothing", language)
     what = row.event.removeprefix("SHOW ")

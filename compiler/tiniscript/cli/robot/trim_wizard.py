@@ -69,13 +69,13 @@ class TrimWizard(Conversation):
     def trim(self, before: Trim) -> Trim:
         self.lift()
         self._set(Trim())
-        trim = self._wired()
+        trim = self._find_wiring()
         self._set(trim)
         trim = trim._replace(least=self._least())
         self._set(trim)
         self.answer("trim_floor")
-        slow = self._straight(trim, POWERS[0])
-        quick = self._straight(trim._replace(balance=slow), POWERS[1])
+        slow = self._balance_wheels(trim, POWERS[0])
+        quick = self._balance_wheels(trim._replace(balance=slow), POWERS[1])
         trim = trim._replace(balance=round((slow + quick) / 2))
         self._set(trim)
         if before.pace is None:
@@ -96,17 +96,17 @@ class TrimWizard(Conversation):
             print(failure.sentence(self.language), file=sys.stderr)
             raise CommandError(3, "trim_ended") from None
 
-    def _wired(self) -> Trim:
+    def _find_wiring(self) -> Trim:
         """Turn each motor; return the trim with which they are those of their wheels."""
         seen = []
         for side in ("left", "right"):
             seen.append(self.turned(side))
             if not seen[-1].wheel:
                 raise self._failure(sure("still")._replace(of=side))
-        found = as_seen(Trim(), *seen)
-        if found is None:
+        trim = as_seen(Trim(), *seen)
+        if trim is None:
             raise self._failure(sure("same_wheel"))
-        return found
+        return trim
 
     def _least(self) -> int:
         """Return the smallest power that moves both wheels, or 0 if the smallest step does."""
@@ -119,12 +119,14 @@ class TrimWizard(Conversation):
     def _measured(self, move: str, seconds: int, question: str) -> list[float]:
         """Return how much it went, or turned, in a second at each power."""
         while True:
-            found = [self._went(move, power, seconds, question) / seconds for power in POWERS]
-            if found[0] < found[1]:
-                return found
+            result = [
+                self._measure_move(move, power, seconds, question) / seconds for power in POWERS
+            ]
+            if result[0] < result[1]:
+                return result
             say_aside("trim_not_faster_again", self.language)
 
-    def _went(self, move: str, power: int, seconds: int, question: str) -> float:
+    def _measure_move(self, move: str, power: int, seconds: int, question: str) -> float:
         """Return how far it went in centimetres, or turned in degrees, as the person measured."""
         self.answer("trim_mark")
         while True:
@@ -137,7 +139,7 @@ class TrimWizard(Conversation):
                 say_aside(f"{question}_number", self.language)
                 answer = self.answer(question, n=str(power))
 
-    def _straight(self, trim: Trim, power: int) -> int:
+    def _balance_wheels(self, trim: Trim, power: int) -> int:
         """Balance the wheels until the robot goes straight; return the balance."""
         step, last = FIRST_STEP, 0
         self._set(trim)
@@ -160,9 +162,9 @@ class TrimWizard(Conversation):
             self._set(trim)
 
     def _failure(self, finding: Finding) -> CommandError:
-        found = said(finding, self.language)
+        result = said(finding, self.language)
         part = label(finding, self.language)
-        return CommandError(3, "trim_found", part=part, found=found.what, then=found.then)
+        return CommandError(3, "trim_found", part=part, found=result.what, then=result.then)
 
     def _set(self, trim: Trim) -> None:
         self.connection.ask(lambda session: session.trim(trim.data()), TAKEN)  # kept at the end
@@ -170,10 +172,10 @@ class TrimWizard(Conversation):
 
 def measured(answer: str, is_turn: bool) -> float | None:
     """Return the centimetres or degrees that a person wrote, with a comma or a point; else None."""
-    found = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
-    if found is None:
+    match = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
+    if match is None:
         return None
-    number, unit = float(found[1].replace(",", ".")), found[2]
+    number, unit = float(match[1].replace(",", ".")), match[2]
     if is_turn:
         return number if unit in ("", *DEGREES) else None
     if unit in INCHES:

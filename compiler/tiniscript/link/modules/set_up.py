@@ -86,7 +86,7 @@ def done(
     for step in plan:
         outcome = _set(wire, module.dialect, step)
         if step.what == BAUD and outcome.how != REFUSED:
-            outcome = _at_its_speed(wire, module, outcome)
+            outcome = _check_speed(wire, module, outcome)
         outcomes.append(outcome)
         on_outcome(outcome)
         if outcome.how not in GOOD:
@@ -99,21 +99,21 @@ def _set(wire: Wire, dialect: Dialect, step: Step) -> Outcome:
     question = {NAME: dialect.ask_name, PIN: dialect.ask_pin, BAUD: dialect.ask_baud}[step.what]
     outcome = Outcome(step, SILENT)
     for command in step.commands:
-        said = ask(wire, command, dialect.ending, dialect.wait_ms)
-        if is_ok(said):
+        text = ask(wire, command, dialect.ending, dialect.wait_ms)
+        if is_ok(text):
             if not question:
-                return Outcome(step, UNSEEN, said)
+                return Outcome(step, UNSEEN, text)
             answer = ask(wire, question, dialect.ending, dialect.wait_ms)
             now = value_of(answer)
             if not answer and not is_there(wire, dialect):
-                return Outcome(step, SILENT, said)
+                return Outcome(step, SILENT, text)
             if not now:
-                return Outcome(step, UNSEEN, said)
+                return Outcome(step, UNSEEN, text)
             if _is_same(step, dialect, answer):
                 return Outcome(step, DONE, now)
             outcome = Outcome(step, DIFFERS, now)
-        elif said and outcome.how != DIFFERS:
-            outcome = Outcome(step, REFUSED, said if is_error(said) else "")
+        elif text and outcome.how != DIFFERS:
+            outcome = Outcome(step, REFUSED, text if is_error(text) else "")
     return outcome
 
 
@@ -131,7 +131,7 @@ def _is_same(step: Step, dialect: Dialect, answer: str) -> bool:
     return now == step.value
 
 
-def _at_its_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
+def _check_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
     """Return whether the module is at its new speed, else at which one it is."""
     dialect, step = module.dialect, outcome.step
     baud = int(step.value)

@@ -88,16 +88,16 @@ class _Scan:
             with suppress(Exception):  # the adapter is gone: the scan is over
                 await asyncio.wait_for(scanner.stop(), LEAVE_S)
 
-    def _notice(self, device: BLEDevice, said: AdvertisementData) -> None:
-        services = {service_uuid.lower() for service_uuid in said.service_uuids}
+    def _notice(self, device: BLEDevice, advertisement: AdvertisementData) -> None:
+        services = {service_uuid.lower() for service_uuid in advertisement.service_uuids}
         before = self.seen.get(device.address)
-        name = said.local_name or device.name or (before.name if before else "")
+        name = advertisement.local_name or device.name or (before.name if before else "")
         is_robot = bool(services & set(SERVICES)) or (before is not None and before.is_robot)
         self._keep(SeenDevice(device, name, is_robot))
 
-    def _keep(self, seen: SeenDevice) -> None:
-        if seen.address in self.seen or len(self.seen) < DEVICES:
-            self.seen[seen.address] = seen
+    def _keep(self, seen_device: SeenDevice) -> None:
+        if seen_device.address in self.seen or len(self.seen) < DEVICES:
+            self.seen[seen_device.address] = seen_device
             self.news.set()
             self.news = asyncio.Event()
 
@@ -161,13 +161,13 @@ def reason_of(failure: Exception) -> str:
         if failure.reason in _FORBIDDEN:
             return errors.RADIO_FORBIDDEN
         return errors.RADIO_OFF
-    said = str(failure)
-    if isinstance(failure, PermissionError) or "AccessDenied" in said or "AuthFailed" in said:
+    text = str(failure)
+    if isinstance(failure, PermissionError) or "AccessDenied" in text or "AuthFailed" in text:
         return errors.RADIO_FORBIDDEN
-    if "NotReady" in said or "Resource Not Ready" in said:
+    if "NotReady" in text or "Resource Not Ready" in text:
         return errors.RADIO_OFF
     if isinstance(failure, (FileNotFoundError, ConnectionError)):
         return errors.RADIO_SERVICE
-    if "ServiceUnknown" in said or "NoReply" in said or "NameHasNoOwner" in said:
+    if "ServiceUnknown" in text or "NoReply" in text or "NameHasNoOwner" in text:
         return errors.RADIO_SERVICE
     return errors.RADIO_BROKEN

@@ -99,12 +99,12 @@ def _look_at(body: ir.Body, around: Around, look: Look) -> None:
             row.find(statement, around, look)
         inner = ir.bodies(statement)
         if inner:
-            inside = _inside(statement, around, is_last=statement is body[-1])
-            for each in inner:
-                _look_at(each, inside, look)
+            inside = _inner_context(statement, around, is_last=statement is body[-1])
+            for item in inner:
+                _look_at(item, inside, look)
 
 
-def _inside(statement: ir.Statement, around: Around, is_last: bool) -> Around:
+def _inner_context(statement: ir.Statement, around: Around, is_last: bool) -> Around:
     """Return what the bodies of a statement are in; `is_last`: no other stands after it."""
     asks = isinstance(statement, (ir.If, ir.While))
     inside = around._replace(

@@ -97,16 +97,16 @@ class _Conditions:
         is_turned = op in _TURNED.get(move.direction, {}) and is_ahead
         if is_turned and not around.asked & _sensors(condition):
             turned = compared._replace(op=_TURNED[move.direction][op])
-            other = "" if answer_of(turned) else self._with(move, str(turned))
+            other = "" if answer_of(turned) else self._with_condition(move, str(turned))
             is_forward = move.direction == "F"
             number_is, repair = ("number", "fix") if is_forward else ("far", "away")
             values = {"sensor": device.name, number_is: as_text(number), repair: other}
             self._look.report(codes.TURNED_ROUND, move.span, **values)
         else:
             reached = "GE" if device is TIME else _REACHED.get(move.direction, "")
-            written = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
+            text = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
             is_sure = bool(reached) and (is_ahead or device is TIME)
-            fix = self._with(move, written) if is_sure else ""
+            fix = self._with_condition(move, text) if is_sure else ""
             self._report_exact(compared, move.span, "UNTIL", fix)
 
     def _report_frozen_until(
@@ -119,10 +119,10 @@ class _Conditions:
         if held:
             values["sensor"] = held[name]
             asked = self._asking(condition, held, move.span, "UNTIL", move.direction)
-            values["fix"] = self._with(move, asked) if asked else ""
+            values["fix"] = self._with_condition(move, asked) if asked else ""
         self._look.report(codes.FROZEN_UNTIL, move.span, **values)
 
-    def _with(self, move: ir.Move, written: str) -> str:
+    def _with_condition(self, move: ir.Move, written: str) -> str:
         """Return a move as it is written, with another condition after UNTIL."""
         text = self._source[move.span]
         end = max((match.start() for match in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
@@ -209,26 +209,28 @@ class _Conditions:
         where the number is there for nothing else.
         """
         sets = [
-            each
-            for each in self._program.body
-            if isinstance(each, ir.Assign) and each.variable == variable
+            item
+            for item in self._program.body
+            if isinstance(item, ir.Assign) and item.variable == variable
         ]
         if len(sets) != 1 or self._look.variables.set_to[variable] != [sets[0].value]:
             return False
-        if all(term.op != "RANDOM" for term in sets[0].value) or _goes_once(loop):
+        if all(term.op != "RANDOM" for term in sets[0].value) or _runs_once(loop):
             return False
         term = ir.Term("VARIABLE", variable)
         is_only_shown = all(
-            isinstance(each, ir.Show)
-            for each in ir.every(self._program)
-            if any(term in expression for expression in ir.expressions(each))
+            isinstance(item, ir.Show)
+            for item in ir.every(self._program)
+            if any(term in expression for expression in ir.expressions(item))
         )
         shown = {
             term for show in ir.walk(loop.body) if isinstance(show, ir.Show) for term in show.value
         }
         others = [term for term in shown if term.op in _CHANGING or term.op == "VARIABLE"]
         is_before = sets[0].span.end <= loop.span.start
-        if not (is_before and is_only_shown and others == [term] and show in _each_round(loop)):
+        if not (
+            is_before and is_only_shown and others == [term] and show in _round_statements(loop)
+        ):
             return False
         name, said = self._program.variables[variable], self._source[sets[0].span]
         if not any(diagnostic.values.get("thrown") == name for diagnostic in self._look.found):
@@ -251,10 +253,10 @@ class _Conditions:
                 self._look.report(codes.LATE_ARM, arm.span, wide=str(before),
                              narrow=str(compared))  # fmt: skip
 
-    def _report_known(self, compared: Comparison, span: Span) -> bool:
+    def _report_known(self, comparison: Comparison, span: Span) -> bool:
         """Warn where the answer is known: `LIGHT_L > 5000`, of a sensor that goes up to 1023."""
-        device = compared.device
-        answer = answer_of(compared)
+        device = comparison.device
+        answer = answer_of(comparison)
         if answer:
             self._look.report(codes.KNOWN_ANSWER, span, sensor=device.name, low=as_text(device.low),
                          high=as_text(device.high), answer=answer)  # fmt: skip
@@ -279,8 +281,8 @@ class _Conditions:
             self._look.report(codes.KNOWN_ANSWER, span, sensor=name, low=low, high=high,
                          answer="answer_no", between=between)  # fmt: skip
 
-    def _report_exact(self, compared: Comparison, span: Span, word: str, fix: str) -> None:
-        device, op, number = compared
+    def _report_exact(self, comparison: Comparison, span: Span, word: str, fix: str) -> None:
+        device, op, number = comparison
         if op == "EQ" and is_between(device, number):
             self._look.report(codes.EXACT, span, sensor=device.name, number=as_text(number),
                          word=word, fix=fix)  # fmt: skip
@@ -306,27 +308,27 @@ class _Conditions:
             for term in condition
         )
         comes = comes_true(asking, direction, self._kit)
-        written = self._look.condition(span, word)
+        text = self._look.condition(span, word)
         if not comes and (comes is not None or direction):
             return ""
-        return re.sub(r"[A-Za-z_]\w*", lambda it: held.get(it[0].upper(), it[0]), written)
+        return re.sub(r"[A-Za-z_]\w*", lambda it: held.get(it[0].upper(), it[0]), text)
 
 
-def _goes_once(loop: ir.Loop | ir.While) -> bool:
+def _runs_once(loop: ir.Loop | ir.While) -> bool:
     times = loop.times if isinstance(loop, ir.Loop) else None
     return known_value(times) == 1000
 
 
-def _each_round(loop: ir.Loop | ir.While) -> list[ir.Statement]:
+def _round_statements(loop: ir.Loop | ir.While) -> list[ir.Statement]:
     """Return the statements of a loop that no IF is around."""
-    found: list[ir.Statement] = []
+    statements: list[ir.Statement] = []
     rest: list[ir.Loop | ir.While] = [loop]
     while rest:
-        for each in rest.pop().body:
-            found.append(each)
-            if isinstance(each, (ir.Loop, ir.While)):
-                rest.append(each)
-    return found
+        for item in rest.pop().body:
+            statements.append(item)
+            if isinstance(item, (ir.Loop, ir.While)):
+                rest.append(item)
+    return statements
 
 
 def _variables(condition: ir.Expression) -> list[int]:

@@ -264,11 +264,11 @@ def _is_swapped(time: int, power: int | None) -> bool:
     return power is not None and LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER
 
 
-def _cut(expression: Expression, its: Argument, span: Span, word: str) -> list[Diagnostic]:
+def _cut(expression: Expression, argument: Argument, span: Span, word: str) -> list[Diagnostic]:
     """`BEEP(0.2, 440-660)`: the robot takes the lowest or the highest value instead."""
     value = known_value(expression)
-    if value is None or its.low <= value <= its.high:
+    if value is None or argument.low <= value <= argument.high:
         return []
-    taken = as_text(its.low if value < its.low else its.high)
-    values = {"word": word, "value": as_text(value), "unit": its.unit, "taken": taken}
+    taken = as_text(argument.low if value < argument.low else argument.high)
+    values = {"word": word, "value": as_text(value), "unit": argument.unit, "taken": taken}
     return [Diagnostic(codes.CUT_VALUE, span, values)]

@@ -56,7 +56,7 @@ def report_instructions_in_notes(look: Look) -> None:
     source, tokens = look.source, look.scan.tokens
     short = [comment for comment in look.scan.comments if len(comment.text) <= LONGEST]
     if all(token.kind in AT_END for token in tokens):
-        _all_of_it(short, look)
+        _report_all_notes(short, look)
         return
     rows = [token for token in short if re.fullmatch(_CALLS, token.text) or swallowed(token.text)]
     is_ping = [token.text for token in tokens[:2]] == ["PING", "|"]
@@ -70,11 +70,11 @@ def report_instructions_in_notes(look: Look) -> None:
             continue
         if _ends_instruction(tokens, k) and not is_ping:
             rest = "; ".join(swallowed(note.text))
-            said = rest or note.text.strip("/; \t")
-            look.report(codes.IN_A_NOTE, note.span, found=said, rest=rest)
+            text = rest or note.text.strip("/; \t")
+            look.report(codes.IN_A_NOTE, note.span, found=text, rest=rest)
 
 
-def _all_of_it(notes: Sequence[Token], look: Look) -> None:
+def _report_all_notes(notes: Sequence[Token], look: Look) -> None:
     """`// I go F(1, 80); W(2)`, where the program is nothing but notes."""
     for note in notes:
         rest = "; ".join(re.findall(_CALL, note.text, re.IGNORECASE))
@@ -89,10 +89,10 @@ def swallowed(note: str) -> list[str]:
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
     first, *others = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
-    found = [other for other in others if re.fullmatch(_CALL_IN_IT, other)]
-    is_row = all(each in found or not set("()") & set(each) for each in (first, *others))
-    is_row = is_row and bool(found) and found != ["S"] * len(found)
-    return found if is_row and first else []
+    matches = [other for other in others if re.fullmatch(_CALL_IN_IT, other)]
+    is_row = all(item in matches or not set("()") & set(item) for item in (first, *others))
+    is_row = is_row and bool(matches) and matches != ["S"] * len(matches)
+    return matches if is_row and first else []
 
 
 def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
@@ -150,8 +150,10 @@ def report_empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
             continue
         word = "IF" if isinstance(statement, ir.If) else "LOOP"
         span = Span(statement.span.start, statement.span.start + _end_of_head(text))
-        after = _said(body[k + 1 :], source)
-        before = [] if after else _said(body[k - 1 :: -1] if k else (), source)[::-1]
+        after = _leading_instructions(body[k + 1 :], source)
+        before = (
+            [] if after else _leading_instructions(body[k - 1 :: -1] if k else (), source)[::-1]
+        )
         if not after and not before:
             continue
         shown, end = " ".join(source[span].split()), BLOCK_ENDS[word]
@@ -180,7 +182,7 @@ def _is_empty(statement: ir.Statement) -> bool:
     return False
 
 
-def _said(statements: Sequence[ir.Statement], source: Source) -> list[str]:
+def _leading_instructions(statements: Sequence[ir.Statement], source: Source) -> list[str]:
     """Return the instructions at the beginning of a row that are no blocks, as written."""
     plain = takewhile(
         lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While, ir.Break)), statements
