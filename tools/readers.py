@@ -21,7 +21,10 @@ from tiniscript.recovery.lines import Step
 from tiniscript.recovery.meanings import Names, lexemes, setup_of, texts
 from tiniscript.recovery.told import READERS, ROUNDS, Wrong
 
-OF_WHOLE_LINES = ("_meant_surely", "_guessed")  # the readers that ask `search` what was meant
+OF_WHOLE_LINES = (
+    "_sure_findings",
+    "_likely_findings",
+)  # the readers that ask `search` what was meant
 
 
 def told(text: str) -> Iterator[str]:

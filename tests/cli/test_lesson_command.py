@@ -43,7 +43,7 @@ def test_the_lessons_are_listed(tsc: Tsc) -> None:
 def test_one_program(tsc: Tsc, folder: Path) -> None:
     done = tsc("lesson", "check", "1", folder / "ana.ts")
     assert done.code == 0
-    assert "done! You solved lesson 1." in done.out
+    assert "done! This solves lesson 1." in done.out
     tsc("lesson", "check", "1", folder / "beto.ts", "--lang", "es").gives(
         1, out="- El robot se quedó 18 cm antes del centro de la cochera. Haz que avance más."
     )

@@ -213,7 +213,7 @@ def test_every_reason_has_a_sentence_with_a_next_step(
         def refuse(*_: object, failure: Exception = failure) -> None:
             raise failure
 
-        monkeypatch.setattr(serial_transport, "_made", refuse)
+        monkeypatch.setattr(serial_transport, "_make_serial", refuse)
         tsc("doctor", "--identify", "--port", "COM5").gives(3, word)
 
 
@@ -221,7 +221,7 @@ def test_a_port_that_never_opens_is_given_up(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:  # fmt: skip
     hangs = threading.Event()
-    monkeypatch.setattr(serial_transport, "_made", lambda *_: hangs.wait(30))
+    monkeypatch.setattr(serial_transport, "_make_serial", lambda *_: hangs.wait(30))
     with pytest.raises(errors.PortError) as failure:
         ports.opened("COM5", 9600, limit_s=0.1)
     assert failure.value.reason == errors.SLOW

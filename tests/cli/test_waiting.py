@@ -202,7 +202,7 @@ def test_nothing_is_said_of_a_wait_that_is_over(
     monkeypatch.setattr(progress, "MOMENT_S", HANGS_S)
     silence = progress.Silence("waits")
     silence.cancel()
-    silence._tell()
+    silence._print_wait()
     assert capsys.readouterr().err == "" and not silence.is_told
 
 

@@ -307,11 +307,11 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF T(X, Y); M(X, Y); W(0.1); M(0, 0); END_DEF; LOOP(FOREVER); IF(KEY_UP); T(50, 50); END_IF; IF(KEY_DOWN); T(-50, -50); END_IF; IF(KEY_LEFT); T(-50, 50); END_IF; IF(KEY_RIGHT); T(50, -50); END_IF; IF(KEY_A); BEEP(0.2, 440); END_IF; W(0.02); END_LOOP": "",
         },
         "rote": {
-            "SI|W(1); F(1.5, 60); W(1); R(1, 40); W(1); F(1, 60); W(1); B(1, 60); W(1); BEEP(0.5, 440); W(1); L(0.5, 40)": "KEY_LEFT was held, and the robot did not turn to the left",
+            "SI|W(1); F(1.5, 60); W(1); R(1, 40); W(1); F(1, 60); W(1); B(1, 60); W(1); BEEP(0.5, 440); W(1); L(0.5, 40)": "KEY_LEFT was held down, but the robot did not turn to the left",
         },
         "wrong": {
             "W(FOREVER) UNTIL(KEY_UP); F(5, 60)": "no key was held down, but the robot still moved. Make",
-            "W(FOREVER) UNTIL(KEY_UP); F(1, 60); W(FOREVER) UNTIL(KEY_DOWN); B(1, 60)": "KEY_RIGHT was held, and the robot did not turn to the right",
+            "W(FOREVER) UNTIL(KEY_UP); F(1, 60); W(FOREVER) UNTIL(KEY_DOWN); B(1, 60)": "KEY_RIGHT was held down, but the robot did not turn to the right",
         },
     },
 }  # fmt: skip

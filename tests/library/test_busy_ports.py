@@ -39,8 +39,8 @@ class Place:
         self.tries = 0
         monkeypatch.setattr("tiniscript.library.opening.monotonic", lambda: self.now_s)
         monkeypatch.setattr("tiniscript.library.opening.sleep", self.pass_s)
-        monkeypatch.setattr(opening, "_resolved", self.resolved)
-        monkeypatch.setattr(opening, "_joined", lambda *_: None)
+        monkeypatch.setattr(opening, "_resolve_address", self.resolved)
+        monkeypatch.setattr(opening, "_join_shared", lambda *_: None)
         monkeypatch.setattr(opening, "_claimed", lambda *_: None)
         monkeypatch.setattr(opening, "_opened_line", self.opened)
 

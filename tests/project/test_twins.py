@@ -37,7 +37,7 @@ TASKS = Twins(
         "begin_others": "_end_turn",
         "blocks": "_must_wait_for_motors, _block",
         "comes_to_end": "_end_move",
-        "end_round": "_finds_turn",
+        "end_round": "_next_turn",
         "end_task": "end",
         "go_on": "_begin_move, _begin_watched, _drive_on",
         "goes_back": "back_to",

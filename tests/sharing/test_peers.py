@@ -92,7 +92,7 @@ def test_which_ends_are_let_in(
     monkeypatch: pytest.MonkeyPatch, own: int, user: int, inode: int, is_let_in: bool
 ) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: own)
-    monkeypatch.setattr(peers, "_other_end", lambda there, here: peers.End(user, inode))
+    monkeypatch.setattr(peers, "_socket_owner", lambda there, here: peers.End(user, inode))
     here, there = pair()
     with here, there:
         assert peers.is_of_this_user(here) == is_let_in
@@ -107,11 +107,11 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 
     here, there = pair()
     with here, there:
-        monkeypatch.setattr(peers, "_other_end", failing(errno.EOPNOTSUPP))
+        monkeypatch.setattr(peers, "_socket_owner", failing(errno.EOPNOTSUPP))
         assert peers.is_of_this_user(here)
         monkeypatch.setattr(sys, "platform", "linux")
         for number in (errno.ENOENT, errno.EMFILE, errno.ENFILE):  # gone, or nothing can be asked
-            monkeypatch.setattr(peers, "_other_end", failing(number))
+            monkeypatch.setattr(peers, "_socket_owner", failing(number))
             assert not peers.is_of_this_user(here)
 
 

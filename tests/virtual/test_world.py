@@ -105,7 +105,7 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
         (RIGHT + "[[walls]]\n", "walls[1].points is missing. Add it, for example: points ="),
         (RIGHT + "[[walls]]\npoints = 7\n", "walls[1].points is a number. Write a list of points"),
         (RIGHT + "[[walls]]\npoints = [[1, 2], 3]\n", "walls[1].points is a list. Write a list of"),
-        (RIGHT + "[[walls]]\npoints = [[1, 2]]\n", "Points of walls[1].points: 1. Write 2 to 200"),
+        (RIGHT + "[[walls]]\npoints = [[1, 2]]\n", "walls[1].points has 1 points. Write 2 to 200"),
         (
             RIGHT + "[[walls]]\npoints = [[1, 2], ['a', 3]]\n",
             "walls[1].points[2] is a text in quotes. Write a number there.",
@@ -123,9 +123,9 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
         (RIGHT + "[[walls]]\npoints = [[0, 0], [1, 1]]\n" * 101, "walls has 101 parts. Leave"),
         (
             RIGHT + f"[[walls]]\npoints = {[[k, k] for k in range(201)]}",
-            "Points of walls[1].points: 201",
+            "walls[1].points has 201 points",
         ),
-        (RIGHT + "[[walls", "Line 7 is not valid TOML.."),
+        (RIGHT + "[[walls", "Line 7 is not valid TOML."),
         (RIGHT + "a = " + "[" * 5000, "is not valid TOML."),
         (RIGHT + "[labels]\nen = '\t'\n", "labels.en is empty or cannot be printed."),
         (
@@ -169,7 +169,7 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
     wrong.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
     for name, said in (
         ("obstacle", "Did you mean obstacles?"),
-        ("nowhere", f"Choose one of these {', '.join(worlds.names())}"),
+        ("nowhere", f"Choose one of these: {', '.join(worlds.names())}"),
         ("", "There is no world"),
         (str(tmp_path), "is a folder"),
         (str(tmp_path / "missing.toml"), "There is no file"),

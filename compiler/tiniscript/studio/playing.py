@@ -182,7 +182,7 @@ class Played(Simulation):
         for _ in range(duration_ms):
             if self._is_over:
                 return
-            super()._go(1)
+            super()._advance(1)
             # the recording may have ended within a millisecond, where its program was held
             is_whole = self._held_at_end or self.robot.now_ms > self.recording.end_ms
             self._compare(is_whole)
@@ -201,7 +201,7 @@ class Played(Simulation):
             elif row.event == HELD:
                 self._held_at_end = True
             elif row.is_input:
-                self._do(row.event)
+                self._replay_event(row.event)
 
     def _is_due(self, row: Row) -> bool:
         if self.recording.is_virtual:
@@ -253,7 +253,7 @@ class Played(Simulation):
             if self._is_over:
                 return
             self._replace_readings()
-            super()._go(1)
+            super()._advance(1)
             self._replace_readings()
             started_ms = self.robot.started_ms or 0
             is_late = self.robot.now_ms - started_ms >= self._until_ms()
@@ -314,7 +314,7 @@ class Played(Simulation):
                 self.robot.let_go()
             if self.robot.started_ms is not None and k >= STEP_MS:
                 return
-            super()._go(1)
+            super()._advance(1)
         raise AssertionError("the program does not begin")
 
     def _until_ms(self) -> int:
