@@ -523,6 +523,24 @@ def test_each_move_is_corrected_however_many_were_corrected_before(wheels: int) 
         scene.robot.wait(300)
 
 
+@pytest.mark.parametrize("is_typed", [True, False])
+@pytest.mark.parametrize("first", ["W(0.05)", "F(60, 40)"])
+def test_what_goes_on_alone_does_so_after_what_does_not(first: str, is_typed: bool) -> None:
+    scene = Scene("a mega")
+    robot = scene.robot
+    uploads(scene, first)
+    robot.talk(scene.session, 300)
+    if is_typed:
+        robot.wait(4200)  # nobody is heard any more
+        robot.wait(300, b"SI|F(5, 50)\r\n")
+    else:
+        image = image_of("SI|F(5, 50)", KIT)
+        upload = scene.session.upload(image, saves=False, is_detached=True)
+        assert robot.until(scene.session, upload) == OK
+    robot.wait(3000)
+    assert not robot.is_latched
+
+
 def check_all(seed: int) -> str:
     for starts in STARTS:
         check(seed, starts, [*KINDS][seed % len(KINDS)])
