@@ -255,7 +255,7 @@ def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
     monkeypatch.setattr(avrdude, "write", write)
     firmware = Ready("tinibot", "uno", "0", Path("x.hex"))
     with pytest.raises((CommandError, KeyboardInterrupt)) as ended:
-        firmware_command._written(["x"], UNO, "x", firmware, "en")
+        firmware_command._write_firmware(["x"], UNO, "x", firmware, "en")
     assert getattr(ended.value, "key", None) == ("flash_stopped" if count else None)
 
 
