@@ -85,7 +85,7 @@ def stale(page: Path = PAGE) -> str:
     if not (page / STAMP).is_file():
         return f"the page is not built. Do that with:  {COMMAND}"
     if not building.is_of_sources(page):
-        return f"the page was built of other sources. Build it again:  {COMMAND}"
+        return f"the page is out of date: the sources have changed. Build it again:  {COMMAND}"
     return ""
 
 
