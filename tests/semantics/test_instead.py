@@ -36,7 +36,7 @@ def test_a_number_for_a_distance_that_is_driven_is_centimetres(
 ) -> None:
     text = around.format(f"DISTANCE = {value}{between}{word}(DISTANCE, 60){between}S")
     (diagnostic,) = check(text)
-    assert f"Write {word}({value} CM, 60) in place of {word}(DISTANCE, 60)" in fix_of(text)
+    assert f"Write {word}({value} CM, 60) instead of {word}(DISTANCE, 60)" in fix_of(text)
     assert diagnostic.repair is not None and not diagnostic.repair.is_sure
     right = around.format(f"{word}({value} CM, 60){between}S")
     assert applied(text, diagnostic.repair.edits) == right and not mistakes(right)
