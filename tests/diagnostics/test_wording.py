@@ -44,7 +44,7 @@ def test_what_begins_a_block_is_never_called_forever_alone(word: str, around: st
 
 def test_forever_is_called_so_where_it_is_a_time() -> None:
     (said,) = said_of("SI|W(SIEMPRE) UNTIL(DISTANCE < 9)", "en")
-    assert said.message == "In TiniScript SIEMPRE is called FOREVER"
+    assert said.message == "In TiniScript, SIEMPRE is FOREVER"
     (said,) = said_of("void loop() {\n  F(1, 60);\n}", "es")
     assert said.message.startswith("En TiniScript void loop se dice LOOP(FOREVER), y el bloque")
 

@@ -36,7 +36,7 @@ def test_a_number_for_a_distance_that_is_driven_is_centimetres(
 ) -> None:
     text = around.format(f"DISTANCE = {value}{between}{word}(DISTANCE, 60){between}S")
     (diagnostic,) = check(text)
-    assert f"Write {word}({value} CM, 60) in place of {word}(DISTANCE, 60)" in fix_of(text)
+    assert f"Write {word}({value} CM, 60) instead of {word}(DISTANCE, 60)" in fix_of(text)
     assert diagnostic.repair is not None and not diagnostic.repair.is_sure
     right = around.format(f"{word}({value} CM, 60){between}S")
     assert applied(text, diagnostic.repair.edits) == right and not mistakes(right)
@@ -68,7 +68,7 @@ def test_a_move_of_another_unit_and_a_robot_without_one_get_a_number_of_their_ow
     kit = TINIBOT._replace(speed=0, turn=0)
     (diagnostic,) = check_text("SI|DISTANCE = 30;F(DISTANCE, 60)", kit).diagnostics
     said = message(diagnostic, Source("SI|DISTANCE = 30;F(DISTANCE, 60)"), "en")
-    assert said.fix.startswith("F goes by time here, and not by CM")
+    assert said.fix.startswith("F goes by time here, not by CM")
     assert fix_of("SI|LIGHT_L = 300;F(LIGHT_L, 60)") == "MY_LIGHT_L = 300"
 
 
