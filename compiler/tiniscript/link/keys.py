@@ -95,7 +95,7 @@ class KeyFile(KeyRing):
 
     # -- as a KeyRing: where the file cannot be read there is no key ------------------------------
 
-    def _load_keys(self) -> list[RobotKey]:
+    def _stored_keys(self) -> list[RobotKey]:
         with suppress(BadKeys):
             robot_keys = self.all()
             return (
