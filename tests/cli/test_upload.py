@@ -169,7 +169,7 @@ def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyR
 
 def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
     interrupted(uploading(pty_robot)).gives(
-        2, "the robot has confirmed it", out="Saved. It starts with the button."
+        2, "the robot has confirmed the stop", out="Saved. It starts with the button."
     )
     pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"

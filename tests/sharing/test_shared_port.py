@@ -232,7 +232,7 @@ def test_a_program_ends_with_its_command_unless_it_needs_nobody(
 ) -> None:
     command = uploading(pty_robot)
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "the robot has confirmed it")
+    command.ended().gives(2, "the robot has confirmed the stop")
     assert not pty_robot.moves
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     pty_robot.ask(lambda robot: robot.wait(1500))
