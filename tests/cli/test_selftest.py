@@ -289,7 +289,7 @@ def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
     """Motors that turn wrong or not at all, and sensors that notice nothing."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
     for wires, said in (
-        (Wires(is_exchanged=True), "tsc set trim"), (Wires(is_dead=True), "its wires"),
+        (Wires(is_exchanged=True), "tsc set trim"), (Wires(is_dead=True), "check its wires"),
     ):  # fmt: skip
         code, out, err = asked(pty_robot, person(pty_robot, wires))
         assert code == 3
