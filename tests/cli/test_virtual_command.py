@@ -323,7 +323,7 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         (["robot", "--memory", "."], "Choose another place with --memory"),
         (["robot", "--sensor", "EYES=1"], "has no sensor EYES"),
         (["robot", "--robot", "r2d2"], "There is no robot r2d2"),
-        (["upload", "-e", "SI|S", "--world", "line"], "--world is for the virtual robot alone"),
+        (["upload", "-e", "SI|S", "--world", "line"], "--world works only with the virtual robot"),
         (["live", "S", "--port", "COM1", "--virtual"], "--virtual cannot be combined"),
     ],
 )

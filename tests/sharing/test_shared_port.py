@@ -87,9 +87,9 @@ def test_all_names_of_a_port_lead_to_its_server(
     rows = json.loads(process("doctor", "--ports", "--json").out)
     assert {row["port"]: row["held_by"] for row in rows}[pty_robot.port] == "monitor --hold"
     done = process("doctor", "--ports", "--ask", "--port", name)
-    assert "robot" in done.out and "held by tsc monitor --hold" in done.out
+    assert "robot" in done.out and "in use by tsc monitor --hold" in done.out
     process("show", "--port", name, "--baud", "115200").gives(
-        3, "held by tsc monitor --hold, at 9600 baud"
+        3, "in use by tsc monitor --hold, at 9600 baud"
     )
     process("monitor", "--hold", "--port", name).gives(3, "already shared, by tsc monitor --hold")
 
