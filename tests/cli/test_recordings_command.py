@@ -24,7 +24,7 @@ from tiniscript.studio.recordings import REAL, Row, head, read, written
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
 CHECKSUM = compile(TEXT).checksum
 HEAD = head(REAL, TEXT, robots.load("tinibot"), CHECKSUM)
-AGAIN = "The virtual robot did exactly the same again. Rows "
+AGAIN = "The virtual robot did exactly the same again. Rows: "
 
 
 def real(*events: tuple[int, str]) -> bytes:
@@ -176,7 +176,7 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
             "viene de un tsc más nuevo",
         ),
         (HEAD.replace('"tinibot"', '"mine"').encode(), "does not have", "no trae"),
-        (real().replace(b"SHOW(5)", b"SHOW(6)"), "means something else", "significa otra cosa"),
+        (real().replace(b"SHOW(5)", b"SHOW(6)"), "has a different meaning in this tsc", "significa otra cosa"),
         (real((999_999, "DONE")), "ten minutes at most", "diez minutos como máximo"),
         (HEAD.encode() + b" " * 1_100_000, "is too long", "es demasiado largo"),
     ],

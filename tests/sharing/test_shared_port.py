@@ -248,8 +248,8 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     first = uploading(pty_robot)
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
     second.ended().gives(0, out="Done.")
-    done = first.ended().gives(3, "another program", "holds the port until the other has ended.")
-    assert done.err.index("holds the port") < done.err.index("another program")
+    done = first.ended().gives(3, "another command started a program", "holds the port until the other has ended.")
+    assert done.err.index("holds the port") < done.err.index("another command started a program")
     assert hellos(pty_robot) == 1
     assert registry.find_registration(pty_robot.port) is None
 
@@ -275,7 +275,7 @@ def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
     assert on(pty_robot, "stop").code == 0
     assert not pty_robot.moves
     second.ended().gives(3, out="The robot was stopped from a computer.")
-    first.ended().gives(3, "another program")
+    first.ended().gives(3, "another command started a program")
 
 
 # -- endings of a server --------------------------------------------------------------------------
@@ -388,7 +388,7 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
     )
     command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer)
     command.until("running")
-    for language, words in (("en", "another version, 9.1"), ("es", "otra versión, 9.1")):
+    for language, words in (("en", "another version of tsc, 9.1"), ("es", "otra versión, 9.1")):
         on(pty_robot, "show", "--lang", language).gives(3, words)
     assert on(pty_robot, "stop").code == 0
     assert command.ended().code == 3
