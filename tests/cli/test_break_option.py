@@ -147,7 +147,7 @@ def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None
     terminal.until(r"(?s)before line 4.*Ctrl-C: stop\n*$")
     terminal.interrupt()
     assert terminal.end() == 2
-    assert "the robot has confirmed it" in "\n".join(terminal.whole())
+    assert "the robot has confirmed the stop" in "\n".join(terminal.whole())
     assert "MOTORS 80 80" not in pty_robot.did
     on(pty_robot, "start").gives(0)
     assert "MOTORS 80 80" in pty_robot.did, "it has no breakpoint any more"

@@ -118,8 +118,8 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
 @pytest.mark.parametrize(("words", "said"), [
     (["--broker", NAME, "--tls"], "--tls --trust FILE"),
     (["--broker", NAME, "--trust", "x"], "--trust needs --tls."),
-    (["--broker", NAME, "--tls", "--trust", "/none"], "cannot be read"),
-    (["--broker", "127.0.0.1", "--tls", "--trust", "CA"], "use that name, not 127.0.0.1"),
+    (["--broker", NAME, "--tls", "--trust", "/none"], "cannot read the certificate file /none"),
+    (["--broker", "127.0.0.1", "--tls", "--trust", "CA"], "the name in the certificate, not 127.0.0.1"),
     (["--tls"], "--broker HOST"), (["--trust", "CA"], "--broker HOST"),
 ])  # fmt: skip
 def test_options_that_make_no_sense(words: list[str], said: str, tmp_path: Path) -> None:

@@ -124,7 +124,7 @@ def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> No
     assert command.ended().code != 0
     room[1].switch_off()
     until(
-        lambda: "0badcafe) is no longer connected to the broker: it is any more" in tsc(room).out,
+        lambda: "0badcafe) is no longer connected to the broker: it is off" in tsc(room).out,
         "its last will",
     )
 

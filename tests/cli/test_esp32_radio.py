@@ -58,7 +58,7 @@ def joined(robot: Esp32PtyRobot) -> Esp32PtyRobot:
     assert claimed(robot).code == 0
     done = on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n")
     assert done.code == 0, done.err
-    assert f"in the network {NETWORK}" in done.out and "tcp://tini-5678.local" in done.out
+    assert f"on the network {NETWORK}" in done.out and "tcp://tini-5678.local" in done.out
     return robot
 
 

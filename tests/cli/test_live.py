@@ -63,7 +63,7 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     pty_robot.until(lambda: pty_robot.moves, "it drives")
     assert pty_robot.did[-1] == "MOTORS 55 55"
     terminal.type("\x03")
-    see("the robot has confirmed it.")
+    see("the robot has confirmed the stop.")
     assert not pty_robot.moves
     see("tini> ", 4)
     terminal.type("SHOW(SPEED)\n")

@@ -76,7 +76,7 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         assert sum(pupil.moves for pupil in pupils) == ROBOTS - 2  # it uses no device of a kit
         done = inside("stop", "--all").gives(3)
         assert not any(pupil.moves for pupil in pupils)
-        assert done.out.count("the robot has confirmed it") == ROBOTS - 2  # the other kit, too
+        assert done.out.count("the robot has confirmed the stop") == ROBOTS - 2  # the other kit, too
 
 
 @pytest.mark.parametrize("babble", [b"DISTANCE 42\r\n" * 9, b"\x03\x81\0" * 30, b"U" * 90])
@@ -139,7 +139,7 @@ def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
     command.signal(signal.SIGINT)
     done = command.ended().gives(2)
     assert not any(pupil.moves for pupil in class_.pupils)
-    assert done.out.count("the robot has confirmed it") == len(class_.pupils)
+    assert done.out.count("the robot has confirmed the stop") == len(class_.pupils)
     command = driven()
     command.kill()
     class_.until(lambda: not any(pupil.moves for pupil in class_.pupils), "they stop")

@@ -86,7 +86,7 @@ def test_without_a_wish_it_says_what_it_has_found(tsc: Tsc) -> None:
         done = tsc("doctor", "--module", "--port", pty_end.port)
     assert done.code == 0
     assert "MLT-BT05 on" in done.out and "listens at 38400 baud" in done.out
-    assert "It has: name BT05, 38400 baud." in done.out
+    assert "It now has: name BT05, 38400 baud." in done.out
     assert "--pin 123456" in done.out
 
 
@@ -108,7 +108,7 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     [
         (["--name", "A" * 21], "at most 20"),
         (["--name", ""], "at most 20"),
-        (["--name", "ÑU"], "ÑU is not such a name"),
+        (["--name", "ÑU"], "ÑU does not fit"),
         (["--pin", "12"], "PIN of this kind of module has"),
         (["--baud", "300"], "9600, 19200, 38400, 57600, 115200, not 300"),
         (["--id", "xyz"], "takes the id"),

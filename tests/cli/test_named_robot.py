@@ -52,11 +52,11 @@ def test_an_option_wins_and_says_so_once(verb: str, tsc: Tsc, liner: Path) -> No
     words = CALLS[verb] or []
     done = tsc(verb, *words, liner, "--robot", "tinibot").gives(1)
     assert done.err.startswith(WINS.format("tinibot", liner, "liner"))
-    assert done.err.count(" wins: ") == 1
+    assert done.err.count(" takes precedence: ") == 1
     wanted = "Try:  Write --robot liner in the command, not tinibot"
     assert wanted in done.err  # the comment is there already
     same = tsc(verb, *words, liner, "--robot", "LINER").gives(0)
-    assert " wins: " not in same.err
+    assert " takes precedence: " not in same.err
 
 
 def test_a_robot_of_ones_own_may_be_named(tsc: Tsc, tmp_path: Path) -> None:
@@ -106,7 +106,7 @@ def test_each_program_of_a_folder_has_its_own(tsc: Tsc, tmp_path: Path) -> None:
 
 
 def test_the_examples_are_right_as_they_are(tsc: Tsc) -> None:
-    assert "without mistakes: 10" in tsc("check", ROOT / "examples").gives(0).out
+    assert "free of mistakes: 10" in tsc("check", ROOT / "examples").gives(0).out
 
 
 def test_the_one_that_answers_does_not_take_the_place_of_a_named_one(liner: Path) -> None:

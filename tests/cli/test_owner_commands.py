@@ -130,7 +130,7 @@ def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -
     done = on(pty_robot, "live", "-", data=f"{most}\nSHOW(X)\n".encode())
     assert done.code == 0 and done.out.count("X 1\n") == 1
     assert claimed(pty_robot).code == 0
-    on(pty_robot, "live", "-", data=most.encode()).gives(0, "not kept", out="")
+    on(pty_robot, "live", "-", data=most.encode()).gives(0, "are lost", out="")
     on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8).gives(1, "room for 42")
     done = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8, "--lang", "es")
     assert "42" in done.err

@@ -24,7 +24,7 @@ from tiniscript.studio.recordings import REAL, Row, head, read, written
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
 CHECKSUM = compile(TEXT).checksum
 HEAD = head(REAL, TEXT, robots.load("tinibot"), CHECKSUM)
-AGAIN = "The virtual robot did exactly the same again. Rows "
+AGAIN = "The virtual robot did exactly the same again. Rows: "
 
 
 def real(*events: tuple[int, str]) -> bytes:
@@ -133,7 +133,7 @@ def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> 
         (((200, "SHOW 5"), (400, "MISSED")), 0, "Some of the robot's values did not arrive"),
         ((), 1, "The recording ends before the robot sent anything"),
         (((200, "LOST"),), 1, "The recording ends before the robot sent anything"),
-        (((900, "SHOW 5"),), 1, "Line 1: the robot got there at another time."),
+        (((900, "SHOW 5"),), 1, "Line 1: the robot got there at a different time."),
         (((200, "SHOW 5"), (400, "DONE")), 1, "Line 3: the robot says DONE after 0.4 s"),
         (((200, "SHOW 5"), (9000, "STOPPED")), 1, "Line 3: the virtual robot says FAULT"),
     ],
@@ -176,7 +176,7 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
             "viene de un tsc más nuevo",
         ),
         (HEAD.replace('"tinibot"', '"mine"').encode(), "does not have", "no trae"),
-        (real().replace(b"SHOW(5)", b"SHOW(6)"), "means something else", "significa otra cosa"),
+        (real().replace(b"SHOW(5)", b"SHOW(6)"), "has a different meaning in this tsc", "significa otra cosa"),
         (real((999_999, "DONE")), "ten minutes at most", "diez minutos como máximo"),
         (HEAD.encode() + b" " * 1_100_000, "is too long", "es demasiado largo"),
     ],
@@ -199,15 +199,15 @@ def test_a_file_that_cannot_be_played_says_why(
         (("run", "p.bin", "--record", "new"), "needs the program's text"),
         (("run", "-e", TEXT, "--record", "new", "--world", "nowhere"), "nowhere"),
         (("run", "-e", TEXT, "--record", "new", "--robot", "own.toml"), "that come with tsc"),
-        (("run", "-e", TEXT, "--record", "new", "--machine", "cpp"), "--machine does not go with"),
-        (("run", "-e", TEXT, "--record", "new", "--show"), "--show does not go with --record"),
-        (("run", "-e", TEXT, "--record", "new", "--pace", "0"), "--pace does not go with"),
+        (("run", "-e", TEXT, "--record", "new", "--machine", "cpp"), "--machine does not work with"),
+        (("run", "-e", TEXT, "--record", "new", "--show"), "--show does not work with --record"),
+        (("run", "-e", TEXT, "--record", "new", "--pace", "0"), "--pace does not work with"),
         (("run", "-e", TEXT, "--record", "letter"), "tsc did not write it."),
-        (("run", "r", "--sensor", "DISTANCE=5"), "--sensor does not go with a recorded run"),
-        (("run", "r", "--seed", "7"), "--seed does not go with a recorded run"),
-        (("run", "r", "--max-time", "3"), "--max-time does not go with a recorded run"),
-        (("run", "r", "--robot", "liner"), "--robot does not go with a recorded run"),
-        (("run", "r", "--record", "new"), "--record does not go with a recorded run"),
+        (("run", "r", "--sensor", "DISTANCE=5"), "--sensor does not work with a recorded run"),
+        (("run", "r", "--seed", "7"), "--seed does not work with a recorded run"),
+        (("run", "r", "--max-time", "3"), "--max-time does not work with a recorded run"),
+        (("run", "r", "--robot", "liner"), "--robot does not work with a recorded run"),
+        (("run", "r", "--record", "new"), "--record does not work with a recorded run"),
         (("upload", "-e", "SB|S", "--record", "new"), "--record needs a run that tsc follows"),
         (("upload", "-e", TEXT, "--detach", "--record", "new"), "--record needs a run"),
         (("upload", "-e", TEXT, "--no-run", "--record", "new"), "--record needs a run"),

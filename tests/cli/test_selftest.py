@@ -250,7 +250,7 @@ def person(
             pty_robot.ask(lambda robot: robot.sense(*GOOD))
         elif "motor turned" in question:
             return wires.seen(pty_robot.did)
-        return learns if "can keep" in question else "1"
+        return learns if "can remember" in question else "1"
 
     return answer
 
@@ -289,13 +289,13 @@ def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
     """Motors that turn wrong or not at all, and sensors that notice nothing."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
     for wires, said in (
-        (Wires(is_exchanged=True), "tsc set trim"), (Wires(is_dead=True), "its wires"),
+        (Wires(is_exchanged=True), "tsc set trim"), (Wires(is_dead=True), "check its wires"),
     ):  # fmt: skip
         code, out, err = asked(pty_robot, person(pty_robot, wires))
         assert code == 3
         assert out.count("WRONG") == 2
         assert f"Try:  {said}" in out
-        assert ("can keep" in err) == wires.is_exchanged
+        assert ("can remember" in err) == wires.is_exchanged
     assert on(pty_robot, "set", "trim", "--show").out.count("as they are wired") == 1
     code, out, _ = asked(pty_robot, person(pty_robot, is_noticed=False))
     assert code == 3

@@ -151,7 +151,7 @@ def test_a_stop_gets_through_beside_a_suspended_tsc(
     suspended(holder)
     assert pty_robot.moves
     for _ in range(2):
-        on(pty_robot, "stop").gives(0, "", out="has confirmed it")
+        on(pty_robot, "stop").gives(0, "", out="has confirmed the stop")
         assert not pty_robot.moves
     assert holders.is_suspended(holder.process.pid)
     holder.signal(signal.SIGCONT)
@@ -181,7 +181,7 @@ def test_a_stop_gets_past_the_lock_of_another_suspended_program(pty_robot: PtyRo
     assert pty_robot.heard == heard and pty_robot.moves
     suspended(holder)
     on(pty_robot, "start").gives(3, "another program is using")
-    on(pty_robot, "stop").gives(0, "", out="has confirmed it")
+    on(pty_robot, "stop").gives(0, "", out="has confirmed the stop")
     assert not pty_robot.moves
     holder.kill()
 
@@ -214,7 +214,7 @@ def test_the_suspended_holder_of_an_address_is_woken(pty_robot: PtyRobot) -> Non
     holder = Command("monitor", "--port", address)
     until(lambda: registry.find_registration(address) is not None, "it shares the address")
     suspended(holder)
-    process("stop", "--port", address).gives(0, "", out="has confirmed it")
+    process("stop", "--port", address).gives(0, "", out="has confirmed the stop")
     assert not pty_robot.moves
     holder.kill()
     bridge.kill()

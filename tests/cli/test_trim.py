@@ -101,7 +101,7 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
     assert on(pty_robot, "--balance", "-5", "--least", "12").out.startswith("tinibot (")
     done = on(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
     assert done.out.endswith(
-        "keeps: motors swapped, right wheel reversed, right wheel 5 % weaker, "
+        "has saved: motors swapped, right wheel reversed, right wheel 5 % weaker, "
         "the wheels begin to turn at 12 %, centimetres and degrees according to its kit\n"
     )
     assert keeps(pty_robot) == Trim(True, False, True, -5, 12, Pace())

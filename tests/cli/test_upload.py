@@ -79,7 +79,7 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
         pty_robot.damages = damages
         done = on(pty_robot, "upload", ours, "--no-run", "--no-save")
         assert (done.code, pty_robot.did) == (0, [])
-        assert "only in RAM   SI: waits" in done.out
+        assert "only in RAM   SI: waiting" in done.out
         assert on(pty_robot, "show", "-o", theirs).code == 0
         assert theirs.read_bytes() == ours.read_bytes(), damages
         fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
@@ -146,7 +146,7 @@ def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) 
     pty_robot.switch_off_and_on()
     done = command.ended()
     assert done.code == 3 and "Done." not in done.out + done.err
-    assert "was restarted" in done.out + done.err, done
+    assert "restarted, which ended its program" in done.out + done.err, done
 
 
 # -- what a robot keeps, and what is in the way of that -------------------------------------------
@@ -169,7 +169,7 @@ def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyR
 
 def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
     interrupted(uploading(pty_robot)).gives(
-        2, "the robot has confirmed it", out="Saved. It starts with the button."
+        2, "the robot has confirmed the stop", out="Saved. It starts with the button."
     )
     pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"

@@ -197,7 +197,7 @@ def test_two_robots_of_one_name_are_not_announced(tini: Robot) -> None:
 def test_an_address_outside_is_not_called(address: str) -> None:
     with announced(f"bait-{HERE}", address, 7007):
         done = inside("doctor", "--identify", "--port", f"tcp://bait-{HERE}")
-        said = f"an address outside this network{address})"
+        said = f"an address outside this network ({address})"
         assert (done.code, said in done.err) == (3, True)
 
 

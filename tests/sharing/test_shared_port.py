@@ -87,9 +87,9 @@ def test_all_names_of_a_port_lead_to_its_server(
     rows = json.loads(process("doctor", "--ports", "--json").out)
     assert {row["port"]: row["held_by"] for row in rows}[pty_robot.port] == "monitor --hold"
     done = process("doctor", "--ports", "--ask", "--port", name)
-    assert "robot" in done.out and "held by tsc monitor --hold" in done.out
+    assert "robot" in done.out and "in use by tsc monitor --hold" in done.out
     process("show", "--port", name, "--baud", "115200").gives(
-        3, "held by tsc monitor --hold, at 9600 baud"
+        3, "in use by tsc monitor --hold, at 9600 baud"
     )
     process("monitor", "--hold", "--port", name).gives(3, "already shared, by tsc monitor --hold")
 
@@ -232,7 +232,7 @@ def test_a_program_ends_with_its_command_unless_it_needs_nobody(
 ) -> None:
     command = uploading(pty_robot)
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "the robot has confirmed it")
+    command.ended().gives(2, "the robot has confirmed the stop")
     assert not pty_robot.moves
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     pty_robot.ask(lambda robot: robot.wait(1500))
@@ -248,8 +248,8 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     first = uploading(pty_robot)
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
     second.ended().gives(0, out="Done.")
-    done = first.ended().gives(3, "another program", "holds the port until the other has ended.")
-    assert done.err.index("holds the port") < done.err.index("another program")
+    done = first.ended().gives(3, "another command started a program", "holds the port until the other has ended.")
+    assert done.err.index("holds the port") < done.err.index("another command started a program")
     assert hellos(pty_robot) == 1
     assert registry.find_registration(pty_robot.port) is None
 
@@ -275,7 +275,7 @@ def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
     assert on(pty_robot, "stop").code == 0
     assert not pty_robot.moves
     second.ended().gives(3, out="The robot was stopped from a computer.")
-    first.ended().gives(3, "another program")
+    first.ended().gives(3, "another command started a program")
 
 
 # -- endings of a server --------------------------------------------------------------------------
@@ -388,7 +388,7 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
     )
     command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer)
     command.until("running")
-    for language, words in (("en", "another version, 9.1"), ("es", "otra versión, 9.1")):
+    for language, words in (("en", "another version of tsc, 9.1"), ("es", "otra versión, 9.1")):
         on(pty_robot, "show", "--lang", language).gives(3, words)
     assert on(pty_robot, "stop").code == 0
     assert command.ended().code == 3
