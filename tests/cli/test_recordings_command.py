@@ -176,7 +176,11 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
             "viene de un tsc más nuevo",
         ),
         (HEAD.replace('"tinibot"', '"mine"').encode(), "does not have", "no trae"),
-        (real().replace(b"SHOW(5)", b"SHOW(6)"), "has a different meaning in this tsc", "significa otra cosa"),
+        (
+            real().replace(b"SHOW(5)", b"SHOW(6)"),
+            "has a different meaning in this tsc",
+            "significa otra cosa",
+        ),
         (real((999_999, "DONE")), "ten minutes at most", "diez minutos como máximo"),
         (HEAD.encode() + b" " * 1_100_000, "is too long", "es demasiado largo"),
     ],

@@ -248,7 +248,9 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     first = uploading(pty_robot)
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
     second.ended().gives(0, out="Done.")
-    done = first.ended().gives(3, "another command started a program", "holds the port until the other has ended.")
+    done = first.ended().gives(
+        3, "another command started a program", "holds the port until the other has ended."
+    )
     assert done.err.index("holds the port") < done.err.index("another command started a program")
     assert hellos(pty_robot) == 1
     assert registry.find_registration(pty_robot.port) is None
