@@ -87,7 +87,7 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     assert "drove 0 cm in 3.0 s" in done.err
     done = inside("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
     assert (done.code, done.err) == (0, "")
-    assert "SB: waits for the button" in done.out
+    assert "SB: waiting for the button" in done.out
     inside("upload", "--virtual", "--detach", "-e", "SI|F(1, 80)").gives(2, "Leave --detach out")
     lines = b"F(0.1, 50)\nSHOW(1)\nLOOP(FOREVER);F(1, 50);END_LOOP\nSHOW(2)\n"
     done = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines).gives(0)
@@ -199,7 +199,7 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
     assert "socket" not in inside("doctor", "--ports").out
     known_ports.remember(found.port, "KAT")  # by a tsc that did
     assert "socket" not in inside("doctor", "--ports").out
-    inside("start").gives(3, "is not there")
+    inside("start").gives(3, "is gone")
 
 
 # -- a run without a robot ------------------------------------------------------------------------
@@ -453,11 +453,11 @@ def test_board_says_where_the_build_looks(
     assert f"tsc firmware --board liner -o {home_of_it}   {then}" in done.out
     assert "Ponlo ahí:" in tsc("firmware", "--board", "liner", "-o", "own.h", "--lang", "es").out
     done = tsc("firmware", "--board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
-    assert done.out.endswith("Now:  pio run -d vm_arduino -e nano\n")
+    assert done.out.endswith("To build it:  pio run -d vm_arduino -e nano\n")
     monkeypatch.chdir(home)
     up = str(Path("../../.."))
     assert tsc("firmware", "--board", "liner", "-o", "own.h").out.endswith(
-        f"Now:  pio run -d {up} -e nano\n"
+        f"To build it:  pio run -d {up} -e nano\n"
     )
 
 

@@ -76,8 +76,9 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         assert sum(pupil.moves for pupil in pupils) == ROBOTS - 2  # it uses no device of a kit
         done = inside("stop", "--all").gives(3)
         assert not any(pupil.moves for pupil in pupils)
-        # the other kit, too
-        assert done.out.count("the robot has confirmed the stop") == ROBOTS - 2
+        assert (
+            done.out.count("the robot has confirmed the stop") == ROBOTS - 2
+        )  # the other kit, too
 
 
 @pytest.mark.parametrize("babble", [b"DISTANCE 42\r\n" * 9, b"\x03\x81\0" * 30, b"U" * 90])

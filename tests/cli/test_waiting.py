@@ -162,7 +162,9 @@ def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.Monk
     for late_ms in (990, 1300):  # who is silent for 3 s is lost
         with BadLine(Fault("late", late_ms=late_ms), Random(1), 0) as line:
             on(line, "doctor", "--identify").gives(0)
-            on(line, "set", "owner").gives(3, "hold its start button", "waiting for its button")
+            on(line, "set", "owner").gives(
+                3, "hold its start button down", "waiting for its button"
+            )
 
 
 def test_a_wait_that_goes_on_is_said_once_and_soon_enough(

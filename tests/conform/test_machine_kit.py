@@ -425,7 +425,7 @@ def test_the_page_says_how_many(tsc: Tsc) -> None:
     count = len(machine_cases())
     needing = sum(bool(case.needs) for case in machine_cases())
     text = PAGE.read_text(encoding="utf-8")
-    assert f"some {round(count, -1)} runs" in text
-    assert f"some {round(len(all_checks(link_kit())), -1)} checks" in text
+    assert f"about {round(count, -1)} runs" in text
+    assert f"about {round(len(all_checks(link_kit())), -1)} checks" in text
     assert f"{needing} cases with TASK, WHEN, CM or DEG" in text
     assert f"{count - needing - 1} of {count - needing} cases pass." in text

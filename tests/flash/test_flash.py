@@ -170,7 +170,7 @@ def test_another_chip_is_refused(package: Path, tmp_path: Path) -> None:
 def test_a_memory_that_does_not_keep_it_is_seen(package: Path, tmp_path: Path) -> None:
     of = changed_optiboot(tmp_path, "__boot_page_write_short(", "(void)(")
     with new_board(of) as uno:
-        tsc(package, "--port", uno.pty).gives(3, "does not contain what was written to it. Write")
+        tsc(package, "--port", uno.pty).gives(3, "does not contain what was written to it. Unplug")
 
 
 def test_a_port_in_use_is_said(package: Path) -> None:
@@ -219,7 +219,7 @@ def test_a_nano_is_tried_with_both_of_its_bootloaders(
 
 def test_half_a_firmware_is_said(package: Path, board: Uno, tmp_path: Path) -> None:
     body = f'{PROGRESS}\nprint("avrdude: programmer is not responding")\nsys.exit(1)'
-    tsc(package, "--port", board.pty, **fake(tmp_path, body)).gives(3, "board's firmware")
+    tsc(package, "--port", board.pty, **fake(tmp_path, body)).gives(3, "its firmware is incomplete")
 
 
 def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
