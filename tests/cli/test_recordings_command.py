@@ -203,7 +203,7 @@ def test_a_file_that_cannot_be_played_says_why(
         (("run", "p.bin", "--record", "new"), "needs the program's text"),
         (("run", "-e", TEXT, "--record", "new", "--world", "nowhere"), "nowhere"),
         (("run", "-e", TEXT, "--record", "new", "--robot", "own.toml"), "that come with tsc"),
-        (("run", "-e", TEXT, "--record", "new", "--machine", "cpp"), "--machine does not work with"),
+        (("run", "-e", TEXT, "--record", "new", "--machine", "cpp"), "--machine does not work"),
         (("run", "-e", TEXT, "--record", "new", "--show"), "--show does not work with --record"),
         (("run", "-e", TEXT, "--record", "new", "--pace", "0"), "--pace does not work with"),
         (("run", "-e", TEXT, "--record", "letter"), "tsc did not write it."),

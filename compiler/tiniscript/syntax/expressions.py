@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.base.source import Edit, Span
-from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word
+from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.syntax.ast import Argument, Part
@@ -300,7 +300,7 @@ class ExpressionParser:
     def after_name(self) -> Token | None:
         """Return what follows a name of a DEF where a comma or the end belongs.
 
-        A sign is passed, with all up to there: `= 5`; a name is the next one.
+        A sign is passed, with all up to there: `= 5`; a name is the next one. None for a unit.
         """
         cursor = self.cursor
         first = cursor.token
@@ -310,7 +310,9 @@ class ExpressionParser:
             if cursor.token.kind in AT_END:
                 break
             cursor.i += 1
-        return first if first.kind in SIGNS or first.kind is WORD else None
+        is_unit = len(first.text) > 1 and bool(said_of(first.text, "unit"))
+        is_name = first.kind is WORD and not is_unit
+        return first if first.kind in SIGNS or is_name else None
 
     def no_names_alone(self, bracket: int, more: Token, names: Sequence[str]) -> None:
         """`DEF SIDE(SIZE = 5)`, `DEF SIDE(SIZE SPEED)`: the whole header is shown."""
