@@ -162,7 +162,7 @@ def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
         hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
         assert page.evaluate("window.port.opened") == count
     page.click("#flash_write")
-    said(page, "Writing the firmware")
+    said(page, "Writing and verifying the firmware")
     page.click("#flash_cancel")
     said(page, "Cancelled. Nothing was written")
     hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
@@ -180,7 +180,8 @@ def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: servi
 # -- what a run needs
 
 # What the page says where something is held; the pictures and the style are the browser's to fetch.
-WORDS = "#coming, #status:has-text('not arrive'), #doing:has-text('not arrive')"
+WORDS = ("#coming, #status:has-text('not load'), #status:has-text('not arrive'), "
+         "#doing:has-text('not load'), #doing:has-text('not arrive')")  # fmt: skip
 OF_THE_COMPILER = ("worker.js", "pyodide.asm.mjs", "pyodide.asm.wasm", "python.zip",
                    "tiniscript.zip", "messages.en.json")  # fmt: skip
 BEGINS = "html[data-screen=start] [data-begin=dance]"
@@ -220,7 +221,7 @@ new MutationObserver(() => {
   if (said !== window.told.at(-1)) window.told.push(said);
 }).observe(document, {subtree: true, childList: true, characterData: true})"""
 WAITED = """window.told
-  .map((said) => /waits(?= for the compiler)|did not arrive/.exec(said ?? '')?.[0])
+  .map((said) => /waiting(?= for the compiler)|did not load/.exec(said ?? '')?.[0])
   .filter(Boolean).filter((each, k, all) => each !== all[k - 1])"""
 TRIES = 10
 
@@ -261,7 +262,7 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
         held.let_go()
         if not page.locator("html[data-screen=program]").count():
             page.click(BEGINS)
-        elif page.locator("#doing", has_text="did not arrive").count():
+        elif page.locator("#doing", has_text="did not load").count():
             page.click("#run")  # this computer was slow: it was given up
         danced(page)
         page.context.close()
@@ -280,16 +281,16 @@ def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
     for _ in range(2):
         page.locator("#doing", has_text="The compiler did not load. Press Run to try").wait_for()
         page.click("#run")
-        page.locator("#doing", has_not_text="did not arrive").wait_for()
-    assert page.evaluate(WAITED)[:4] == ["waits", "did not arrive"] * 2
+        page.locator("#doing", has_not_text="did not load").wait_for()
+    assert page.evaluate(WAITED)[:4] == ["waiting", "did not load"] * 2
     page.context.unroute_all()
-    outcome = page.locator("html[data-phase=running], #doing:has-text('did not arrive')")
+    outcome = page.locator("html[data-phase=running], #doing:has-text('did not load')")
     for _ in range(TRIES):
         outcome.first.wait_for(state="attached")
-        if not page.locator("#doing", has_text="did not arrive").count():
+        if not page.locator("#doing", has_text="did not load").count():
             break
         page.click("#run")  # this computer was slow: it was given up
-        page.locator("#doing", has_not_text="did not arrive").wait_for()
+        page.locator("#doing", has_not_text="did not load").wait_for()
     danced(page)
     page.click("#stop")
     checked(page)
