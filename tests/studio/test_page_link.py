@@ -138,7 +138,7 @@ def test_a_program_and_a_line_are_sent_and_run(page: Page, robot: PtyRobot) -> N
     assert not robot.moves
     write(page, "X = 0;\nF(0.1, 50);\nSHOW(1 / X)")
     page.click("#link_upload")
-    said(page, "Line 3: something is divided by 0.")
+    said(page, "Line 3: the program divided by 0.")
     page.locator(".cm-activeLine").filter(has_text="SHOW").wait_for()
 
 

@@ -233,7 +233,7 @@ def test_a_fault_is_named_where_it_is(page: Page) -> None:
     write(page, "X = 0;\nSHOW(1 / X)")
     page.select_option("#speed", "20")
     page.click("#run")
-    page.locator("#doing").filter(has_text="Line 2: something is divided by 0.").wait_for()
+    page.locator("#doing").filter(has_text="Line 2: the program divided by 0.").wait_for()
     assert page.locator(".cm-running").all_inner_texts() == ["SHOW(1 / X)"]
     write(page, "X = 0;\nSHOW(1 / Y)")
     page.locator(".cm-running").wait_for(state="detached")
