@@ -160,8 +160,7 @@ def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> N
         act = rng.choice(acts)
         act()
         assert act != simulation.stop or not any(simulation.state()["motors"])
-    if len(acts) > 7:
-        simulation.set_breakpoints(())
+    simulation.set_breakpoints(())
     simulation.stop()
     assert not simulation.robot.is_running and not any(simulation.state()["motors"])
     seen = []
