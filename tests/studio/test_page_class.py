@@ -182,7 +182,7 @@ def test_three_pupils_share_a_robot(
     big.locator("img[src^=blob]").wait_for()
     big.locator("[data-text=class_stop_all]").click()
     robot.until(lambda: not robot.moves, "the teacher stops it")
-    linked(ana, "Stopped: the robot has confirmed it.")
+    linked(ana, "Stopped: the robot has confirmed the stop.")
     teacher.locator("#stops").filter(has_text="STOP: 1 of 1 robots have confirmed it.").wait_for()
     assert not teacher.locator("#stops .wrong").count()
     time.sleep(LATCH_S)
