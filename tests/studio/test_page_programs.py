@@ -108,7 +108,7 @@ def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     write(page, "SI|F(1, 34)")
     share(page)
     for address, told in (("https://school.example/studio/", "sees the program in this page, at"),
-                          ("http://192.168.1.9:8000/", "in this network")):  # fmt: skip
+                          ("http://192.168.1.9:8000/", "on this network")):  # fmt: skip
         page.fill("#public", address)
         page.locator("#public").blur()
         page.locator("#shared_told", has_text=told).wait_for()
@@ -119,7 +119,7 @@ def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     assert "must begin with https://" in page.inner_text("#shared_told")
     page.fill("#public", "")
     page.locator("#public").blur()
-    page.locator("#shared_told", has_text="on this computer only").wait_for()
+    page.locator("#shared_told", has_text="only on this computer").wait_for()
     page.click("#programs_close")
 
 

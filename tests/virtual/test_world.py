@@ -120,7 +120,7 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
         ),
         (RIGHT + "[[boxes]]\nx_cm = nan\ny_cm = 1\nlength_cm = 1\nwidth_cm = 1\n", "digits"),
         (RIGHT.replace("200", "0"), "floor.width_cm is 0. Write a number from 1 to 2000."),
-        (RIGHT + "[[walls]]\npoints = [[0, 0], [1, 1]]\n" * 101, "walls has 101 parts. Leave"),
+        (RIGHT + "[[walls]]\npoints = [[0, 0], [1, 1]]\n" * 101, "walls has 101 parts. Keep"),
         (
             RIGHT + f"[[walls]]\npoints = {[[k, k] for k in range(201)]}",
             "walls[1].points has 201 points",
