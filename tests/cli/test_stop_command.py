@@ -101,7 +101,7 @@ def test_a_stop_waits_for_a_port_longer_than_others(
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_nobody_is_told_to_push_the_button_of_a_robot_that_may_stand(language: str) -> None:
     sentence = text("not_confirmed", language)
-    assert not re.search(r"press its button|pulsa su botón", sentence)
+    assert not re.search(r"(?<!not )press its button|pulsa su botón", sentence)
     assert re.search(r"batter|pilas", sentence)
 
 

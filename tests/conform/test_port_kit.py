@@ -189,8 +189,8 @@ def flood(peer: socket.socket) -> None:
 @pytest.mark.parametrize(
     ("serve", "said"),
     [
-        (lambda peer: None, "is gone"),
-        (lambda peer: peer.recv(1), "is gone"),
+        (lambda peer: None, "disappeared"),
+        (lambda peer: peer.recv(1), "disappeared"),
         (flood, "answers HELLO"),
     ],
     ids=["closes", "closes later", "floods"],

@@ -80,7 +80,11 @@ def happens(rng: random.Random, wire: Wire) -> None:
             wire.session.poll(wire.robot.now_ms)
             wire.robot.wait(10)
     elif how == "a reset":
-        fresh = HostFirmware(TINIBOT, wire.robot.memory(), seed=rng.getrandbits(32) | 1)
+        # Its epoch is the seed's last byte: after one reset of 256 the same as before, and then a
+        # lost stop cannot be told from one that has come since, so what is asked for is STALE.
+        epoch = wire.session._epoch + 128 & 0xFF
+        seed = (rng.getrandbits(24) | 1) << 8 | epoch
+        fresh = HostFirmware(TINIBOT, wire.robot.memory(), seed=seed)
         fresh.now_ms = wire.robot.now_ms
         fresh.wait(200)
         wire.robot = fresh

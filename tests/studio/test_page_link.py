@@ -424,7 +424,7 @@ def agrees(page: Page, run: Callable[[], None]) -> None:
         page.click("#side_real")
         run()
         page.click("#record_play")
-        doing.filter(has_text=re.compile("Comparisons|another time")).wait_for()
+        doing.filter(has_text=re.compile("Values compared|different time")).wait_for()
         if "a different time" not in doing.inner_text():
             break
     assert doing.inner_text() == "Both did the same. Values compared: 3."
@@ -453,7 +453,7 @@ def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) ->
     write(page, "SHOW(6)")
     page.click("#record_play")  # it has its own program
     page.locator(".cm-content", has_text="SHOW(DISTANCE)").wait_for()
-    page.locator("#doing", has_text="Comparisons: 3.").wait_for()
+    page.locator("#doing", has_text="Values compared: 3.").wait_for()
     page.click("#side_real")
 
 

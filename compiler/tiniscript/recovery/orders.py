@@ -250,5 +250,12 @@ def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
     tokens = readings[0].tokens if readings else []
     end = next((k for k, lexeme in enumerate(tokens) if lexeme.text == ";"), len(tokens)) - 1
     lexemes = tokens[2:end]
-    is_asked = any(lexeme.text in COMPARISONS or names.is_yes_no(lexeme.text) for lexeme in lexemes)
-    return lexemes if is_asked else []
+    return lexemes if any(_asks(lexeme.text, names) for lexeme in lexemes) else []
+
+
+def _asks(word: str, names: Names) -> bool:
+    """Whether a word makes a question of those beside it: a yes or no that never changes does not,
+    and may be said for more: `si no avanza`.
+    """
+    is_known = word in ("TRUE", "FALSE")
+    return word in COMPARISONS or (names.is_yes_no(word) and not is_known)
