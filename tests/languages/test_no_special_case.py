@@ -8,9 +8,9 @@ import re
 import pytest
 
 from tests.support.casefile import ROOT
+from tiniscript.base.kit import REMOTE
 from tiniscript.base.languages import FOLDER, ITSELF, SOURCE, languages, table
 from tiniscript.base.translations import read_language
-from tiniscript.base.kit import REMOTE
 from tiniscript.base.words import WORDS
 from tiniscript.recovery import rows, suggestion_rows
 from tiniscript.recovery.rewrites import cells

@@ -56,7 +56,7 @@ def test_a_new_board_becomes_a_robot(
         said(found, "There is no firmware here for this robot on this board.")
         found.select_option("#robot", "tinibot")
         found.set_input_files("#flash_file", {"name": "<b>.hex", "mimeType": "", "buffer": b":00"})
-        said(found, "<b>.hex is next")
+        said(found, "<b>.hex is ready")
         found.click("#flash_write")
         said(found, "That is not a complete HEX file")
         assert found.locator("#flash_board option").all_inner_texts() == ["Uno"]

@@ -733,7 +733,7 @@ class Session(Requester):
         """Ask who the robot is now that its epoch is an `is_other` one, and how a run has ended."""
         run = self._state.run
         if is_other:
-            self._handshake.is_open = False  # if this HELLO is lost, what is asked next begins with one
+            self._handshake.is_open = False  # what is asked next finds out, if this is lost
             hello = yield from self._handshake.hello()
             if hello.status != OK:
                 return refused(hello)
