@@ -110,7 +110,7 @@ def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
         began_ms = robot.now_ms
         if rng.random() < 0.3:
             session.stop(robot.now_ms)
-        elif rng.random() < 0.3:
+        elif rng.random() < 0.3 and session.is_running:  # one that stands was stopped before
             session.receive(robot.step(bytes(4)), robot.now_ms)  # somebody else
         robot.talk(session, rng.choice((5, 700)))
         what += [str(event) for event in session.events() if not isinstance(event, MissedEvent)]

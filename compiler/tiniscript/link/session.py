@@ -121,6 +121,7 @@ class PendingExchange(PendingRequest[T]):
         self.limit_ms, self.starts, self.ends_runs = limit_ms, starts, ends_runs
         self.exchange = exchange
         self.deadline_ms = 0
+        self.epoch: int | None = None  # in which it was asked for, by somebody
         self.is_own = is_own  # made by the session itself
         self.halts = halts  # the run of a client that has gone
         self.presses = presses  # keys of a remote control
@@ -683,16 +684,18 @@ class Session(Requester):
             if robot.state == STATE_STOPPED or (
                 is_same and (not is_fault or self._handshake.is_doubted)
             ):
-                self._void()
+                self._void(frame.epoch if is_same else None)
         self._handshake.doubted = None
 
-    def _void(self) -> None:
-        """The robot was stopped: do nothing that was asked for before. Questions are answered."""
+    def _void(self, began: int | None = None) -> None:
+        """The robot was stopped: do nothing that was asked for before. Questions are answered.
+
+        `began`: the epoch that has begun so, if what was asked for in it is known to be later.
+        """
         self._remote.let_go()
-        for waiting in self._waiting:
-            waiting.wanted.is_void = True
-        if self._pending is not None:
-            self._pending.wanted.is_void = True
+        for pending in (*self._waiting, *([self._pending] if self._pending else [])):
+            if began is None or pending.wanted.epoch != began:
+                pending.wanted.is_void = True
 
     def _tell_stop(self, event: StoppedEvent) -> None:
         """Tell that STOP has stopped the robot, if its event has not."""
@@ -726,6 +729,8 @@ class Session(Requester):
         return not self._transmission.take(frame, next_offset, now_ms)
 
     def _look_first(self, has_ended: bool, is_other: bool) -> None:
+        if is_other:
+            self._handshake.is_open = False  # if this is lost, what is asked next finds out
         again = self._look_again(has_ended, is_other)
         self._waiting.appendleft(PendingExchange(again, DEAF_MS, is_own=True))
 
@@ -733,7 +738,6 @@ class Session(Requester):
         """Ask who the robot is now that its epoch is an `is_other` one, and how a run has ended."""
         run = self._state.run
         if is_other:
-            self._handshake.is_open = False  # what is asked next finds out, if this is lost
             hello = yield from self._handshake.hello()
             if hello.status != OK:
                 return refused(hello)
@@ -880,6 +884,7 @@ class Session(Requester):
         self, exchange: Exchange[T], starts: bool = False, ends_runs: bool = False
     ) -> PendingExchange[T]:
         pending = PendingExchange(exchange, starts=starts, ends_runs=ends_runs)
+        pending.epoch = self._epoch
         self._waiting.append(pending)
         return pending
 
