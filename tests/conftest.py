@@ -159,6 +159,15 @@ def sketch(sketches: Callable[[str], Path]) -> Path:
 
 
 @pytest.fixture
+def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nobody waits long for a robot that will not answer."""
+    monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 800)
+    monkeypatch.setattr("tiniscript.library.opening.CABLE_ANSWER_MS", 800)
+    monkeypatch.setattr("tiniscript.library.opening.LONG_QUIET_S", 0.1)
+    monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 800)
+
+
+@pytest.fixture
 def pty_robot() -> Iterator[PtyRobot]:
     """A robot of the kit `tinibot`."""
     with PtyRobot(robots.load("tinibot").kit) as robot:

@@ -76,8 +76,8 @@ def said(key: str, **gaps: str) -> str:
 
 def in_language(sentences: tuple[str, ...], **gaps: str) -> str:
     """Return the sentence of the person's language, else the English one."""
-    found = language()
-    return sentences[LANGUAGES.index(found) if found in LANGUAGES else 0].format(**gaps)
+    result = language()
+    return sentences[LANGUAGES.index(result) if result in LANGUAGES else 0].format(**gaps)
 
 
 def say(line: str) -> None:

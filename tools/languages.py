@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -59,20 +59,22 @@ def names() -> Catalogue:
     for folder in ("robots", "virtual/worlds", "lessons"):
         for path in sorted((FOLDER.parent / folder).rglob("*.toml")):
             place = path.relative_to(FOLDER.parent).as_posix()
-            for said in _said_in(tomllib.loads(path.read_text(encoding="utf-8"))):
-                catalogue.entries.setdefault((said, said), Entry(said, said, notes=[place]))
+            for english_text in _english_texts(tomllib.loads(path.read_text(encoding="utf-8"))):
+                catalogue.entries.setdefault(
+                    (english_text, english_text), Entry(english_text, english_text, notes=[place])
+                )
     return catalogue
 
 
-def _said_in(value: object) -> Iterator[str]:
+def _english_texts(value: object) -> Iterator[str]:
     """Yield each text that stands in English in a TOML file, in a row `en` or a table `en`."""
     if isinstance(value, dict):
         for key, each in value.items():
-            said = each.values() if isinstance(each, dict) else [each]
-            yield from said if key == SOURCE else _said_in(each)
+            text = each.values() if isinstance(each, dict) else [each]
+            yield from text if key == SOURCE else _english_texts(each)
     elif isinstance(value, list):
         for each in value:
-            yield from _said_in(each)
+            yield from _english_texts(each)
 
 
 def pseudo(source: Catalogue) -> Catalogue:
@@ -110,9 +112,9 @@ def make_pseudo(english: dict[str, Catalogue]) -> None:
 def check_robot(own: Catalogue) -> Iterator[Problem]:
     """What a robot cannot say in its few bytes."""
     for entry in own.entries.values():
-        for said in (entry.said or entry.forms).values():
-            if not said.isascii() or len(said) > ROBOT_SIGNS:
-                yield entry.line, f"a robot says at most {ROBOT_SIGNS} signs, in ASCII: {said}"
+        for item in (entry.said or entry.forms).values():
+            if not item.isascii() or len(item) > ROBOT_SIGNS:
+                yield entry.line, f"a robot says at most {ROBOT_SIGNS} signs, in ASCII: {item}"
 
 
 def check_lexicon(language: str) -> Iterator[str]:
@@ -185,8 +187,8 @@ def in_step(
     own = Translation(language, english)
     wrong = 0
     if not is_check:
-        for gone in own.follow():
-            print(f"languages/{language}/{gone}: its English text is gone, and so it goes")
+        for item in own.follow():
+            print(f"languages/{language}/{item}: its English text is gone, and so it goes")
         for unused in own.see(seen) if seen is not None else []:
             print(f"{language}: there is no translation with the key {unused}")
             wrong += 1
@@ -201,6 +203,16 @@ def _heading(language: str) -> str:
     except ImportError:
         return heading(language, language, ("one", "other"), "n != 1")
     return heading(*itself(language))
+
+
+def missing(entries: Iterable[Entry]) -> Iterator[tuple[int, str]]:
+    """Yield what has no translation, with the line of the one before, after which it goes."""
+    line = 1
+    for entry in entries:
+        if entry.said:
+            line = entry.line
+        else:
+            yield line, f"{entry.key} is missing: {entry.english}"
 
 
 def report(own: Translation) -> int:
@@ -223,10 +235,7 @@ def report(own: Translation) -> int:
             path, [(stale.line, f"{stale.key}: {was}: {stale.english}") for stale in stales]
         )
         if own.language.is_complete:
-            empty = [entry for entry in there if not entry.said]
-            lacks += tell(
-                path, [(1, f"{entry.key} is missing: {entry.english}") for entry in empty]
-            )
+            lacks += tell(path, [*missing(there)])
     new = [entry for entry in entries if entry.seen == UNKNOWN]
     if new:
         print(f"{own.code}: {len(new)} texts are new. Note of which English texts they are:  "

@@ -42,30 +42,33 @@ def check(text: str) -> list[Diagnostic]:
 
 
 def figures(folder: Path) -> Figures:
-    found = Figures()
+    figures = Figures()
     for path in sorted(folder.rglob("*.ts")):
         if path.name.endswith(MEANT):
             continue
-        made = image(fixed(path.read_text(encoding="utf-8"), check).text)
+        result = image(fixed(path.read_text(encoding="utf-8"), check).text)
         meant = path.with_name(path.name.removesuffix(".ts") + MEANT)
         is_known = meant.exists()
-        is_other = is_known and made not in (b"", image(meant.read_text(encoding="utf-8")))
+        is_other = is_known and result not in (b"", image(meant.read_text(encoding="utf-8")))
         name = path.relative_to(folder).as_posix()
-        found = Figures(found.programs + 1, found.right + bool(made), found.known + is_known,
-                        (*found.harmful, name) if is_other else found.harmful)  # fmt: skip
-    return found
+        figures = Figures(figures.programs + 1, figures.right + bool(result),
+            figures.known + is_known,
+                        (*figures.harmful, name) if is_other else figures.harmful)  # fmt: skip
+    return figures
 
 
 def main(arguments: Iterable[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Count what --fix makes of wrong programs.")
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args(None if arguments is None else [*arguments]).folder
-    found = figures(folder)
-    if not found.programs:
+    result = figures(folder)
+    if not result.programs:
         sys.exit(f"{folder} has no programs (*.ts).")
-    print(f"right after --fix: {found.right} of {found.programs}")
-    print(f"harmful: {len(found.harmful)} of {found.known} whose meaning is known", *found.harmful)
-    return bool(found.harmful)
+    print(f"right after --fix: {result.right} of {result.programs}")
+    print(
+        f"harmful: {len(result.harmful)} of {result.known} whose meaning is known", *result.harmful
+    )
+    return bool(result.harmful)
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ Import = ast.Import | ast.ImportFrom
 
 
 def main() -> int:
-    tracked = _tracked()
+    tracked = _tracked_files()
     package = [path for path in tracked if PACKAGE in path.parents and path.suffix == ".py"]
     tests = [path for path in tracked if ROOT / "tests" in path.parents]
     trees = {_name(path): ast.parse(path.read_bytes()) for path in package}
@@ -47,18 +47,18 @@ def main() -> int:
 
 def arrows(graph: Graph) -> Graph:
     """Return which modules each module imports."""
-    found: Graph = {}
+    result: Graph = {}
     for name, targets in graph.items():
-        own = found.setdefault(_module(name), set())
+        own = result.setdefault(_module(name), set())
         own |= {_module(target) for target in targets} - {_module(name)}
-    return found
+    return result
 
 
 def direct(arrows: Graph) -> Graph:
     """Return the arrows without those that a path of others replaces; there is no circle."""
     return {
         name: {target for target in targets
-               if not any(target in _reached(arrows, other) for other in targets)}
+               if not any(target in _reachable(arrows, other) for other in targets)}
         for name, targets in arrows.items()
     }  # fmt: skip
 
@@ -75,7 +75,7 @@ def _graph(trees: dict[str, ast.Module]) -> Graph:
     }
 
 
-def _tracked() -> list[Path]:
+def _tracked_files() -> list[Path]:
     """Return the files that git knows and that are here, in English, Spanish or no language."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True)
     paths = (ROOT / name for name in listed.stdout.decode().split("\0") if name)
@@ -102,8 +102,8 @@ def _words(tracked: list[Path]) -> int:
         if path.suffix == ".md" and not {path, *path.parents} & set(not_counted):
             text = path.read_text(encoding="utf-8")
             text = "" if text.startswith("<!-- Generated") else text
-            made = r"<!-- begin generated.*?<!-- end generated"
-            count += len(re.sub(made, "", text, flags=re.DOTALL).split())
+            result = r"<!-- begin generated.*?<!-- end generated"
+            count += len(re.sub(result, "", text, flags=re.DOTALL).split())
     return count
 
 
@@ -147,20 +147,20 @@ def _targets(each: Import, name: str, files: dict[str, ast.Module]) -> Iterator[
 
 def circles(graph: Graph) -> set[frozenset[str]]:
     """Return the groups of files that import each other."""
-    reached = {name: _reached(graph, name) for name in graph}
+    reached = {name: _reachable(graph, name) for name in graph}
     groups = (frozenset(other for other in found if name in reached[other])
               for name, found in reached.items())  # fmt: skip
     return {group for group in groups if len(group) > 1}
 
 
-def _reached(graph: Graph, start: str) -> set[str]:
-    found: set[str] = set()
+def _reachable(graph: Graph, start: str) -> set[str]:
+    result: set[str] = set()
     left = [start]
     while left:
-        new = graph[left.pop()] - found
-        found |= new
+        new = graph[left.pop()] - result
+        result |= new
         left += new
-    return found
+    return result
 
 
 if __name__ == "__main__":

@@ -152,12 +152,12 @@ def braces_edits(text: str, suffix: str) -> Iterator[Edit]:
     for match in NUMBER.finditer(plain):
         yield match.start(), match.end(), str(int(match[0], 0) + 1)
     for match in IF.finditer(plain):
-        yield match.end(), _closing(plain, match.end()), "false"
+        yield match.end(), _closing_bracket(plain, match.end()), "false"
     for match in STATEMENT.finditer(plain):
         yield match.end() - len(match[0].lstrip()), match.end(), ";"
 
 
-def _closing(text: str, at: int) -> int:
+def _closing_bracket(text: str, at: int) -> int:
     """Return where the bracket closes that opened right before `at`."""
     depth = 1
     while depth:
@@ -233,15 +233,15 @@ EDITS: dict[str, Callable[[str], Iterator[Edit]]] = {
 
 def equivalent() -> dict[tuple[str, str, str], str]:
     """Return why nothing can notice a mutant: of this file, of this line, that becomes this."""
-    found = Path(__file__).with_name("equivalent_mutants.json").read_text("utf-8")
-    rows: dict[str, list[tuple[str, str, str]]] = json.loads(found)
+    result = Path(__file__).with_name("equivalent_mutants.json").read_text("utf-8")
+    rows: dict[str, list[tuple[str, str, str]]] = json.loads(result)
     return {(file, was, becomes): why for why, row in rows.items() for file, was, becomes in row}
 
 
 def mutants(module: Module) -> list[Mutant]:
     """Return all mutants of a module but those that are listed as equivalent."""
     needless = equivalent()
-    found = []
+    mutants = []
     for path in sorted({path for pattern in module.files for path in ROOT.glob(pattern)}):
         text = path.read_text(encoding="utf-8")
         if "enerated" in text.partition("\n")[0]:
@@ -249,11 +249,11 @@ def mutants(module: Module) -> list[Mutant]:
         for start, end, instead in EDITS[path.suffix](text):
             changed = text[:start] + instead + text[end:]
             line = text.count("\n", 0, start)
-            was, becomes = (each.splitlines()[line].strip() for each in (text, changed))
+            was, becomes = (item.splitlines()[line].strip() for item in (text, changed))
             name = path.relative_to(ROOT).as_posix()
             if was != becomes and (name, was, becomes) not in needless:
-                found.append(Mutant(name, line + 1, was, becomes, changed))
-    return found
+                mutants.append(Mutant(name, line + 1, was, becomes, changed))
+    return mutants
 
 
 def drawn(modules: Sequence[Module], count: int, seed: int, pattern: str = "*") -> list[Mutant]:
@@ -263,7 +263,7 @@ def drawn(modules: Sequence[Module], count: int, seed: int, pattern: str = "*") 
         row = [mutant for mutant in mutants(module) if Path(mutant.file).match(pattern)]
         random.Random(f"{seed} {module.name}").shuffle(row)
         rows.append(row)
-    in_turn = [each for turn in zip_longest(*rows) for each in turn if each is not None]
+    in_turn = [item for turn in zip_longest(*rows) for item in turn if item is not None]
     return in_turn[:count]
 
 
@@ -308,11 +308,11 @@ class Copy:
 
     def tried(self, mutant: Mutant) -> str:
         """Return what the tests of its module say of a mutant: what fails, or nothing."""
-        found = self.notices(mutant, tests_of(mutant.file))
-        named = TEST.match(found)  # one that fails without the mutant, too, notices nothing
+        result = self.notices(mutant, tests_of(mutant.file))
+        named = TEST.match(result)  # one that fails without the mutant, too, notices nothing
         if named and (why := self.failing([named[1]], is_page=mutant.file.endswith(".js"))):
             return f"undecided, without it, too: {why}"
-        return found
+        return result
 
     def notices(self, mutant: Mutant, tests: Sequence[str]) -> str:
         """Return which test notices a mutant, or nothing."""
@@ -328,14 +328,14 @@ class Copy:
 
     def failing(self, tests: Sequence[str], *, is_page: bool = False) -> str:
         """Return what fails first of the tests, or nothing."""
-        if is_page and (why := self._ends(["-m", "tools.builds.studio", "--again"])):
+        if is_page and (why := self._last_words(["-m", "tools.builds.studio", "--again"])):
             return f"the build: {why}"
         # A size, and what is generated or built, notice any change.
         left_out = "not keeps_to_its_size and not generated and not same_page"
         chosen = ["-q", "-x", "-p", "no:cacheprovider", "-k", left_out, *tests]
-        return self._ends(["-m", "pytest", *chosen])
+        return self._last_words(["-m", "pytest", *chosen])
 
-    def _ends(self, words: list[str]) -> str:
+    def _last_words(self, words: list[str]) -> str:
         environment = {
             **os.environ,
             "PYTHONPATH": str(self.folder / "compiler"),
@@ -355,8 +355,10 @@ class Copy:
             return "it does not end"
         if process.returncode in (0, -signal.SIGKILL):
             return "it does not end" if process.returncode else ""
-        told = [line for line in output.splitlines() if line.startswith(("FAILED", "ERROR"))]
-        return told[0] if told else f"exit code {process.returncode}: {output[-200:].strip()}"
+        messages = [line for line in output.splitlines() if line.startswith(("FAILED", "ERROR"))]
+        return (
+            messages[0] if messages else f"exit code {process.returncode}: {output[-200:].strip()}"
+        )
 
 
 def main(arguments: list[str] | None = None) -> int:

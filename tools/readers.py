@@ -21,7 +21,10 @@ from tiniscript.recovery.lines import Step
 from tiniscript.recovery.meanings import Names, lexemes, setup_of, texts
 from tiniscript.recovery.told import READERS, ROUNDS, Wrong
 
-OF_WHOLE_LINES = ("_meant_surely", "_guessed")  # the readers that ask `search` what was meant
+OF_WHOLE_LINES = (
+    "_sure_findings",
+    "_likely_findings",
+)  # the readers that ask `search` what was meant
 
 
 def told(text: str) -> Iterator[str]:
@@ -29,10 +32,10 @@ def told(text: str) -> Iterator[str]:
     kit = robot_of(text.encode(), robots.load(robots.DEFAULT)).kit
     rest = text
     for _ in range(ROUNDS):
-        found = analyzed(rest, kit).diagnostics
-        if not any(each.is_mistake for each in found):
+        result = analyzed(rest, kit).diagnostics
+        if not any(each.is_mistake for each in result):
             break
-        wrong = Wrong(Source(rest), found, lambda each: analyzed(each, kit).diagnostics, kit)
+        wrong = Wrong(Source(rest), result, lambda each: analyzed(each, kit).diagnostics, kit)
         findings = ((reader, reader(wrong)) for reader in READERS)
         reader, its = next((each for each in findings if each[1].told), (None, None))
         if reader is None or its is None:
@@ -43,9 +46,9 @@ def told(text: str) -> Iterator[str]:
         candidate = wrong.recovery.whole if is_whole and wrong.recovery else None
         for change in candidate.changes if candidate else ():
             for step in change.steps:
-                yield f"  {_shown(step)}\n    by {row_of(step, kit)}"
+                yield f"  {_step_text(step)}\n    by {row_of(step, kit)}"
         rest = applied(rest, its.edits)
-    yield from map(_told, check_text(text, kit).diagnostics)
+    yield from map(_diagnostic_text, check_text(text, kit).diagnostics)
 
 
 def row_of(step: Step, kit: Kit) -> str:
@@ -54,12 +57,12 @@ def row_of(step: Step, kit: Kit) -> str:
     line = rewrites.Encoded(step.before[head:], Names([step.before], kit))
     for row in rewrites.of_tokens():
         for match in line.matches(row.pattern) if row.code is step.code else ():
-            made = line.rewritten(row, match)
-            if made is not None and texts(made) == texts(step.after)[head:]:
+            result = line.rewritten(row, match)
+            if result is not None and texts(result) == texts(step.after)[head:]:
                 return f"the row of {_line(' => '.join(row.example))}"
-    written = "".join((each.space or "") + (each.source or each.text) for each in step.before)
+    text = "".join((item.space or "") + (item.source or item.text) for item in step.before)
     for sign in rewrites.of_signs():
-        if texts(lexemes(sign.pattern.sub(sign.becomes, written, count=1))) == texts(step.after):
+        if texts(lexemes(sign.pattern.sub(sign.becomes, text, count=1))) == texts(step.after):
             return f"the row of {_line(' => '.join(sign.example))}"
     is_word = len(step.before) == len(step.after)
     return "a word's meaning (meanings.py)" if is_word else "no row (slots.py, or a sign: lines.py)"
@@ -69,11 +72,11 @@ def _line(text: str) -> str:
     return text.strip().replace("\n", " ⏎ ")
 
 
-def _shown(step: Step) -> str:
+def _step_text(step: Step) -> str:
     return f"{step.code.number}  {' '.join(texts(step.before))}  ->  {' '.join(texts(step.after))}"
 
 
-def _told(diagnostic: Diagnostic) -> str:
+def _diagnostic_text(diagnostic: Diagnostic) -> str:
     values = {name: its for name, its in diagnostic.values.items() if its}
     how = "" if diagnostic.repair is None else "made" if diagnostic.repair.is_sure else "offered"
     return f"{diagnostic.code.number} {values} {how}".rstrip()

@@ -117,8 +117,8 @@ class Translation:
                     self._note(name, key, [entry.hash if entry.seen in new else entry.seen
                                            for entry in group])  # fmt: skip
             there = {f"{name} {key}" for key in own.texts}
-            for gone in [at for at in self.seen if at.startswith(f"{name} ") and at not in there]:
-                self._note(name, gone.removeprefix(f"{name} "), [])
+            for item in [at for at in self.seen if at.startswith(f"{name} ") and at not in there]:
+                self._note(name, item.removeprefix(f"{name} "), [])
         return [pattern for pattern in patterns if pattern in unused]
 
     def put(self, name: str, key: str, group: list[Entry]) -> None:
@@ -197,7 +197,7 @@ def written(key: str, texts: list[Forms], is_list: bool) -> str:
 def quoted(text: str) -> str:
     """Return a text as TOML has it, with as few signs as it can."""
     if "\n" in text:
-        rows = ["".join(_SIGNS.get(each, each) if each != '"' else each for each in row)
+        rows = ["".join(_SIGNS.get(item, item) if item != '"' else item for item in row)
                 for row in text.replace('"""', '""\0').split("\n")]  # fmt: skip
         inside = _control("\n".join(rows)).replace("\0", '\\"')
         return '"""\n' + (inside[:-1] + '\\"' if inside[-1] == '"' else inside) + '"""'
@@ -207,7 +207,7 @@ def quoted(text: str) -> str:
 
 
 def _basic(text: str) -> str:
-    return '"' + _control("".join(_SIGNS.get(each, each) for each in text)) + '"'
+    return '"' + _control("".join(_SIGNS.get(item, item) for item in text)) + '"'
 
 
 def _control(text: str) -> str:

@@ -94,7 +94,7 @@ def take(path: Path, own: Translation) -> int:
     for message in catalog:
         forms = _forms(message, own.language)
         if message.id and not message.fuzzy and all(forms.values()):
-            if why := _take(message, forms, own):
+            if why := _take_text(message, forms, own):
                 print(f"{path}:{message.lineno}: {why}")
                 wrong += 1
             taken += not why
@@ -109,7 +109,7 @@ def _forms(message: Message, language: Language) -> Forms:
     return dict(zip(language.forms, message.string or ("",), strict=False))
 
 
-def _take(message: Message, forms: Forms, own: Translation) -> str:
+def _take_text(message: Message, forms: Forms, own: Translation) -> str:
     """Take one text; return why that is not possible, or nothing."""
     english, *plural = [message.id] if isinstance(message.id, str) else message.id
     name, _, key = (message.context or "").partition("/")
@@ -117,8 +117,8 @@ def _take(message: Message, forms: Forms, own: Translation) -> str:
     if key not in own.groups.get(name, {}):
         return f"there is no English text with the context {message.context or 'of nothing'}"
     group = own.paired(name, key)
-    wanted = (english, "".join(plural))
-    entry = next((entry for entry in group if (entry.english, entry.plural) == wanted), None)
+    expected = (english, "".join(plural))
+    entry = next((entry for entry in group if (entry.english, entry.plural) == expected), None)
     if entry is None:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
     said, seen = entry.said, entry.seen
@@ -136,11 +136,11 @@ def itself(code: str) -> tuple[str, str, list[str], str]:
         locale = Locale.parse(code)
     except (UnknownLocaleError, ValueError):
         return code, code, *SIMPLE[0]
-    name, english_name = (locale.get_display_name(each) or code for each in (code, "en"))
+    name, english_name = (locale.get_display_name(item) or code for item in (code, "en"))
     count, rule = get_plural(code)
     known = (*SIMPLE, (_names_of(count, rule, locale.plural_form), rule))
-    wanted = [locale.plural_form(number) for number in range(NUMBERS)]
-    fitting = (each for each in known if each[0] and _forms_by(*each) == wanted)
+    expected = [locale.plural_form(number) for number in range(NUMBERS)]
+    fitting = (item for item in known if item[0] and _forms_by(*item) == expected)
     return name, english_name, *next(fitting, SIMPLE[0])
 
 

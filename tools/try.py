@@ -89,7 +89,7 @@ def main() -> int:
     _say("now", activate=activation())
     if os.name == "nt":
         _say("blocked", tsc=r".venv\Scripts\tsc")
-    if not (sys.stdin.isatty() and sys.stdout.isatty()) or not _wants_studio(python):
+    if not (sys.stdin.isatty() and sys.stdout.isatty()) or not _ask_for_studio(python):
         return 0
     environment.say("$ tsc studio")
     try:
@@ -99,13 +99,13 @@ def main() -> int:
         return 0
 
 
-def _wants_studio(python: Path) -> bool:
+def _ask_for_studio(python: Path) -> bool:
     """Ask whether the studio shall open, and say how much is downloaded for it."""
     try:
         completed = subprocess.run([str(python), "-c", MEGABYTES], capture_output=True, text=True)
         size = completed.stdout.strip()
-        said = f" ({size} MB)" if size not in ("", "0") else ""
-        return input(environment.in_language(SAID["studio"], size=said)).strip().lower() in YES
+        text = f" ({size} MB)" if size not in ("", "0") else ""
+        return input(environment.in_language(SAID["studio"], size=text)).strip().lower() in YES
     except (EOFError, KeyboardInterrupt):
         print()
         return False

@@ -76,9 +76,9 @@ if not TYPE_CHECKING:
             if name in names:
                 from importlib import import_module
 
-                found = getattr(import_module(f"tiniscript.{home}"), name)
-                globals()[name] = found
-                return found
+                result = getattr(import_module(f"tiniscript.{home}"), name)
+                globals()[name] = result
+                return result
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
     def __dir__() -> list[str]:

@@ -201,7 +201,7 @@ def test_the_spec_has_the_devices_of_every_robot() -> None:
 def test_the_spec_promises_no_number_that_is_taken() -> None:
     text = SPEC.read_text(encoding="utf-8")
     later = text[text.index("### Room to grow") :]
-    promised = dict(re.findall(r"(NO_PLACE|LIST_FULL|NO_ROOM) \((\d+)\)", later))
+    promised = dict(re.findall(r"(NO_PLACE|LIST_FULL|NO_ROOM)\s+\((\d+)\)", later))
     assert int(promised.pop("NO_ROOM")) not in {number for number, _ in REFUSALS.values()}
     assert not {int(each) for each in promised.values()} & {number for number, *_ in FAULTS}
     assert len(promised) == 2

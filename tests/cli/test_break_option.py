@@ -22,7 +22,7 @@ ENDIF
 N = N + 4.5
 SHOW(N)
 """
-KEYS = "  s: step   g: go on   Ctrl-C: stop"
+KEYS = "  s: step   g: continue   Ctrl-C: stop"
 BEFORE_4 = ["Halted before line 4: F(0.1, 80)", "  N = 1, FAR = TRUE"]
 BEFORE_6 = ["Halted before line 6: N = N + 4.5", "  N = 1, FAR = TRUE"]
 BEFORE_7 = ["Halted before line 7: SHOW(N)", "  N = 5.5, FAR = TRUE"]
@@ -91,7 +91,7 @@ def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
         "Halted before line 5: S",
         "  N = 3",
         "  Line 1: another task, waiting",
-        "  Line 2: another task, with the motors",
+        "  Line 2: another task, using the motors",
         "  Line 3: another task, waiting for the motors",
     ]
 
@@ -147,7 +147,7 @@ def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None
     terminal.until(r"(?s)before line 4.*Ctrl-C: stop\n*$")
     terminal.interrupt()
     assert terminal.end() == 2
-    assert "the robot has confirmed it" in "\n".join(terminal.whole())
+    assert "the robot has confirmed the stop" in "\n".join(terminal.whole())
     assert "MOTORS 80 80" not in pty_robot.did
     on(pty_robot, "start").gives(0)
     assert "MOTORS 80 80" in pty_robot.did, "it has no breakpoint any more"
@@ -160,15 +160,15 @@ def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None
         (["--break", "0"], 2, "--break"),
         (["--break", "one"], 2, "--break"),
         ([word for line in "12467" for word in ("--break", line)], 2, "at most 4"),
-        (["--break", "4", "--detach"], 2, "--break is for one run"),
-        (["--break", "4", "--no-run"], 2, "--break is for one run"),
+        (["--break", "4", "--detach"], 2, "--break needs a run"),
+        (["--break", "4", "--no-run"], 2, "--break needs a run"),
     ],
 )
 def test_what_no_robot_does_is_said_before_anything_is_sent(
     words: list[str], code: int, said: str, pty_robot: PtyRobot, program: Path
 ) -> None:
     on(pty_robot, "upload", program, *words).gives(code, said)
-    assert pty_robot.did == [] and on(pty_robot, "start").code == 3, "it holds no program"
+    assert pty_robot.did == [] and on(pty_robot, "start").code == 3, "it has no program"
 
 
 def test_an_image_whose_text_nobody_knows_has_no_lines(
@@ -187,7 +187,7 @@ def test_a_robot_that_cannot_halt_gets_nothing(
 ) -> None:
     monkeypatch.setattr(debugger, "BREAKPOINTS", 0)
     on(pty_robot, "upload", program, "--break", "4").gives(3, "breakpoint")
-    assert on(pty_robot, "start").code == 3, "it holds no program"
+    assert on(pty_robot, "start").code == 3, "it has no program"
 
 
 def test_a_key_that_is_pressed_while_the_program_runs_does_nothing(

@@ -57,11 +57,11 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
     stranger = Authority(tmp_path, "Otra")
     assert "does not trust its certificate" in used(*school.place(stranger.file))
     said = used(*school.place())
-    assert "is at the broker localhost, in the class 3b" in said
+    assert "is connected to the broker localhost, in the class 3b" in said
     later = on(school.robot, "set", "wifi").out
-    assert "is at the broker" in later and "tsc class" not in later, "it knows no port"
+    assert "is connected to the broker" in later and "tsc class" not in later, "it knows no port"
     _, *next_command = shlex.split(said.partition("To see all of them:  ")[2])
-    assert "no program; nothing runs; yours" in inside(*next_command, data=b"a secret\n").out
+    assert "no program; nothing is running; yours" in inside(*next_command, data=b"a secret\n").out
 
 
 def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path) -> None:
@@ -117,9 +117,9 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
 
 @pytest.mark.parametrize(("words", "said"), [
     (["--broker", NAME, "--tls"], "--tls --trust FILE"),
-    (["--broker", NAME, "--trust", "x"], "--trust is for a connection with --tls"),
-    (["--broker", NAME, "--tls", "--trust", "/none"], "cannot be read"),
-    (["--broker", "127.0.0.1", "--tls", "--trust", "CA"], "use that name, not 127.0.0.1"),
+    (["--broker", NAME, "--trust", "x"], "--trust needs --tls."),
+    (["--broker", NAME, "--tls", "--trust", "/none"], "cannot read the certificate file /none"),
+    (["--broker", "127.0.0.1", "--tls", "--trust", "CA"], "certificate, not 127.0.0.1"),
     (["--tls"], "--broker HOST"), (["--trust", "CA"], "--broker HOST"),
 ])  # fmt: skip
 def test_options_that_make_no_sense(words: list[str], said: str, tmp_path: Path) -> None:

@@ -54,7 +54,9 @@ def test_programs_that_are_right_give_zero_and_each_is_checked_once(folder: Path
     assert "--csv is for several programs or a folder" in done.err
     (folder / "empty").mkdir()
     done = tsc("check", "empty").gives(2, out="")
-    assert done.err.startswith("tsc: empty has no program in it. Their names end in .ts or .tini.")
+    assert done.err.startswith(
+        "tsc: there is no program in empty. Names of programs end in .ts or .tini."
+    )
 
 
 def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None:
@@ -118,7 +120,7 @@ def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
         deep.mkdir()
         (deep / f"p{k}.ts").write_text(WRONG if k % 2 else RIGHT, encoding="utf-8")
     done = tsc("check", "d").gives(1)
-    assert done.out.endswith("programs: 30, without mistakes: 15\n")
+    assert done.out.endswith("programs: 30, free of mistakes: 15\n")
 
 
 # -- repairs ------------------------------------------------------------------------------------
@@ -140,7 +142,7 @@ def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Ts
     assert "la palabra es R" in done.err
     done = tsc("check", "--fix", "sub/c.ts")
     assert ((folder / "sub" / "c.ts").read_bytes(), done.out) == (once, "")
-    assert "nothing here that tsc can safely repair" in done.err
+    assert "tsc cannot safely repair anything here." in done.err
 
 
 @pytest.mark.parametrize("option", ["--diff", "--dry-run"])

@@ -123,7 +123,10 @@ def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> No
     assert (done.code, done.out.count("has confirmed")) == (0, 2), done
     assert command.ended().code != 0
     room[1].switch_off()
-    until(lambda: "0badcafe) is not at the broker any more" in tsc(room).out, "its last will")
+    until(
+        lambda: "0badcafe) is no longer connected to the broker: it is off" in tsc(room).out,
+        "its last will",
+    )
 
 
 def test_who_has_no_key_sees_and_stops(
@@ -307,7 +310,7 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
         with pytest.raises(CommandError):
             classroom.stop(cast(Classroom, room))
     assert left == []
-    has_gone = "the stop has gone to the broker" in capsys.readouterr().err
+    has_gone = "the stop for all robots" in capsys.readouterr().err
     assert has_gone == (not is_there and any(gone))
 
 
@@ -324,7 +327,7 @@ def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
     stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)
     done = process("class", *place).gives(3)
     assert not set(done.out + done.err) & set("\x1b\x9b\r")
-    assert "is not at the broker" in done.out
+    assert "is no longer connected to the broker: it is" in done.out
 
 
 @each_row("words", [
@@ -377,7 +380,7 @@ def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent
     named = ("bytes under tiniscript/3b/big", "no robot of the class 3b")
     done = process("class", "list", *place).gives(3, *named)
     assert "no answer of a broker" not in done.err
-    process("class", "stop", *place).gives(3, "the stop has gone to the broker", *named)
+    process("class", "stop", *place).gives(3, "the stop for all robots", *named)
     keep(broker.connected(), f"{ROOT}/3b/0badcafe", b"-ANA")
     process("class", "stop", *place, "--lang", "es").gives(3, "llegó al broker", "3b/big")
 

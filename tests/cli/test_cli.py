@@ -209,7 +209,7 @@ def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str)
         (b"", "not a compiled"),
         (b"SI|F(2,80)", "not a compiled"),
         (bytes.fromhex("54530100000000000300101604fa443250"),
-         f"refused: {target} is for version 1.0 of the machine, this is 2.1. "
+         f"refused: {target} is for version 1.0 of the machine; this is version 2.1. "
          "Compile the program again.\n"),
         (pack("SI", 0, b"\xff"), "21"),
         (pack("SI", 0, b"\x38\x0b"), "24"),  # READ s11

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support import foreign_boards as boards
 from tests.support.command import FOREVER, Command, Tsc, inside, process
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on, uploading
@@ -21,7 +22,7 @@ from tests.support.simulated_ends import Firmware
 from tiniscript.doctor import report
 from tiniscript.doctor.computer import ON, Adapter, Computer
 from tiniscript.doctor.findings import sure
-from tiniscript.link.ports import Found, opened
+from tiniscript.link.ports import ListedPort, opened
 from tiniscript.link.sharing import registry
 
 
@@ -41,7 +42,7 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     assert found == [
         f"Port {pty_robot.port}",
         "1. tinibot is fine (sure)",
-        "   seen: kit tinibot, id 12345678; it answered 20 questions, and was not restarted",
+        "   seen: kit tinibot, id 12345678; it answered 20 messages and did not restart",
         "   next: Nothing to do. If it restarts when it drives:  tsc doctor --watch 20",
     ]
     assert robot[0] == f"tinibot on {pty_robot.port}, id 12345678, free"
@@ -104,7 +105,7 @@ def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
 def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> None:
     on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
     command = Command("doctor", "--port", pty_robot.port, "--watch", "60")
-    pty_robot.until(lambda: registry.found(pty_robot.port) is not None, "it is watched")
+    pty_robot.until(lambda: registry.find_registration(pty_robot.port) is not None, "it is watched")
     assert pty_robot.moves
     assert process("stop", "--port", pty_robot.port).code == 0  # its time is also the doctor's
     assert not pty_robot.moves
@@ -122,7 +123,7 @@ def test_a_port_that_another_program_has_locked() -> None:
         holder.close()
         assert done.code == 3
         assert "1. Another program is using this port (sure)" in done.out
-        assert "does not tell by whom" in done.out
+        assert "does not say by whom" in done.out
         assert inside("doctor", "--port", end.port).code == 0
 
 
@@ -136,6 +137,49 @@ def test_what_is_no_robot_and_what_others_have_written(tsc: Tsc) -> None:
     assert done.code == 0
     assert "\x1b" not in done.out, "it cannot move the cursor"
     assert len(done.out.split("\n\n")[0].splitlines()) == 4
+
+
+SEVEN = [
+    (boards.FirmataBoard(57_600), "firmata", "The board runs Firmata", "StandardFirmata.ino 2.5"),
+    (boards.MbotBoard(115_200), "mbot", "The board has the firmware of an mBot", "06.01.009"),
+    (boards.LineEchoSketch(9600), "echo_sketch", "a sketch that sends back", "came back"),
+    (boards.SnekBoard(115_200), "snek", "The board runs Snek", ">"),
+    (boards.PythonBoard(115_200), "micropython", "The board runs MicroPython", "CTRL-B"),
+    (boards.BrownoutBoard(115_200), "esp32_brownout", "The ESP32's voltage drops",
+     "Brownout detector was triggered"),
+    (boards.AtBoard(115_200), "at_firmware", "Espressif's AT firmware", "AT version:2.2.0.0"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("end", "cause", "what", "heard"), SEVEN, ids=[row[1] for row in SEVEN])
+def test_a_board_that_is_not_ours_at_a_real_port(
+    tsc: Tsc, end: boards.Board, cause: str, what: str, heard: str
+) -> None:
+    """At the speed of a robot with an HC-05, which most of them do not have."""
+    with PtyEnd(end) as pty_end:
+        done = tsc("doctor", "--port", pty_end.port, "--json").gives(3)
+    (finding,) = json.loads(done.out)["findings"]
+    assert (finding["cause"], finding["is_sure"]) == (cause, True)
+    assert what in finding["said"] and heard in finding["seen"] and finding["next"]
+
+
+@pytest.mark.parametrize(("board", "said"), [
+    (boards.BrownoutBoard, "voltage drops, and it restarts"),
+    (boards.MbotBoard, "the firmware of an mBot"),
+    (boards.SnekBoard, "The board runs Snek"),
+    (boards.Esp32Board, "An ESP32 starts here"),
+])  # fmt: skip
+def test_an_upload_says_what_is_there_instead_of_a_robot(
+    tsc: Tsc, hasty: None, board: type[boards.Board], said: str
+) -> None:
+    """It asks nothing but HELLO, and hears what a board says when it starts."""
+    with PtyEnd(board(9600)) as pty_end:
+        words = ("upload", "-e", "SI|F(1, 50)", "--port", pty_end.port)
+        done = tsc(*words).gives(3, f"no TiniScript robot answers on {pty_end.port}", said)
+        assert "speed" not in done.err
+    with PtyEnd(board(9600)) as pty_end:
+        rows = json.loads(tsc("doctor", "--ports", "--ask", "--port", pty_end.port, "--json").out)
+        assert said in rows[0]["said"]
 
 
 def test_wrong_use_and_no_such_port(tsc: Tsc) -> None:
@@ -207,7 +251,7 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
         file.write_text(text, encoding="utf-8")
         done = tsc("doctor", "--port", "/dev/not-there", "--report", file)
         assert done.code == 2, text[:50]
-        assert "tsc has not made it" in done.err
+        assert "tsc did not write it." in done.err
         assert file.read_text(encoding="utf-8") == text
     for place in (tmp_path, tmp_path / "no" / "report.txt", Path("/dev/full")):
         tsc("doctor", "--port", "/dev/not-there", "--report", place).gives(2, "cannot be written")
@@ -241,7 +285,7 @@ def test_values_of_others_stay_out_of_a_report() -> None:
     finding = sure("port_missing", ports="COM3, /dev/cu.usbserial-A50285BI")
     assert report.values_of(finding) == {"ports": "COM3, /dev/cu.usbserial…"}
     computer = Computer(
-        "darwin", (Found("/dev/cu.usbserial-A50285BI", "FT232 of ANA"),),
+        "darwin", (ListedPort("/dev/cu.usbserial-A50285BI", "FT232 of ANA"),),
         (Adapter("FT232", "", "", True),), ON, ("Telephone of ANA", "HC-05"),
     )  # fmt: skip
     rows = dict(report.facts(computer))

@@ -58,7 +58,7 @@ def joined(robot: Esp32PtyRobot) -> Esp32PtyRobot:
     assert claimed(robot).code == 0
     done = on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n")
     assert done.code == 0, done.err
-    assert f"in the network {NETWORK}" in done.out and "tcp://tini-5678.local" in done.out
+    assert f"on the network {NETWORK}" in done.out and "tcp://tini-5678.local" in done.out
     return robot
 
 
@@ -96,7 +96,7 @@ def test_a_network_is_set_told_and_forgotten(joined: Esp32PtyRobot, tmp_path: Pa
     joined.until(lambda: "password may be" in on(joined, "set", "wifi").out, "it is refused")
     assert "la contraseña es otra" in on(joined, "set", "wifi", "--lang", "es").out
     assert on(joined, "set", "wifi", "--forget").code == 0
-    assert "uses no WiFi" in on(joined, "set", "wifi").out
+    assert "does not use WiFi" in on(joined, "set", "wifi").out
     assert asked(joined, "network") == ""
 
 
@@ -182,7 +182,7 @@ def is_listed() -> bool:
     rows = [
         row for row in inside("doctor", "--ports", "--ask").out.split("\n") if row.startswith(PLACE)
     ]
-    return any("announced in the network" in row and "robot tinibot (yours)" in row for row in rows)
+    return any("announced on the network" in row and "robot tinibot (yours)" in row for row in rows)
 
 
 def test_a_robot_is_found_and_driven_by_its_name(

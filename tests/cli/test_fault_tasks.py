@@ -31,8 +31,8 @@ def path(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("where", "english", "spanish"),
     [
-        ("WHEN", "line 6, in the WHEN of line 5:  ", "línea 6, en el WHEN de la línea 5:  "),
-        ("TASK", "line 9, in the TASK of line 8:  ", "línea 9, en el TASK de la línea 8:  "),
+        ("WHEN", "line 6, in the WHEN on line 5:  ", "línea 6, en el WHEN de la línea 5:  "),
+        ("TASK", "line 9, in the TASK on line 8:  ", "línea 9, en el TASK de la línea 8:  "),
         ("main", "line 11, in the main task:  ", "línea 11, en la tarea principal:  "),
         ("DEF", "line 3:  ", "línea 3:  "),  # both tasks call it
     ],
@@ -55,6 +55,6 @@ def test_a_program_without_tasks_has_none(path: Path) -> None:
 def test_from_a_robot(robot: str, path: Path) -> None:
     path.write_text(program("WHEN"), encoding="utf-8")
     done = inside("upload", path, "--virtual", "--robot", robot)
-    assert (done.code, "line 6, in the WHEN of line 5:  " in done.err) == (1, True), done.err
+    assert (done.code, "line 6, in the WHEN on line 5:  " in done.err) == (1, True), done.err
     text = "N = 0; WHEN(TRUE); SHOW(1 / N); END_WHEN"
-    inside("live", text, "--virtual", "--robot", robot).gives(1, "line 1, in the WHEN of line 1:  ")
+    inside("live", text, "--virtual", "--robot", robot).gives(1, "line 1, in the WHEN on line 1:  ")

@@ -198,7 +198,7 @@ def begin(clone: Clone) -> Iterator[Begin]:
 
 @pytest.mark.sampled("words", "size", "asks", "yes", "said")
 @pytest.mark.parametrize(("words", "size", "asks", "yes", "said"), [
-    ([], "about 40 MB", "Go on? [y/N] ", "y", "no terminal here to ask at"),
+    ([], "about 40 MB", "Continue? [y/N] ", "y", "no terminal."),
     (["--lang", "es"], "unos 40 MB", "¿Sigo? [s/N] ", "sí", "no hay una terminal"),
 ])  # fmt: skip
 def test_a_page_that_is_missing_is_built_after_a_yes(
@@ -220,7 +220,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     person.types(yes)
     person.sees("[#")  # the progress
     person.sees("http://127.0.0.1:")
-    first, second = (text(step, words[-1] if words else "en") for step in page_build.STEPS[:2])
+    first, second = (text(step, words[-1] if words else "en") for step in page_build.STEPS[2:])
     before, _, after = person.seen.partition(second)
     shown = before.rpartition(first)[2]
     assert after and re.search(r"\r {40,}\r", shown), "nothing is left of the step before"
@@ -231,7 +231,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
 
 @pytest.mark.sampled("words", "said")
 @pytest.mark.parametrize(("words", "said"), [
-    ([], "built from other sources"), (["--lang", "es"], "con otras fuentes"),
+    ([], "is out of date: the sources"), (["--lang", "es"], "con otras fuentes"),
 ])  # fmt: skip
 def test_a_page_of_other_sources_is_told(
     clone: Clone, begin: Begin, words: list[str], said: str
@@ -346,7 +346,7 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, begin: Begin) ->
 
 @pytest.mark.sampled("words", "size", "asks")
 @pytest.mark.parametrize(("words", "size", "asks"), [
-    ([], "about 54 MB", "Go on? [y/N] "), (["--lang", "es"], "unos 54 MB", "¿Sigo? [s/N] "),
+    ([], "about 54 MB", "Continue? [y/N] "), (["--lang", "es"], "unos 54 MB", "¿Sigo? [s/N] "),
 ])  # fmt: skip
 def test_platformio_is_installed_after_a_yes(
     clone: Clone, begin: Begin, words: list[str], size: str, asks: str

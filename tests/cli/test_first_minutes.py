@@ -87,7 +87,7 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     assert "drove 0 cm in 3.0 s" in done.err
     done = inside("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
     assert (done.code, done.err) == (0, "")
-    assert "SB: waits for the button" in done.out
+    assert "SB: waiting for the button" in done.out
     inside("upload", "--virtual", "--detach", "-e", "SI|F(1, 80)").gives(2, "Leave --detach out")
     lines = b"F(0.1, 50)\nSHOW(1)\nLOOP(FOREVER);F(1, 50);END_LOOP\nSHOW(2)\n"
     done = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines).gives(0)
@@ -149,7 +149,7 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     assert inside("doctor", "--virtual").code == 0
     done = inside("stop", *options)
     assert (done.code, done.out) == (
-        0, f"Stopped: the robot on {upload.port} has confirmed it.\n",
+        0, f"Stopped: the robot on {upload.port} has confirmed the stop.\n",
     )  # fmt: skip
     upload.command.ended().gives(3, out="The robot was stopped from a computer.")
     done = inside("stop", *options)
@@ -178,10 +178,10 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
     known_ports.remember(str(usb), "TINI")
     here = [Running("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
     monkeypatch.setattr(directory, "running", lambda: here)
-    assert in_reach.to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
+    assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
     usb.touch()
-    assert in_reach.to_stop() == ["socket://127.0.0.1:5", str(usb)]
-    assert in_reach.to_stop(is_virtual=True) == ["socket://127.0.0.1:5"]
+    assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5", str(usb)]
+    assert in_reach.ports_to_stop(is_virtual=True) == ["socket://127.0.0.1:5"]
 
 
 def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -199,7 +199,7 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
     assert "socket" not in inside("doctor", "--ports").out
     known_ports.remember(found.port, "KAT")  # by a tsc that did
     assert "socket" not in inside("doctor", "--ports").out
-    inside("start").gives(3, "is not there")
+    inside("start").gives(3, "is gone")
 
 
 # -- a run without a robot ------------------------------------------------------------------------
@@ -253,7 +253,9 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     done = tsc("check", *LINE)
     assert done.code == 1
     said = "tinibot has no BUTTON; the robot liner has it.\nTry:  "  # its first word
-    either = "If your robot is not a liner, take out what needs BUTTON. If it is, write above"
+    either = (
+        "If your robot is not a liner, remove the parts that need BUTTON. If it is, write above"
+    )
     assert f"{said}{either} the program: // robot: liner " in done.err
     assert "LINE_L = 0" not in done.err
     for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):
@@ -291,7 +293,7 @@ def test_up_to_three_robots_are_named() -> None:
 
 def test_the_robot_that_answers_says_which_kit_it_has() -> None:
     with robot("--robot", "liner", "--world", "line") as found:
-        here = "The connected robot: liner. tsc compiles for it.\n"
+        here = "liner is connected; tsc compiles for it.\n"
         done = inside("check", *LINE, "--virtual")
         assert (done.code, done.err) == (0, here)
         done = inside("upload", *LINE, "--port", found.port, "--no-run")
@@ -316,7 +318,7 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
         assert "TS103" in inside("upload", "-e", text).err  # nobody knows it yet
         assert inside("doctor", "--robot", profile).code == 0
         done = inside("upload", "-e", text)
-        assert (done.code, done.err) == (0, "The connected robot: own. tsc compiles for it.\n")
+        assert (done.code, done.err) == (0, "own is connected; tsc compiles for it.\n")
     [(path, found)] = given.profiles()
     assert path == str(profile)
     profile.write_text("")  # it has changed
@@ -451,11 +453,11 @@ def test_board_says_where_the_build_looks(
     assert f"tsc firmware --board liner -o {home_of_it}   {then}" in done.out
     assert "Ponlo ahí:" in tsc("firmware", "--board", "liner", "-o", "own.h", "--lang", "es").out
     done = tsc("firmware", "--board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
-    assert done.out.endswith("Now:  pio run -d vm_arduino -e nano\n")
+    assert done.out.endswith("To build it:  pio run -d vm_arduino -e nano\n")
     monkeypatch.chdir(home)
     up = str(Path("../../.."))
     assert tsc("firmware", "--board", "liner", "-o", "own.h").out.endswith(
-        f"Now:  pio run -d {up} -e nano\n"
+        f"To build it:  pio run -d {up} -e nano\n"
     )
 
 

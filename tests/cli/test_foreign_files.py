@@ -49,7 +49,7 @@ def test_a_foreign_file_stays_and_an_own_one_is_replaced(
     assert target.read_bytes() == made
     for content in FOREIGN:
         target.write_bytes(content)
-        for lang, said in (("en", "tsc has not made it"), ("es", "no lo hizo tsc")):
+        for lang, said in (("en", "tsc did not write it."), ("es", "no lo hizo tsc")):
             tsc(*words, target, "--lang", lang).gives(2, said, option)
         assert target.read_bytes() == content
 
@@ -74,7 +74,7 @@ def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: P
     program, beside = tmp_path / "photo.ts", tmp_path / "photo.bin"
     program.write_text(PROGRAM)
     beside.write_bytes(b"a firmware of something else")
-    tsc("compile", program).gives(2, "tsc has not made it")
+    tsc("compile", program).gives(2, "tsc did not write it.")
     assert beside.read_bytes() == b"a firmware of something else"
     beside.unlink()
     assert tsc("compile", program).code == tsc("compile", program).code == 0
@@ -154,5 +154,5 @@ def test_rows_of_a_monitor(pty_robot: PtyRobot, tmp_path: Path) -> None:
     for _ in range(2):
         assert on(pty_robot, "monitor", "--csv", rows, "--max-time", "1").code == 0
         assert rows.read_bytes() == b"ms,event,value,name\n"
-    on(pty_robot, "monitor", "--csv", letter, "--max-time", "1").gives(2, "tsc has not made it")
+    on(pty_robot, "monitor", "--csv", letter, "--max-time", "1").gives(2, "tsc did not write it.")
     assert letter.read_bytes() == b"a;b\n1;2\n"

@@ -141,7 +141,7 @@ def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> 
 
 
 def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
-    tsc("help", "bake", "a", "cake").gives(2, "found no command for “bake a cake”")
+    tsc("help", "bake", "a", "cake").gives(2, "no command matches “bake a cake”")
     assert tsc("help", "todo", "--lang", "es").out == help.everything("es")
 
 
@@ -335,7 +335,7 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
 @each_row("words, english, spanish", [
     (["doctor", "--port"], "--port needs a value", "a --port le falta su valor"),
     (["doctor", "--json=3"], "--json takes no value: '3'", "--json no lleva valor: '3'"),
-    (["doctor", "x"], "x means nothing here", "no conozco x"),
+    (["doctor", "x"], "x has no meaning here", "no conozco x"),
 ])  # fmt: skip
 def test_what_argparse_says_is_said_in_plain_words(
     tsc: Tsc, words: list[str], english: str, spanish: str
@@ -362,5 +362,5 @@ def test_ctrl_c_before_tsc_knows_its_language(monkeypatch: pytest.MonkeyPatch) -
     def interrupt() -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tiniscript.cli._mend_streams", interrupt)
+    monkeypatch.setattr("tiniscript.cli._repair_streams", interrupt)
     assert main(["check", "-e", "S"]) == 2

@@ -101,7 +101,7 @@ KEPT = {
     ),
     "profiles": Kept(
         lambda number: given.remember(f"/{LONG}{number}", number),
-        lambda: [number for number, _ in given._known()],
+        lambda: [number for number, _ in given._remembered_profiles()],
         given,
     ),
     "maps": Kept(

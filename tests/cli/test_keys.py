@@ -62,14 +62,14 @@ def test_a_file_that_is_none_is_left_as_it_is(key_file: KeyFile, data: bytes) ->
 def test_what_is_known_of_a_robots_seals_outlives_a_list_that_does_not_say_it(
     key_file: KeyFile,
 ) -> None:
-    key_file.settle(ONE._replace(seals=True))
+    key_file.settle(ONE._replace(uses_seals=True))
     key_file.settle(ONE._replace(id=7))
-    assert [key.seals for key in key_file.of_robot(None)] == [True, False]
+    assert [key.uses_seals for key in key_file.of_robot(None)] == [True, False]
     key_file.add([ONE, ONE._replace(id=7)])
-    assert [key.seals for key in key_file.of_robot(ONE.id)] == [True]
+    assert [key.uses_seals for key in key_file.of_robot(ONE.id)] == [True]
     assert KeyFile(key_file.path, is_for_virtual=True).of_robot(ONE.id) == [ONE]
     key_file.add([ONE._replace(key=b"\2" * 16)])  # another one: nothing is known of it
-    assert [key.seals for key in key_file.of_robot(ONE.id)] == [False]
+    assert [key.uses_seals for key in key_file.of_robot(ONE.id)] == [False]
 
 
 def test_the_keys_of_one_robot_are_forgotten(tsc: Tsc) -> None:
@@ -183,7 +183,7 @@ def test_a_class_list_goes_out_and_in(
     said = tsc("set", "owner", "--export", str(listed)).out
     assert "class.json: 1." in said and f"tsc set owner --import {listed}" in said
     assert stat.S_IMODE(listed.stat().st_mode) == 0o600
-    tsc("set", "owner", "--export", str(listed)).gives(2, "is there already. Take another name")
+    tsc("set", "owner", "--export", str(listed)).gives(2, "already exists. Choose another name")
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "two"))
     assert (
         "class.json: 1. New here, or changed: 1."
@@ -194,7 +194,7 @@ def test_a_class_list_goes_out_and_in(
     tsc("set", "owner", "--import", str(listed)).gives(2, "--export")
     assert tsc("set", "owner", "--import", str(tmp_path / "none")).code == 2
     tsc("set", "owner", "--import", str(listed), "--export", str(tmp_path / "x")).gives(
-        2, "one at a time"
+        2, "use only one of"
     )
 
 

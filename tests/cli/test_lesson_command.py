@@ -43,11 +43,11 @@ def test_the_lessons_are_listed(tsc: Tsc) -> None:
 def test_one_program(tsc: Tsc, folder: Path) -> None:
     done = tsc("lesson", "check", "1", folder / "ana.ts")
     assert done.code == 0
-    assert "done! The task of lesson 1 is solved." in done.out
+    assert "done! This solves lesson 1." in done.out
     tsc("lesson", "check", "1", folder / "beto.ts", "--lang", "es").gives(
         1, out="- El robot se quedó 18 cm antes del centro de la cochera. Haz que avance más."
     )
-    tsc("lesson", "check", "1", "-e", WRONG).gives(1, "TS017", out="repair the mistakes first")
+    tsc("lesson", "check", "1", "-e", WRONG).gives(1, "TS017", out="fix the mistakes first")
 
 
 def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
@@ -121,7 +121,7 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
     ("arguments", "sentence"),
     [
         (["jump"], "lesson takes show, check or sheet, not jump"),
-        (["--json"], "--json does not go with tsc lesson."),
+        (["--json"], "--json does not work with tsc lesson."),
         (["show"], "which lesson?"),
         (["show", "19"], "There is no lesson 19. Give a number from 1 to 18"),
         (["show", "0"], "There is no lesson 0."),
@@ -130,14 +130,14 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
         (["show", "a\0b"], "There is no lesson"),
         (["check", "1"], "which program?"),
         (["check", "1", "nothing.ts"], "there is no file nothing.ts"),
-        (["check", "1", "x.ts", "-e", "F(1,1)"], "one program at a time"),
+        (["check", "1", "x.ts", "-e", "F(1,1)"], "one program only"),
         (["check", "1", "-e", "F(1,1)", "--seed", "0"], "--seed takes a whole number"),
         (
             ["check", "1", "-e", "F(1,1)", "--teacher"],
-            "--teacher does not go with tsc lesson check",
+            "--teacher does not work with tsc lesson check",
         ),
-        (["show", "1", "--json"], "--json does not go with tsc lesson show"),
-        (["show", "1", "x.ts"], "x.ts does not go with tsc lesson show"),
+        (["show", "1", "--json"], "--json does not work with tsc lesson show"),
+        (["show", "1", "x.ts"], "x.ts does not work with tsc lesson show"),
         (["sheet", "1"], "where should the page go?"),
         (["sheet", "1", "-o", "no/such/folder.html"], "cannot be written"),
         (["check", "1", "."], "has no programs"),
@@ -273,7 +273,9 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     }  # fmt: skip
     verdicts = [row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())]
     assert verdicts.count("no_program") == len(notes)
-    assert done.err.startswith("Not checked, since they look like notes: Léeme primero.TXT, README")
+    assert done.err.startswith(
+        "Not checked because they look like notes: Léeme primero.TXT, README"
+    )
     table = tsc("lesson", "check", "1", pupils).out.splitlines()
     assert [row[len("README.txt") :].strip() for row in table if row.startswith("README")] == [
         "no program"

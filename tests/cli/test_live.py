@@ -41,7 +41,7 @@ def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "live", "-", data="\n".join(lines).encode())
     assert done.code == 1  # the fault ends it
     assert done.out.splitlines() == [
-        "TELL: known from now on.", "X 30.5", "X 31.5", "X 31.5", "READY TRUE", "-X -31.5",
+        "TELL: now known.", "X 30.5", "X 31.5", "X 31.5", "READY TRUE", "-X -31.5",
     ]  # fmt: skip
     assert "DIVIDE_BY_ZERO" in done.err
 
@@ -63,7 +63,7 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     pty_robot.until(lambda: pty_robot.moves, "it drives")
     assert pty_robot.did[-1] == "MOTORS 55 55"
     terminal.type("\x03")
-    see("the robot has confirmed it.")
+    see("the robot has confirmed the stop.")
     assert not pty_robot.moves
     see("tini> ", 4)
     terminal.type("SHOW(SPEED)\n")
@@ -92,7 +92,7 @@ def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
 
     done = told("DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n")
     assert (done.code, done.err) == (0, "")
-    assert done.out == "TELL: known from now on.\nSHOW 1\nSHOW 1\nSHOW 3\n"
+    assert done.out == "TELL: now known.\nSHOW 1\nSHOW 1\nSHOW 3\n"
     done = told("LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n").gives(1, out="")
     assert done.err.startswith("line 2:") and "comma" in done.err and "END_LOOP" not in done.err
     told("IF(TRUE)\nSHOW(5)\n").gives(1, "ENDIF", out="")

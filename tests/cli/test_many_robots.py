@@ -76,7 +76,9 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         assert sum(pupil.moves for pupil in pupils) == ROBOTS - 2  # it uses no device of a kit
         done = inside("stop", "--all").gives(3)
         assert not any(pupil.moves for pupil in pupils)
-        assert done.out.count("the robot has confirmed it") == ROBOTS - 2  # the other kit, too
+        assert (
+            done.out.count("the robot has confirmed the stop") == ROBOTS - 2
+        )  # the other kit, too
 
 
 @pytest.mark.parametrize("babble", [b"DISTANCE 42\r\n" * 9, b"\x03\x81\0" * 30, b"U" * 90])
@@ -133,13 +135,13 @@ def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
     rows = [row for row in results(done).values() if not row["is_absent"]]
     assert len(rows) == len(class_.pupils)
     done = command.ended().gives(3)
-    told = ("The robot was stopped from a computer.", "another command has stopped the robot")
+    told = ("The robot was stopped from a computer.", "another command stopped the robot")
     assert sum(map(done.out.count, told)) == len(class_.pupils)  # before or after its start
     command = driven()
     command.signal(signal.SIGINT)
     done = command.ended().gives(2)
     assert not any(pupil.moves for pupil in class_.pupils)
-    assert done.out.count("the robot has confirmed it") == len(class_.pupils)
+    assert done.out.count("the robot has confirmed the stop") == len(class_.pupils)
     command = driven()
     command.kill()
     class_.until(lambda: not any(pupil.moves for pupil in class_.pupils), "they stop")
@@ -155,7 +157,7 @@ def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     done = inside("doctor", "--all").gives(0)
     rows = [line.split("(")[1].split(")")[0] for line in done.out.splitlines()]
     assert sorted(rows) == sorted(names)
-    assert done.out.count("nothing runs") == len(names)
+    assert done.out.count("nothing is running") == len(names)
     ports_of = ("--port", names[0], "--port", names[2])
     found = results(inside("doctor", "--count", "3", "--json", *ports_of))
     assert set(found) == {names[0], names[2]}
@@ -205,7 +207,7 @@ def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
     done = inside("start", "--previous", "--all", "--json").gives(3)
     rows = results(done)
     assert {port for port in names if rows[port]["is_done"]} == {names[1], names[2]}
-    assert "no program from before" in str(rows[names[0]]["said"])
+    assert "no earlier program" in str(rows[names[0]]["said"])
     checksums = {rows[names[1]]["checksum"], rows[names[2]]["checksum"]}
     assert len(checksums) == 1
     done = inside(
@@ -222,7 +224,7 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
 
     ends = [end for _ in range(2) for end in pty.openpty()]
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
-    monkeypatch.setattr(ports, "listed", lambda: [ports.Found(port, "")])
+    monkeypatch.setattr(ports, "listed", lambda: [ports.ListedPort(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_S", 1.0)
     done = inside("doctor", "--identify", "--all").gives(0)
     assert len(done.out.splitlines()) == 4

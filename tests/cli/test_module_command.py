@@ -27,7 +27,7 @@ ENDS = {
 }  # fmt: skip
 UNSEEN = [
     "       Seen: it cannot confirm the value",
-    "       Try:  Pair it, and see whether it has what you gave it.",
+    "       Try:  Pair it, and see whether it has the new value.",
 ]
 
 
@@ -50,12 +50,12 @@ def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
     assert (module.name, module.pin, module.baud) == ("ANA", "4711", 57600)
     assert done.out.splitlines() == [
         f"HC-06 3.x on {port_of(module)}, version 3.0-20170609; it listens at 9600 baud.",
-        "?      name ANA: the module says that it is done",
+        "?      name ANA: the module says that it did it",
         *UNSEEN,
-        "?      PIN 4711: the module says that it is done",
+        "?      PIN 4711: the module says that it did it",
         *UNSEEN,
         "ok     57600 baud: done; it answers at this speed",
-        "Now switch it off, connect it to the robot as it was, switch it on and pair it again.",
+        "Now switch it off, connect it to the robot as before, switch it on and pair it again.",
     ]
 
 
@@ -75,8 +75,8 @@ def test_a_dry_run_shows_the_commands_and_changes_nothing(tsc: Tsc, module: Simu
     done = tsc("doctor", "--module", "--port", port_of(module), "--name", "ANA", "--baud", "115200",
                "--dry-run")  # fmt: skip
     assert done.code == 0
-    assert "would be sent:  AT+NAME:ANA, or else AT+NAME=ANA\n" in done.out
-    assert "115200 baud: would be sent:  AT+UART=115200,0,0" in done.out
+    assert "would send:  AT+NAME:ANA, or else AT+NAME=ANA\n" in done.out
+    assert "115200 baud: would send:  AT+UART=115200,0,0" in done.out
     assert (module.name, module.baud) == ("HC-06", 9600)
     assert not any("ANA" in command or "UART" in command for command in module.commands)
 
@@ -86,7 +86,7 @@ def test_without_a_wish_it_says_what_it_has_found(tsc: Tsc) -> None:
         done = tsc("doctor", "--module", "--port", pty_end.port)
     assert done.code == 0
     assert "MLT-BT05 on" in done.out and "listens at 38400 baud" in done.out
-    assert "It has: name BT05, 38400 baud." in done.out
+    assert "It now has: name BT05, 38400 baud." in done.out
     assert "--pin 123456" in done.out
 
 
@@ -108,7 +108,7 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     [
         (["--name", "A" * 21], "at most 20"),
         (["--name", ""], "at most 20"),
-        (["--name", "ÑU"], "ÑU is not such a name"),
+        (["--name", "ÑU"], "ÑU does not fit"),
         (["--pin", "12"], "PIN of this kind of module has"),
         (["--baud", "300"], "9600, 19200, 38400, 57600, 115200, not 300"),
         (["--id", "xyz"], "takes the id"),

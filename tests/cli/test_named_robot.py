@@ -18,7 +18,7 @@ from tiniscript.cli.texts.verbs import VERBS
 
 LINER = "// robot: liner\nSI|SHOW(LINE_L)\n"
 UNKNOWN = "// robot: linar\nSI|SHOW(LINE_L)\n"
-WINS = "--robot {} wins: {} names the robot {}.\n"
+WINS = "--robot {} takes precedence: {} names the robot {}.\n"
 # Each verb that takes a program, and how it is called with one.
 CALLS = {
     "check": [], "run": [], "compile": [], "show": [], "fmt": ["--check"],
@@ -52,11 +52,11 @@ def test_an_option_wins_and_says_so_once(verb: str, tsc: Tsc, liner: Path) -> No
     words = CALLS[verb] or []
     done = tsc(verb, *words, liner, "--robot", "tinibot").gives(1)
     assert done.err.startswith(WINS.format("tinibot", liner, "liner"))
-    assert done.err.count(" wins: ") == 1
-    wanted = "Try:  Write --robot liner in the command, and not tinibot"
+    assert done.err.count(" takes precedence: ") == 1
+    wanted = "Try:  Write --robot liner in the command, not tinibot"
     assert wanted in done.err  # the comment is there already
     same = tsc(verb, *words, liner, "--robot", "LINER").gives(0)
-    assert " wins: " not in same.err
+    assert " takes precedence: " not in same.err
 
 
 def test_a_robot_of_ones_own_may_be_named(tsc: Tsc, tmp_path: Path) -> None:
@@ -76,7 +76,7 @@ def test_a_name_that_no_robot_has_is_a_mistake(verb: str, tsc: Tsc, tmp_path: Pa
     done = tsc(verb, *(CALLS[verb] or []), path).gives(1)
     assert done.err.count("[TS") == 1  # which words there are nobody knows
     assert "line 1:  // robot: linar\n                   ^^^^^\n" in done.err
-    assert "No robot is called linar; these come with TiniScript: tinibot, grabber" in done.err
+    assert "No robot is called linar; TiniScript includes: tinibot, grabber" in done.err
     assert "Try:  // robot: liner   [TS138]" in done.err
 
 
@@ -106,7 +106,7 @@ def test_each_program_of_a_folder_has_its_own(tsc: Tsc, tmp_path: Path) -> None:
 
 
 def test_the_examples_are_right_as_they_are(tsc: Tsc) -> None:
-    assert "without mistakes: 10" in tsc("check", ROOT / "examples").gives(0).out
+    assert "free of mistakes: 10" in tsc("check", ROOT / "examples").gives(0).out
 
 
 def test_the_one_that_answers_does_not_take_the_place_of_a_named_one(liner: Path) -> None:

@@ -100,18 +100,18 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
     assert claimed(pty_robot).code == 0
     as_another(monkeypatch, tmp_path, "settings")
     for _ in range(7):  # more often than wrong keys are listened to
-        on(pty_robot, "doctor").gives(0, "claimed it again", "10 s")
+        on(pty_robot, "doctor").gives(0, "claimed the robot again.", "10 s")
     assert "lo hizo suyo" in on(pty_robot, "doctor", "--identify", "--lang", "es").err
     assert [key.is_stale for key in KeyFile().all()] == [True]
-    on(pty_robot, "upload", "-e", DRIVES).gives(3, "another key")
+    on(pty_robot, "upload", "-e", DRIVES).gives(3, "a different key")
     as_another(monkeypatch, tmp_path)
     done = on(pty_robot, "upload", "-e", DRIVES)
-    assert done.code == 0 and "claimed it again" not in done.err
+    assert done.code == 0 and "claimed the robot again." not in done.err
 
 
 def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
     """A robot with an owner takes text only while it is told to."""
-    assert "nothing to give up" in on(pty_robot, "set", "owner", "--give-up").out
+    assert "has no owner to remove" in on(pty_robot, "set", "owner", "--give-up").out
     assert "no owner" in on(pty_robot, "set", "text", "off").out
     assert claimed(pty_robot).code == 0
     assert len(KeyFile().all()) == 1
@@ -130,7 +130,7 @@ def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -
     done = on(pty_robot, "live", "-", data=f"{most}\nSHOW(X)\n".encode())
     assert done.code == 0 and done.out.count("X 1\n") == 1
     assert claimed(pty_robot).code == 0
-    on(pty_robot, "live", "-", data=most.encode()).gives(0, "not kept", out="")
+    on(pty_robot, "live", "-", data=most.encode()).gives(0, "are lost", out="")
     on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8).gives(1, "room for 42")
     done = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8, "--lang", "es")
     assert "42" in done.err
@@ -160,7 +160,7 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
     assert "teacher's key" in on(pty_robot, "stop", "--teacher").err  # a pupil has none
     as_another(monkeypatch, tmp_path, "settings")
-    assert "goes on only after" in on(pty_robot, "stop", "--teacher").out
+    assert "will only run again after" in on(pty_robot, "stop", "--teacher").out
     as_another(monkeypatch, tmp_path, "pupil")
     on(pty_robot, "start").gives(3, "teacher")
     as_another(monkeypatch, tmp_path, "settings")
@@ -198,14 +198,14 @@ def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
     pty_robot._memory = EMPTY
     pty_robot.switch_on()  # another one, with an id of its own
     refused = on(pty_robot, "upload", "-e", FOREVER, "--detach")
-    refused.gives(3, "another robot answers", "tsc set owner --accept")
+    refused.gives(3, "a different robot", "tsc set owner --accept")
     for words in (
         ["upload", "-e", DRIVES],
         ["live", "F(0.2, 80)"],
         ["show"],
         ["set", "name", "ANA"],
     ):
-        on(pty_robot, *words).gives(3, "another robot answers")
+        on(pty_robot, *words).gives(3, "a different robot")
     on(pty_robot, "stop").gives(3, "has not confirmed the stop")
     on(pty_robot, "doctor", "--lang", "es").gives(3, out="responde otro robot")
     on(pty_robot, "doctor", "--lang", "pt").gives(3, out="responde outro robô")

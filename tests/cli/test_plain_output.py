@@ -211,8 +211,8 @@ def test_a_device_describes_itself_without_them(sign: str, monkeypatch: pytest.M
 @each_row(
     "device, description, said",
     [
-        ("/dev/ttyS0", "n/a", "a port of this computer itself"),
-        ("/dev/ttyAMA10", "n/a", "a port of this computer itself"),
+        ("/dev/ttyS0", "n/a", "built into this computer"),
+        ("/dev/ttyAMA10", "n/a", "built into this computer"),
         ("/dev/ttyS0", "PCI card", "PCI card"),
         ("/dev/ttyUSB0", "n/a", ""),
         ("/dev/ttySAC0", "n/a", ""),

@@ -24,7 +24,7 @@ from tiniscript.studio.recordings import REAL, Row, head, read, written
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
 CHECKSUM = compile(TEXT).checksum
 HEAD = head(REAL, TEXT, robots.load("tinibot"), CHECKSUM)
-AGAIN = "The virtual robot did all of it again. Rows: "
+AGAIN = "The virtual robot did exactly the same again. Rows: "
 
 
 def real(*events: tuple[int, str]) -> bytes:
@@ -90,7 +90,7 @@ def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     assert 0 < recording.rows[0].ms <= recording.rows[1].ms < 2000
     assert not is_foreign(file)
     done = tsc("run", file)
-    assert (done.code, done.err) == (0, "Both did the same. Comparisons: 2.\n")
+    assert (done.code, done.err) == (0, "Both did the same. Values compared: 2.\n")
     file.write_bytes(file.read_bytes().replace(b'SHOW 5"', b'SHOW 6"'))
     done = tsc("run", file, "--world", "line", "--lang", "es").gives(1)
     assert done.err.startswith("Línea 1: el robot dice 6 a los 0.")
@@ -109,7 +109,7 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
     for each, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
         assert wanted_ms <= each.ms <= wanted_ms + 100, events
     done = inside("run", file)
-    assert (done.code, done.err) == (0, "Both did the same. Comparisons: 7.\n")
+    assert (done.code, done.err) == (0, "Both did the same. Values compared: 7.\n")
 
 
 def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> None:
@@ -124,12 +124,16 @@ def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("events", "code", "said"),
     [
-        (((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")), 0, "Both did the same. Comparisons: 2."),
-        (((200, "SHOW 5"), (300, "LOST")), 0, "Both did the same. Comparisons: 1."),
-        (((200, "SHOW 5"), (400, "MISSED")), 0, "Then values of the robot did not arrive"),
-        ((), 1, "The recording ends before the robot said anything"),
-        (((200, "LOST"),), 1, "The recording ends before the robot said anything"),
-        (((900, "SHOW 5"),), 1, "Line 1: the robot got there at another time."),
+        (
+            ((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")),
+            0,
+            "Both did the same. Values compared: 2.",
+        ),
+        (((200, "SHOW 5"), (300, "LOST")), 0, "Both did the same. Values compared: 1."),
+        (((200, "SHOW 5"), (400, "MISSED")), 0, "Some of the robot's values did not arrive"),
+        ((), 1, "The recording ends before the robot sent anything"),
+        (((200, "LOST"),), 1, "The recording ends before the robot sent anything"),
+        (((900, "SHOW 5"),), 1, "Line 1: the robot got there at a different time."),
         (((200, "SHOW 5"), (400, "DONE")), 1, "Line 3: the robot says DONE after 0.4 s"),
         (((200, "SHOW 5"), (9000, "STOPPED")), 1, "Line 3: the virtual robot says FAULT"),
     ],
@@ -153,22 +157,30 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
         for end in ("\n", "\r\n"):
             file.write_bytes((mark + text.replace("\n", end)).encode(encoding))
             done = tsc("run", file)
-            assert done.err == "Both did the same. Comparisons: 2.\n", (encoding, end, done)
+            assert done.err == "Both did the same. Values compared: 2.\n", (encoding, end, done)
 
 
 @pytest.mark.parametrize(
     ("data", "said", "dicho"),
     [
-        (real((5, "SHOW 1"))[:-4], "is damaged, or no recorded run (line 3)", "(línea 3)"),
+        (real((5, "SHOW 1"))[:-4], "is damaged or is not a recorded run (line 3)", "(línea 3)"),
         (HEAD.encode(), "the end of", "le falta el final"),
-        (b'{"tiniscript_recording": 1}', "is a recording of an older tsc", "de un tsc anterior"),
+        (
+            b'{"tiniscript_recording": 1}',
+            "was recorded by an older tsc",
+            "de un tsc anterior",
+        ),
         (
             HEAD.replace('run":1', 'run":2').encode(),
-            "from a newer tsc",
+            "was recorded by a newer tsc.",
             "viene de un tsc más nuevo",
         ),
-        (HEAD.replace('"tinibot"', '"mine"').encode(), "does not come with", "no trae"),
-        (real().replace(b"SHOW(5)", b"SHOW(6)"), "means something else", "significa otra cosa"),
+        (HEAD.replace('"tinibot"', '"mine"').encode(), "does not have", "no trae"),
+        (
+            real().replace(b"SHOW(5)", b"SHOW(6)"),
+            "has a different meaning in this tsc",
+            "significa otra cosa",
+        ),
         (real((999_999, "DONE")), "ten minutes at most", "diez minutos como máximo"),
         (HEAD.encode() + b" " * 1_100_000, "is too long", "es demasiado largo"),
     ],
@@ -187,25 +199,25 @@ def test_a_file_that_cannot_be_played_says_why(
     ("words", "said"),
     [
         (("run", "-e", TEXT, "--replay", "r"), "--replay any more. Try:  tsc run run.tsr"),
-        (("run", "-e", TEXT, "--world", "line"), "--world is for --record"),
-        (("run", "p.bin", "--record", "new"), "needs the program as text"),
+        (("run", "-e", TEXT, "--world", "line"), "--world works only with --record"),
+        (("run", "p.bin", "--record", "new"), "needs the program's text"),
         (("run", "-e", TEXT, "--record", "new", "--world", "nowhere"), "nowhere"),
         (("run", "-e", TEXT, "--record", "new", "--robot", "own.toml"), "that come with tsc"),
-        (("run", "-e", TEXT, "--record", "new", "--machine", "cpp"), "--machine does not go with"),
-        (("run", "-e", TEXT, "--record", "new", "--show"), "--show does not go with --record"),
-        (("run", "-e", TEXT, "--record", "new", "--pace", "0"), "--pace does not go with"),
-        (("run", "-e", TEXT, "--record", "letter"), "tsc has not made it"),
-        (("run", "r", "--sensor", "DISTANCE=5"), "--sensor does not go with a recorded run"),
-        (("run", "r", "--seed", "7"), "--seed does not go with a recorded run"),
-        (("run", "r", "--max-time", "3"), "--max-time does not go with a recorded run"),
-        (("run", "r", "--robot", "liner"), "--robot does not go with a recorded run"),
-        (("run", "r", "--record", "new"), "--record does not go with a recorded run"),
-        (("upload", "-e", "SB|S", "--record", "new"), "--record is for one run that tsc follows"),
-        (("upload", "-e", TEXT, "--detach", "--record", "new"), "--record is for one run"),
-        (("upload", "-e", TEXT, "--no-run", "--record", "new"), "--record is for one run"),
-        (("upload", "-e", TEXT, "--all", "--record", "new"), "--record is for one run"),
-        (("upload", "p.bin", "--virtual", "--record", "new"), "needs the program as text"),
-        (("upload", "-e", TEXT, "--virtual", "--record", "letter"), "tsc has not made it"),
+        (("run", "-e", TEXT, "--record", "new", "--machine", "cpp"), "--machine does not work"),
+        (("run", "-e", TEXT, "--record", "new", "--show"), "--show does not work with --record"),
+        (("run", "-e", TEXT, "--record", "new", "--pace", "0"), "--pace does not work with"),
+        (("run", "-e", TEXT, "--record", "letter"), "tsc did not write it."),
+        (("run", "r", "--sensor", "DISTANCE=5"), "--sensor does not work with a recorded run"),
+        (("run", "r", "--seed", "7"), "--seed does not work with a recorded run"),
+        (("run", "r", "--max-time", "3"), "--max-time does not work with a recorded run"),
+        (("run", "r", "--robot", "liner"), "--robot does not work with a recorded run"),
+        (("run", "r", "--record", "new"), "--record does not work with a recorded run"),
+        (("upload", "-e", "SB|S", "--record", "new"), "--record needs a run that tsc follows"),
+        (("upload", "-e", TEXT, "--detach", "--record", "new"), "--record needs a run"),
+        (("upload", "-e", TEXT, "--no-run", "--record", "new"), "--record needs a run"),
+        (("upload", "-e", TEXT, "--all", "--record", "new"), "--record needs a run"),
+        (("upload", "p.bin", "--virtual", "--record", "new"), "needs the program's text"),
+        (("upload", "-e", TEXT, "--virtual", "--record", "letter"), "tsc did not write it."),
     ],
 )  # fmt: skip
 def test_what_is_not_recorded_or_played_says_why(

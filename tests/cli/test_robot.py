@@ -27,15 +27,6 @@ from tiniscript.link.transports import serial as serial_transport
 KIT = robots.load("tinibot").kit
 
 
-@pytest.fixture
-def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nobody waits long for a robot that will not answer."""
-    monkeypatch.setattr(opening, "ANSWER_MS", 800)
-    monkeypatch.setattr(opening, "CABLE_ANSWER_MS", 800)
-    monkeypatch.setattr(opening, "LONG_QUIET_S", 0.1)
-    monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 800)
-
-
 # -- endings ------------------------------------------------------------------------------------
 
 
@@ -55,7 +46,7 @@ def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
     pressed_ms = pty_robot.robot_ms
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "Stopped: the robot has confirmed it.")
+    command.ended().gives(2, "Stopped: the robot has confirmed the stop.")
     assert pty_robot.did[-1] == "MOTORS 0 0"
     assert int(pty_robot.timed[-1].split()[0]) <= pressed_ms + 1000
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
@@ -131,7 +122,7 @@ def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> 
 
 def test_a_name_survives_power_off(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "set", "name", "Ñandú")
-    assert (done.code, done.out) == (0, f"{pty_robot.port}: the robot is called Ñandú now.\n")
+    assert (done.code, done.out) == (0, f"{pty_robot.port}: the robot is now called Ñandú.\n")
     pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "Ñandú"
     for name in ("", " ", "a" * 17, "ñ" * 9, "a\nb"):
@@ -154,7 +145,10 @@ def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, pty_robot: PtyRobot, hasty
 def test_a_person_without_a_port_is_asked_for_one(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = [ports.Found("/dev/ttyS77", "a modem"), ports.Found(pty_robot.port, "a robot")]
+    found = [
+        ports.ListedPort("/dev/ttyS77", "a modem"),
+        ports.ListedPort(pty_robot.port, "a robot"),
+    ]
     monkeypatch.setattr(ports, "listed", lambda: found)
     answers = iter(["7\n", "what?\n", "2\n"])
     monkeypatch.setattr("sys.stdin.isatty", lambda: True)
@@ -171,14 +165,18 @@ def test_nobody_something_else_and_another_version(
     with monkeypatch.context() as newer:
         newer.setattr("tiniscript.link.handshake.MAJOR", MAJOR + 1)
         tsc("doctor", "--identify", "--port", pty_robot.port).gives(
-            3, f"speaks version {MAJOR} of the link"
+            3, f"uses version {MAJOR} of the link"
         )
     pty_robot.switch_off()
     tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, "nothing answers")
-    for said in (b"Hello from another sketch\r\n", bytes(range(1, 256)) * 3, b"\xff" * 99):
+    sketch = "another sketch, not the TiniScript firmware. It says: Hello from a sketch. Put"
+    for said, answer in (
+        (b"Hello from a sketch\r\n", sketch), (bytes(range(1, 256)) * 3, "not TiniScript"),
+        (b"\xff" * 99, "not TiniScript. Perhaps its speed is different"),
+    ):  # fmt: skip
         timer = threading.Timer(0.3, pty_robot.say, [said])
         timer.start()
-        tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, "not TiniScript")
+        tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, answer)
         timer.join()
     tsc("doctor", "--identify", "--port", "loop://").gives(3, "is sent to loop:// comes back")
 
@@ -215,7 +213,7 @@ def test_every_reason_has_a_sentence_with_a_next_step(
         def refuse(*_: object, failure: Exception = failure) -> None:
             raise failure
 
-        monkeypatch.setattr(serial_transport, "_made", refuse)
+        monkeypatch.setattr(serial_transport, "_make_serial", refuse)
         tsc("doctor", "--identify", "--port", "COM5").gives(3, word)
 
 
@@ -223,7 +221,7 @@ def test_a_port_that_never_opens_is_given_up(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:  # fmt: skip
     hangs = threading.Event()
-    monkeypatch.setattr(serial_transport, "_made", lambda *_: hangs.wait(30))
+    monkeypatch.setattr(serial_transport, "_make_serial", lambda *_: hangs.wait(30))
     with pytest.raises(errors.PortError) as failure:
         ports.opened("COM5", 9600, limit_s=0.1)
     assert failure.value.reason == errors.SLOW

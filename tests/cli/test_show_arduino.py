@@ -43,8 +43,8 @@ def test_a_program_that_is_too_large_for_a_machine_is_none_for_a_sketch(tsc: Tsc
 def test_what_cannot_be_is_said(tsc: Tsc, tmp_path: Path) -> None:
     image = tmp_path / "a.bin"
     assert tsc("compile", "-e", PROGRAM, "-o", image).code == 0
-    tsc("show", "--arduino", image).gives(2, "made from its text")
-    tsc("show", "--arduino", "--json", "-e", PROGRAM).gives(2, "one of them at a time")
+    tsc("show", "--arduino", image).gives(2, "needs its text.")
+    tsc("show", "--arduino", "--json", "-e", PROGRAM).gives(2, "one of them.")
     done = tsc("show", "-e", PROGRAM, "-o", tmp_path / "b.ino")
     assert done.code == 2 and "--arduino" in done.err and not (tmp_path / "b.ino").exists()
     done = tsc("show", "--arduino", "-e", PROGRAM, "--robot", "tinibot32")
@@ -64,11 +64,13 @@ def test_a_reading_is_in_a_sketch_or_is_said_to_have_none(tsc: Tsc, k: int) -> N
         else:
             done.gives(2, "no remote control")
     for task in ("TASK;W(1);END_TASK", f"WHEN({condition});S;END_WHEN"):
-        tsc("show", "--arduino", "-e", task).gives(2, "no TASK and no WHEN")
+        tsc("show", "--arduino", "-e", task).gives(2, "cannot have TASK or WHEN")
 
 
 def test_a_way_that_is_calculated_is_said_to_have_no_sketch(tsc: Tsc) -> None:
     for move in ("F(X CM, 60)", "B(30 CM, X)", "R(X DEG, 60)"):
-        tsc("show", "--arduino", "-e", f"X = DISTANCE;{move}").gives(2, "CM and DEG take numbers")
+        tsc("show", "--arduino", "-e", f"X = DISTANCE;{move}").gives(
+            2, "distances in CM, angles in DEG"
+        )
     for move in ("F(30 CM, 60)", "R(90 DEG, 60)"):
         tsc("show", "--arduino", "-e", move).gives(0, "", out="void loop()")

@@ -49,7 +49,10 @@ def test_what_a_level_lacks_is_a_mistake_with_its_place(tsc: Tsc) -> None:
     done = tsc("check", "--text-level", "uno", "-e", LONG)
     assert done.code == 1
     assert "line 256:  S\n" in done.err
-    assert "the level uno makes 260 bytes of code, 5 too many: it has room for 255" in done.err
+    assert (
+        "level uno turns this text into 260 bytes of code, 5 too many: it has room for 255"
+        in done.err
+    )
     data = tsc("check", "--json", "--text-level", "mega", "-e", LONG)
     assert '"code": "TS309"' in data.out and '"line": 256' in data.out
     assert tsc("check", "-e", LONG).code == 0
@@ -67,7 +70,7 @@ def test_nothing_is_written_that_a_level_does_not_take(tsc: Tsc, tmp_path: Path)
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["--text-level", "uno"], "--text-level goes with --text"),
+        (["--text-level", "uno"], "--text-level works only with --text."),
         (["--text", "--map", "x.json"], "a line of text has no map"),
         (["--text", "--text-level", "nano"], "--text-level takes uno, mega or esp32, not nano"),
     ],

@@ -101,8 +101,8 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
     assert on(pty_robot, "--balance", "-5", "--least", "12").out.startswith("tinibot (")
     done = on(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
     assert done.out.endswith(
-        "keeps: motors swapped, right wheel reversed, right wheel 5 % weaker, "
-        "the wheels start to move at 12 %, centimetres and degrees by the numbers of its kit\n"
+        "has saved: motors swapped, right wheel reversed, right wheel 5 % weaker, "
+        "the wheels begin to turn at 12 %, centimetres and degrees according to its kit\n"
     )
     assert keeps(pty_robot) == Trim(True, False, True, -5, 12, Pace())
     assert on(pty_robot, "--exchange", "no", "--balance", "0").code == 0
@@ -130,7 +130,7 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
     assert pty_robots.on(pty_robot, "live", "W(0)").code == 0
     done = on(pty_robot, data=ANSWERS + "2\n").gives(0)
     assert keeps(pty_robot) == Trim(True, False, True, -8, 15, Pace())
-    assert "A number from 1 to 4" in done.err
+    assert "a number from 1 to 4" in done.err
     assert done.err.index("One motor turned") < done.err.index("The other motor turned")
     moves = [line for line in pty_robot.did if line.startswith("MOTORS") and line != "MOTORS 0 0"]
     assert moves == [
@@ -146,7 +146,7 @@ def of_the_table(cause: str, part: str, **values: str) -> str:
     finding = Finding(cause, True, values, part)
     found = causes.said(finding, "en")
     return (
-        f"tsc: {causes.label(finding, 'en')}: {found.what}. The robot keeps what it had. "
+        f"tsc: {causes.label(finding, 'en')}: {found.what}. The robot keeps its old trim. "
         f"Try:  {found.then}"
     )
 
@@ -158,7 +158,7 @@ def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(pty_robot: PtyRobot) -
         ("\n5\n", of_the_table("still", "left")),
         ("\n1\n3\n" + "2\n" * 8, of_the_table("too_weak", "motors", n="40")),
         ("\n1\n3\n1\n\n" + "2\n" * 3, of_the_table("too_uneven", "motors", n="40")),
-        ("\n1\n", "the answers ended"),
+        ("\n1\n", "the input ended"),
     ):
         on(pty_robot, data=answers).gives(3, said)
         assert keeps(pty_robot) == Trim(balance=7, least=3, pace=Pace()), said
@@ -285,9 +285,9 @@ def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None
     done = on(pty_robot, data=LIFTED + measuring).gives(0)
     assert keeps(pty_robot).pace == Pace(16.5, 33.25, 144, 288)
     assert done.err.count("18 in") == 5
-    assert "goes 16.5 cm in a second at 40 % and 33.25 at 80 %" in done.out
+    assert "drives 16.5 cm per second at 40 % and 33.25 at 80 %" in done.out
     told_by_info = pty_robots.on(pty_robot, "doctor").out
-    assert "turns 144 degrees in a second at 40 % and 288 at 80 %" in told_by_info
+    assert "turns 144 degrees per second at 40 % and 288 at 80 %" in told_by_info
 
 
 def test_who_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
@@ -303,6 +303,6 @@ def test_who_stops_measuring_leaves_what_was_there(pty_robot: PtyRobot) -> None:
     assert keeps(pty_robot).pace == Pace()
     assert on(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0
     for answers in ("1\n", "1\n\n33\n\n"):
-        on(pty_robot, data=LIFTED + answers).gives(3, "the answers ended")
+        on(pty_robot, data=LIFTED + answers).gives(3, "the input ended")
         assert keeps(pty_robot) == Trim(balance=7, pace=Pace(10, 20.5))
         assert not pty_robot.moves

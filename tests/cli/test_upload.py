@@ -48,7 +48,7 @@ def test_slots_and_checksums_are_for_those_who_ask(pty_robot: PtyRobot) -> None:
     assert {row["slot"] for row in told if row.get("slot") is not None} == {0}
     # what is lost without power is told to all
     done = on(pty_robot, "upload", "-e", "SI|S;S", "--no-save")
-    assert done.out.splitlines()[0].endswith("   in RAM only   SI: running")
+    assert done.out.splitlines()[0].endswith("   only in RAM   SI: running")
 
 
 def test_a_program_goes_on_without_tsc(pty_robot: PtyRobot) -> None:
@@ -61,7 +61,7 @@ def test_a_program_goes_on_without_tsc(pty_robot: PtyRobot) -> None:
 def test_a_program_that_waits_ends_with_its_receipt(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "upload", "-e", "SB|F(0.1, 80)")
     assert (done.code, pty_robot.did) == (0, [])
-    assert "SB: waits for the button or tsc start\nSaved." in done.out
+    assert "SB: waiting for the button or tsc start\nSaved." in done.out
     pty_robot.push()
     pty_robot.until(lambda: "FINISHED" in pty_robot.did, "the button starts it")
     done = on(pty_robot, "start").gives(0)
@@ -79,7 +79,7 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
         pty_robot.damages = damages
         done = on(pty_robot, "upload", ours, "--no-run", "--no-save")
         assert (done.code, pty_robot.did) == (0, [])
-        assert "in RAM only   SI: waits" in done.out
+        assert "only in RAM   SI: waiting" in done.out
         assert on(pty_robot, "show", "-o", theirs).code == 0
         assert theirs.read_bytes() == ours.read_bytes(), damages
         fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
@@ -146,7 +146,7 @@ def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) 
     pty_robot.switch_off_and_on()
     done = command.ended()
     assert done.code == 3 and "Done." not in done.out + done.err
-    assert "was restarted" in done.out + done.err, done
+    assert "restarted, which ended its program" in done.out + done.err, done
 
 
 # -- what a robot keeps, and what is in the way of that -------------------------------------------
@@ -169,7 +169,7 @@ def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyR
 
 def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
     interrupted(uploading(pty_robot)).gives(
-        2, "the robot has confirmed it", out="Saved. It starts with the button."
+        2, "the robot has confirmed the stop", out="Saved. It starts with the button."
     )
     pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
@@ -181,7 +181,7 @@ def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: 
     for words in (naming, trimming):
         done = on(pty_robot, *words)
         assert done.code == 3 and not done.out, words
-        assert "keeps it as soon as its motors have stopped" in done.err
+        assert "will save it as soon as its motors have stopped" in done.err
     assert "lo guarda en" in on(pty_robot, *naming, "--lang", "es").err
     assert pty_robot.moves, "nothing has stopped it"
     interrupted(command)
@@ -200,7 +200,7 @@ def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
     assert done.code == 3 and "Change the batteries and send it again" in done.err
     done = on(pty_robot, "upload", "-e", "SB|SHOW(8)", "--lang", "es")
     assert done.code == 3 and "Cambia las pilas y envíalo otra vez" in done.err
-    assert "its batteries are too weak to save it" in on(pty_robot, "doctor").out
+    assert "RAM: the robot's batteries are too weak to save it" in on(pty_robot, "doctor").out
     fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
     assert (fields["saved"], fields["slot"]) == ("LOW_SUPPLY", None)
     for words in (("set", "name", "ANA"), ("set", "trim", "--balance", "5")):
@@ -237,7 +237,7 @@ def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRob
     """As data it is a receipt."""
     first, second = with_two(pty_robot)
     for language, checksum, said, saved in (
-        ("en", first, "it holds the previous program again, checksum", "Saved. It starts"),
+        ("en", first, "it has the previous program again, checksum", "Saved. It starts"),
         ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
     ):
         done = on(pty_robot, "start", "--previous", "--lang", language).gives(0, "")
@@ -265,7 +265,7 @@ def test_the_file_of_the_program_is_named_where_it_is_known(
 def test_where_there_is_none_before_the_next_step_is_said(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "upload", "-e", FIRST).code == 0
     for language, said, advice in (
-        ("en", "no program from before that it can run", "Send the program that you want"),
+        ("en", "no earlier program that it can run.", "Send the program that you want"),
         ("es", "ningún programa anterior que pueda", "Envía el programa que quieras"),
     ):
         on(pty_robot, "start", "--previous", "--lang", language).gives(3, said, advice, out="")

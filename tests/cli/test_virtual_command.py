@@ -176,7 +176,7 @@ def test_each_robot_reads_what_it_has_written(name: str, size: int, tmp_path: Pa
     assert b"INTI" in memory.read_bytes()
     for other in (size + 1, size - 1, 0):
         memory.write_bytes(bytes(other))
-        inside("robot", *options).gives(2, f"that has {size} bytes")
+        inside("robot", *options).gives(2, f"which has {size} bytes")
         assert len(memory.read_bytes()) == other
 
 
@@ -286,7 +286,7 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
     command.until("SI: running")
     command.until("SHOW 1")
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "Stopped: the robot has confirmed it.", out=str(picture))
+    command.ended().gives(2, "Stopped: the robot has confirmed the stop.", out=str(picture))
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
@@ -323,8 +323,8 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         (["robot", "--memory", "."], "Choose another place with --memory"),
         (["robot", "--sensor", "EYES=1"], "has no sensor EYES"),
         (["robot", "--robot", "r2d2"], "There is no robot r2d2"),
-        (["upload", "-e", "SI|S", "--world", "line"], "--world is for the virtual robot alone"),
-        (["live", "S", "--port", "COM1", "--virtual"], "--virtual does not go together"),
+        (["upload", "-e", "SI|S", "--world", "line"], "--world works only with the virtual robot"),
+        (["live", "S", "--port", "COM1", "--virtual"], "--virtual cannot be combined"),
     ],
 )
 def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], said: str) -> None:
@@ -340,7 +340,7 @@ def test_a_port_that_is_taken_and_a_memory_that_is_none(tsc: Tsc, tmp_path: Path
     assert "Choose another with --listen" in done.err
     small = tmp_path / "small.bin"
     small.write_bytes(b"TS")
-    tsc("robot", "--memory", small).gives(2, "that has 1024 bytes")
+    tsc("robot", "--memory", small).gives(2, "which has 1024 bytes")
 
 
 @pytest.mark.parametrize(("name", "commands"), [

@@ -77,7 +77,7 @@ def test_who_waits_for_a_board_is_told_until_it_is_written(
 
     monkeypatch.setattr(avrdude, "write", write)
     made = Ready("tinibot", "uno", "1", Path("x"))
-    assert firmware._written([], UNO, "/dev/x", made, "en").how == avrdude.DONE
+    assert firmware._write_firmware([], UNO, "/dev/x", made, "en").how == avrdude.DONE
 
 
 SILENT_VERBS = [
@@ -162,7 +162,9 @@ def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.Monk
     for late_ms in (990, 1300):  # who is silent for 3 s is lost
         with BadLine(Fault("late", late_ms=late_ms), Random(1), 0) as line:
             on(line, "doctor", "--identify").gives(0)
-            on(line, "set", "owner").gives(3, "hold its start button down", "waits for its button")
+            on(line, "set", "owner").gives(
+                3, "hold its start button down", "waiting for its button"
+            )
 
 
 def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
@@ -202,7 +204,7 @@ def test_nothing_is_said_of_a_wait_that_is_over(
     monkeypatch.setattr(progress, "MOMENT_S", HANGS_S)
     silence = progress.Silence("waits")
     silence.cancel()
-    silence._tell()
+    silence._print_wait()
     assert capsys.readouterr().err == "" and not silence.is_told
 
 

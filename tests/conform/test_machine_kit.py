@@ -102,8 +102,9 @@ def test_the_machine_from_the_specification_passes_all(
     count = len(machine_cases()) - needing
     assert count > 600 and needing > 600
     assert done.out == (
-        f"{needing} cases with TASK, WHEN, CM or DEG were left out: this machine lacks them.\n"
-        f"{count} of {count} cases agree. Kit 5, bytecode 2.1.\n"
+        f"{needing} cases with TASK, WHEN, CM or DEG were skipped: "
+        "this machine does not support them.\n"
+        f"{count} of {count} cases pass. Kit 5, bytecode 2.1.\n"
     )
     tasks = "--only", "tasks: "
     assert json.loads(conform(tsc, FROM_SPEC, "--json", *tasks).out)["left_out"]
@@ -261,9 +262,9 @@ def test_a_machine_that_ends_after_each_answer_is_started_again(tsc: Tsc, tmp_pa
 
 
 HOSTILE = {
-    "hang": ("time.sleep(600)", "did not end its answer in 1 s", 3),
+    "hang": ("time.sleep(600)", "did not finish its answer in 1 s", 3),
     "crash": ("sys.exit('no such opcode')", "exit code 1: no such opcode", 20),
-    "flood": ("while True: os.write(1, b'0 SHOW 1\\n' * 999)", "wrote far more", 3),
+    "flood": ("while True: os.write(1, b'0 SHOW 1\\n' * 999)", "wrote far too much output", 3),
     "more": ("for row in sys.stdin:\n  if row == 'run\\n': os.write(1, b'0 DONE\\n0 DONE\\n')",
              "after the end of its answer", 20),
 }  # fmt: skip
@@ -276,7 +277,7 @@ def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None
     timeout_s = "1" if what == "hang" else "100"  # a busy computer starts Python in a second
     done = conform(tsc, command, "--timeout", timeout_s).gives(1, out=said)
     assert done.out.splitlines()[-1].startswith("0 of ")
-    assert "too many had no answer" in done.out
+    assert "too many got no answer." in done.out
     rows = found_by(tsc, command, "--timeout", timeout_s)
     assert [row["what"] for row in rows] == [what] * tried
 
@@ -338,7 +339,7 @@ def test_a_machine_that_reads_nothing_is_no_trouble(tsc: Tsc, tmp_path: Path) ->
     command = machine(tmp_path, "time.sleep(60)")
     done = conform(tsc, command, "--only", "the longest code", "--timeout", "1")
     assert done.code == 1
-    assert "did not end" in done.out
+    assert "did not finish" in done.out
 
 
 def test_what_it_has_started_ends_with_it(tsc: Tsc, tmp_path: Path) -> None:
@@ -424,7 +425,7 @@ def test_the_page_says_how_many(tsc: Tsc) -> None:
     count = len(machine_cases())
     needing = sum(bool(case.needs) for case in machine_cases())
     text = PAGE.read_text(encoding="utf-8")
-    assert f"some {round(count, -1)} runs" in text
-    assert f"some {round(len(all_checks(link_kit())), -1)} checks" in text
+    assert f"about {round(count, -1)} runs" in text
+    assert f"about {round(len(all_checks(link_kit())), -1)} checks" in text
     assert f"{needing} cases with TASK, WHEN, CM or DEG" in text
-    assert f"{count - needing - 1} of {count - needing} cases agree" in text
+    assert f"{count - needing - 1} of {count - needing} cases pass." in text

@@ -64,7 +64,7 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
     done = tsc("doctor", "--conform", "--port", pty_robot.port).gives(0)
     count = len(all_checks(link_kit()))
     assert count > 200
-    assert done.out == f"{count} of {count} checks agree. Kit 1, link {LINK}, bytecode {ISA}.\n"
+    assert done.out == f"{count} of {count} checks pass. Kit 1, link {LINK}, bytecode {ISA}.\n"
     assert not any("MOTORS" in row and row != "MOTORS 0 0" for row in pty_robot.did)
 
 
@@ -189,8 +189,8 @@ def flood(peer: socket.socket) -> None:
 @pytest.mark.parametrize(
     ("serve", "said"),
     [
-        (lambda peer: None, "is gone"),
-        (lambda peer: peer.recv(1), "is gone"),
+        (lambda peer: None, "disappeared"),
+        (lambda peer: peer.recv(1), "disappeared"),
         (flood, "answers HELLO"),
     ],
     ids=["closes", "closes later", "floods"],
@@ -212,7 +212,7 @@ def test_a_cable_that_is_pulled(pty_robot: PtyRobot, tsc: Tsc) -> None:
     done = tsc("doctor", "--conform", "--port", pty_robot.port)
     pulled.join()
     assert done.code == 3
-    assert "is gone after" in done.err
+    assert "disappeared after" in done.err
 
 
 def test_a_port_that_is_not_there(tsc: Tsc) -> None:

@@ -137,7 +137,7 @@ def test_messages_without_an_example_have_gaps_that_are_filled(code: str) -> Non
 def test_a_program_that_is_too_long_for_any_robot_says_by_how_much() -> None:
     said, source = first("SHOW(DISTANCE * 1.125 + 2.25)\n" * 5000)
     assert said.code == "TS306"
-    assert re.search(r"\d+ bytes too long: a robot takes at most 32767$", said.message)
+    assert re.search(r"\d+ bytes too long: a robot holds at most 32767$", said.message)
     assert (said.line, said.column) == (5000, 29)
     assert "{" not in as_text(said, source, "en")
 
@@ -159,7 +159,7 @@ def test_braces_ats_and_line_ends_in_a_program_are_only_shown() -> None:
         values = {"by": "W", "found": text}
         said = message(Diagnostic(codes.WANTS_NUMBER, Span(0, 0), values), Source("W"), "en")
         plain = text.replace("\n", " ").replace("\t", " ").replace("\x07", "␇")
-        assert said.fix == f"Write a number in place of {plain}"
+        assert said.fix == f"Write a number instead of {plain}"
 
 
 def test_terms_and_units_are_translated() -> None:
@@ -202,7 +202,7 @@ def test_as_json() -> None:
             "column": 1,
             "end_line": 1,
             "end_column": 4,
-            "message": "F needs 2 values in the brackets, F(time, power), but got 0",
+            "message": "F needs 2 values in its brackets, F(time, power), but has 0",
             "fix": messages[0].fix,
         },
         {
@@ -212,7 +212,7 @@ def test_as_json() -> None:
             "column": 5,
             "end_line": 2,
             "end_column": 11,
-            "message": "Numbers have three decimals at most, so 0.0001 becomes 0",
+            "message": "Numbers have at most three decimals, so 0.0001 becomes 0",
             "fix": "0",
         },
     ]

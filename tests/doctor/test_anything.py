@@ -13,8 +13,8 @@ from tests.support.simulated_wire import SimulatedWire
 from tiniscript.doctor import computer, diagnosis
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
-from tiniscript.doctor.line import Line, looked
-from tiniscript.link.modules.talk import found
+from tiniscript.doctor.line import Line, diagnose_line
+from tiniscript.link.modules.talk import find_module
 
 WORDS = (
     b"OK",
@@ -69,10 +69,12 @@ class Damaged(Firmware):
 def test_anything_at_the_other_end(kind: type[Chance | Damaged], seed: int) -> None:
     for is_radio in (False, True):
         wire = SimulatedWire(kind(seed))
-        findings = looked(wire, Line(9600, is_radio, 1), Expected(None, "", lambda kit: None))
+        findings = diagnose_line(
+            wire, Line(9600, is_radio, 1), Expected(None, "", lambda kit: None)
+        )
         assert findings and {finding.cause for finding in findings} <= set(CAUSES)
         assert wire.now_ms < LONGEST_MS
-    found(SimulatedWire(Chance(seed)))
+    find_module(SimulatedWire(Chance(seed)))
 
 
 @pytest.mark.parametrize("platform", ["linux", "darwin", "win32"])
@@ -91,6 +93,6 @@ def test_a_computer_that_tells_anything(tmp_path: Path, platform: str, seed: int
     system.write("/etc/group", "".join(chance.choice(("a:x:20:b", ":", "\n")) for _ in range(9)))
     system.write("/sys/class/bluetooth/hci0/x", "")
     system.owners["/dev/x"] = (20, True)
-    told = diagnosis.looked(system)
+    told = diagnosis.inspect_computer(system)
     assert told.bluetooth in (computer.ON, computer.OFF, computer.NONE, computer.UNKNOWN)
     diagnosis.access(system, "/dev/x")

@@ -13,10 +13,11 @@ from typing import Any, cast
 import pytest
 
 from tests.support.fake_computer import FakeComputer
+from tests.support.foreign_boards import FIRMATA
 from tests.support.simulated_ends import KIT, Firmware, Nobody
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
 from tiniscript.cli.texts.causes import said
-from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
+from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
 from tiniscript.doctor.robot import SILENT
@@ -45,6 +46,9 @@ PONG = PingReply(0, 0, b"")
 
 class Shared:
     """The connection of another tsc: its requests are answered with `replies`, or it is gone."""
+
+    robot = None
+    came = b""
 
     def __init__(self, *replies: Reply[Any]) -> None:
         self.replies = list(replies)
@@ -130,7 +134,7 @@ class Case:
 
         doors = Doors(self.system, open_wire, join, may_open, lambda name: "rfcomm" in name, share)
         question = Question(port, self.last, 9600, self.expected, 7, self.watch_ms, self.virtual)
-        return diagnosed(doors, question)
+        return diagnose(doors, question)
 
     def cause(self, port: str | None = CABLE) -> tuple[str, bool]:
         (finding,) = self.diagnosis(port).findings
@@ -332,6 +336,13 @@ def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) 
     assert [finding.cause for finding in diagnosis.findings] == [cause]
     assert diagnosis.is_opened and case.shared.is_closed
     assert case.opened == []
+
+
+def test_what_another_tsc_has_heard_of_a_board_that_is_not_ours(case: Case) -> None:
+    case.shared = Shared(Reply(LOST))
+    case.shared.came = FIRMATA
+    (finding,) = case.diagnosis().findings
+    assert (finding.cause, finding.values["said"]) == ("firmata", "StandardFirmata.ino 2.5")
 
 
 @pytest.mark.parametrize("answered", [0, 3, 12])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.support import foreign_boards as boards
 from tests.support.simulated_ends import (
     KIT,
     QUESTIONS,
@@ -18,10 +19,11 @@ from tests.support.simulated_ends import (
 )
 from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hm10
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
-from tiniscript.doctor.examination import Expected, examined
+from tiniscript.doctor.examination import Expected, examine
 from tiniscript.doctor.findings import Finding
-from tiniscript.doctor.line import Line, looked, readable
+from tiniscript.doctor.line import Line, diagnose_line
 from tiniscript.doctor.robot import WireRobot
+from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import (
     LINK_FAULTS,
     OWNED,
@@ -34,6 +36,9 @@ from tiniscript.link.messages import (
 )
 from tiniscript.robots import load
 
+# Those that say nothing after they have started.
+SAY_NOTHING = (boards.Esp32Board, boards.SilentPython, boards.DownloadBoard)
+RESTARTED = (115200, 57600)  # the speeds of bootloaders: there a board is heard when it starts
 NAMES = {load(name).kit.fingerprint: name for name in ("tinibot", "liner", "grabber")}
 SAVED_BY_NAME = {name: number for number, (name, _) in enumerate(SAVED)}
 MEGA = b"\x1b\x01\0\x01\x0e\x01\x14"  # the greeting of its bootloader
@@ -50,11 +55,19 @@ def found(
     """Return what is found; `its_key` is the id of the robot whose key the computer has."""
     wire = SimulatedWire(end, baud)
     expected = Expected(kit, "tinibot", NAMES.get, lambda robot: robot == its_key)
-    findings = looked(wire, Line(baud, is_radio, 4711), expected)
+    findings = diagnose_line(wire, Line(baud, is_radio, 4711), expected)
     if is_radio:
         assert {speed for speed, _ in wire.sent} == {baud}
         assert wire.restarts == 0
     return findings
+
+
+class WireEcho(Echo):
+    """TX on RX: what is sent comes back, whatever its speed is."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.is_bare = True
 
 
 def watched(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
@@ -63,7 +76,7 @@ def watched(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
     reply = robot.hello()
     assert reply is not None
     expected = Expected(KIT, "tinibot", NAMES.get)
-    return {finding.cause: finding for finding in examined(robot, reply, expected, watch_ms)}
+    return {finding.cause: finding for finding in examine(robot, reply, expected, watch_ms)}
 
 
 def only(end: OtherEnd, **how: object) -> tuple[str, bool]:
@@ -141,7 +154,7 @@ def test_a_report_tells_what_a_robot_can_do(features: int, said: str) -> None:
     robot = WireRobot(SimulatedWire(Firmware(features=features)), 4711, KIT)
     reply, noted = robot.hello(), dict[str, str]()
     assert reply is not None
-    list(examined(robot, reply, Expected(KIT, "tinibot", NAMES.get, note=noted.update), 0))
+    list(examine(robot, reply, Expected(KIT, "tinibot", NAMES.get, note=noted.update), 0))
     assert noted["features"] == said
 
 
@@ -248,7 +261,7 @@ def test_a_robot_at_another_speed_with_another_trouble() -> None:
 @pytest.mark.parametrize(
     ("end", "cause", "is_sure"),
     [
-        (Echo(), "echo", True),
+        (WireEcho(), "echo", True),
         (Sketch(), "other_sketch", True),
         (Sketch(115200), "other_sketch", True),
         (Hc05(), "module_set_up", True),
@@ -271,8 +284,8 @@ def test_on_a_cable(end: OtherEnd, cause: str, is_sure: bool) -> None:
 @pytest.mark.parametrize(
     ("end", "cause", "is_sure"),
     [
-        (Echo(), "echo", True),
-        (Sketch(), "other_sketch", False),
+        (Echo(), "echo", False),  # or a sketch: the radio has one speed
+        (Sketch(), "other_sketch", True),
         (Babble(), "module_baud", False),  # the module's wire garbles what the radio carries
         (Nobody(), "crossed", False),
     ],
@@ -281,17 +294,98 @@ def test_by_radio(end: OtherEnd, cause: str, is_sure: bool) -> None:
     assert only(end, is_radio=True) == (cause, is_sure)
 
 
+# -- boards that are not ours -------------------------------------------------------------------
+
+KINDS = [
+    (boards.FirmataBoard, "firmata", "StandardFirmata.ino 2.5"),
+    (boards.MbotBoard, "mbot", "06.01.009"),
+    (boards.SnekBoard, "snek", ""),
+    (boards.PythonBoard, "micropython", ""),
+    (boards.AtBoard, "at_firmware", "AT version:2.2.0.0"),
+    (boards.Esp32Board, "esp32", "rst:0x1 (POWERON_RESET)"),
+    (boards.SilentPython, "micropython", "MicroPython v1.20.0"),
+    (boards.BrownoutBoard, "esp32_brownout", "Brownout detector was triggered"),
+    (boards.DownloadBoard, "esp32_download", "DOWNLOAD(USB/UART0/1)"),
+    (boards.EmptyBoard, "esp32_empty", "invalid header"),
+    (boards.EchoSketch, "echo_sketch", ""),
+    (boards.LineEchoSketch, "echo_sketch", "You said:"),
+]
+
+
+@pytest.mark.parametrize("its_baud", [9600, 19200, 38400, 57600, 115200])
+@pytest.mark.parametrize(("kind", "cause", "said"), KINDS)
+def test_a_board_that_is_not_ours_on_a_cable(
+    kind: type[boards.Board], cause: str, said: str, its_baud: int
+) -> None:
+    """Whatever speed it has, and whatever speed a robot would have here."""
+    for baud in (9600, 115200):
+        (finding,) = found(kind(its_baud), baud=baud)
+        if kind in SAY_NOTHING and its_baud not in (baud, *RESTARTED):
+            assert finding.cause == "garbled", baud
+            continue
+        assert (finding.cause, finding.is_sure) == (cause, True), baud
+        assert said in finding.values["said"], baud
+
+
+@pytest.mark.parametrize(("kind", "cause", "said"), KINDS)
+def test_a_board_that_is_not_ours_by_radio(kind: type[boards.Board], cause: str, said: str) -> None:
+    """It was not restarted, so what it says when it starts is not heard."""
+    end = kind(9600)
+    end.now_ms = end._since_ms = 10_000
+    (finding,) = found(end, is_radio=True)
+    unheard = {
+        boards.EchoSketch: "echo", boards.AtBoard: "echo", boards.Esp32Board: "crossed",
+        boards.SilentPython: "crossed", boards.DownloadBoard: "crossed",
+    }  # fmt: skip
+    assert finding.cause == unheard.get(kind, cause)
+    assert finding.is_sure == (kind not in unheard)
+
+
+def test_a_robot_that_sends_and_hears_nothing() -> None:
+    """Its frames and lines are never those of a foreign board."""
+
+    class OneWay(Nobody):
+        said = b"// OK\r\n"
+
+        def answer(self, data: bytes) -> bytes:
+            return self.said if self.now_ms % 300 == 0 else b""
+
+    end = OneWay()
+    for said in (end.said, b"\0" + encoded(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
+        end.said = said
+        for is_radio in (False, True):
+            assert only(end, is_radio=is_radio) == ("one_way", False)
+
+
+@pytest.mark.parametrize("line", [
+    b"Distancia: 34 cm \xc2\xa1m\xc3\xa1s!\r\n", b"\x1b[0;32mI (71) boot: x\x1b[0m\r\n",
+    b"0\r\n", b"I received: 65\r\n", b"\xff\x00 Distance: 34 cm\r\n", b"a,b;c|",
+])  # fmt: skip
+def test_what_is_text_at_a_speed_is_not_a_wrong_one(line: bytes) -> None:
+    for baud in (9600, 57600):
+        end = Sketch(baud)
+        end.line = line
+        (finding,) = found(end)
+        assert finding.cause == "other_sketch", finding
+    (finding,) = found(end, baud=57600, is_radio=True)
+    assert finding.cause == "other_sketch", finding
+
+
+def test_a_text_of_a_board_that_is_probably_known_is_told_as_that() -> None:
+    end = Sketch()
+    end.line = boards.MBOT_START
+    assert only(end) == ("mbot", False)
+
+
 def test_what_a_sketch_prints_is_told_in_part_and_as_text() -> None:
     end = Sketch()
     end.line = b"x" * 300 + b"\r\n"
     (finding,) = found(end)
     assert finding.values["said"] == "x" * 60
-    assert readable(b"\x1b[2J\x07\x07\x07\x07") == ""
-    assert readable(b"ab") == ""
 
 
 def test_a_wire_that_is_gone_is_an_os_error() -> None:
     wire = SimulatedWire(Firmware())
     wire.close()
     with pytest.raises(OSError):
-        looked(wire, Line(9600, False, 1), Expected(None, "", NAMES.get))
+        diagnose_line(wire, Line(9600, False, 1), Expected(None, "", NAMES.get))

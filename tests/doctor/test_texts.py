@@ -11,6 +11,7 @@ from tests.support.texts import said as all_said
 from tiniscript.cli.robot.self_test import PARTS, SIDES
 from tiniscript.cli.texts.causes import label, said
 from tiniscript.doctor.findings import CAUSES, OK, Finding
+from tiniscript.link import foreign
 
 # The values of each cause that has some; the sentences may use no others.
 VALUES = {
@@ -18,7 +19,7 @@ VALUES = {
     "brltty": {"chip"}, "no_rfcomm": {"number"}, "no_permission": {"group"},
     "login_again": {"group"}, "busy": {"by"}, "other_tsc": {"verb", "theirs"},
     "port_broken": {"why"}, "module_set_up": {"baud", "module"}, "module_alone": {"baud", "module"},
-    "wrong_baud": {"baud", "expected"}, "module_baud": {"n"}, "other_sketch": {"said"},
+    "wrong_baud": {"baud", "expected"}, "module_baud": {"n"},
     "bootloader_only": {"board"}, "garbled": {"n"}, "firmware_older": {"theirs", "ours"},
     "firmware_newer": {"theirs", "ours"}, "wrong_kit": {"kit", "robot", "expected"},
     "unknown_kit": {"kit"}, "restarts": {"count", "reset"}, "motors_restart": {"count", "reset"},
@@ -46,7 +47,7 @@ def sentences(cause: str, *kinds: str) -> Iterator[str]:
             yield sentence
 
 
-@each_row("cause", [each for each in CAUSES if each not in OF_A_PART])
+@each_row("cause", [each for each in CAUSES if each not in (*OF_A_PART, *foreign.NAMES)])
 def test_a_cause_says_what_is_wrong_what_was_seen_and_what_to_do(cause: str) -> None:
     assert len([*sentences(cause, "found", "seen", "next")]) > 3
 
@@ -61,13 +62,31 @@ def test_what_came_of_a_part_says_what_to_do_if_it_is_not_right(cause: str) -> N
         assert bool(found.then) == (CAUSES[cause].verdict != OK)
 
 
+@each_row("cause", foreign.NAMES)
+def test_a_board_that_is_not_ours_says_what_it_is_what_was_seen_and_what_to_do(cause: str) -> None:
+    for language in ("en", "es", "pt"):
+        for heard in ("Distance: 34", ""):
+            sentences = said(Finding(cause, True, {"said": heard}), language)
+            assert all(sentences) and "{" not in "".join(sentences)
+            assert heard in sentences.seen or cause == foreign.ECHO
+        link = foreign.told(foreign.Foreign(cause, "a\x1bb", True), language)
+        assert "a?b" in link.said and link.advice == sentences.then
+
+
+def test_no_sentence_is_of_a_board_that_has_no_row() -> None:
+    named = {key.partition("/")[0] for key in all_said("en", "foreign")}
+    assert named == {*foreign.NAMES, "says"}
+
+
 def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
     known = {f"found_{cause}" for cause in CAUSES}
     known |= {f"next_{row.then or cause}" for cause, row in CAUSES.items()}
     known -= {f"next_{cause}" for cause in OF_A_PART}
     known |= {f"next_{CAUSES[cause].then}" for cause in OF_A_PART if CAUSES[cause].then}
     known |= {f"seen_{cause}" for cause in CAUSES if cause not in OF_A_PART}
-    known |= {"seen_busy_unknown", "seen_other_sketch_silent"}
+    for kind in ("found", "seen", "next"):  # those of other boards are in a catalogue of their own
+        known -= {f"{kind}_{cause}" for cause in foreign.NAMES}
+    known |= {"seen_busy_unknown", "seen_other_sketch_silent", "seen_foreign", "seen_echo_sketch"}
     known |= {"seen_restarts_once", "seen_motors_restart_once"}
     known |= {"seen_no_permission_other", "next_no_permission_other"}
     known |= {"seen_no_port_others", "next_no_port_others"}

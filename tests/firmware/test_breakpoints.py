@@ -192,7 +192,7 @@ def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
         assert it.until(lambda event: event.name == "STOPPED")
         expected = STATE_STOPPED
     elif way == "message":
-        session.halt(session.run or 0, robot.now_ms)
+        session.end_run(session.run or 0, robot.now_ms)
         it.talk(100)
         expected = STATE_STOPPED
     elif way == "lost":

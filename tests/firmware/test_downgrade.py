@@ -359,16 +359,17 @@ def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it() 
 
 def test_a_key_learns_that_its_robot_seals_from_the_robot_alone() -> None:
     end = End()
-    assert [key.seals for key in end.keys.found] == [True]  # from its claim
+    assert [key.uses_seals for key in end.keys.found] == [True]  # from its claim
     keys = Keys()
-    keys.found = [key._replace(seals=False) for key in end.keys.found]  # as older files have it
+    # as older files have it
+    keys.found = [key._replace(uses_seals=False) for key in end.keys.found]
     cut = Between(end, random.Random(1), OWNED, everything)
     session = end.session(50, keys)
     talk(cut, session, session.hello())
-    assert not keys.found[0].seals
+    assert not keys.found[0].uses_seals
     session = end.session(51, keys)
     honest(end, session, session.hello())
-    assert keys.found[0].seals
+    assert keys.found[0].uses_seals
 
 
 def either(ends: tuple[End, End, Stranger], seed: int) -> str:

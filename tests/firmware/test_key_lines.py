@@ -5,6 +5,8 @@ An Uno has no room for them: it reads them as any other line.
 
 from __future__ import annotations
 
+import random
+
 import pytest
 
 from tests.firmware.test_button_states import SmallRobot
@@ -35,6 +37,8 @@ WORDS = (
     ("key_a", A), ("  Key_A ;", A), ("KEY", Pressed()), ("PAD 30 -20", Pressed(0, 30, -20)),
     ("pad  -100   100", Pressed(0, -100, 100)), ("PAD 0 0", Pressed()),
 )  # fmt: skip
+ENDS = ("\n", "\r\n", "\r")
+BEFORE = (*ENDS, " \n", "\t\r\n")  # lines of nothing
 
 
 @pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
@@ -50,6 +54,29 @@ def test_a_line_holds_what_it_says_for_half_a_second(
     assert robot.remote() == readings(held)
     robot.wait(40)
     assert robot.remote() == NONE and robot.did == []
+
+
+@pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
+def test_any_blanks_around_its_words_and_any_line_ends_make_the_same_line(
+    kind: type[HostFirmware],
+) -> None:
+    rng = random.Random(1)
+    robot = booted(kind)
+    typed(robot, "KEY_LEFT\n")  # after which nothing is said of keys
+
+    def blanks(least: int = 0) -> str:
+        return "".join(rng.choices(" \t", k=rng.choice((least, 1, 2, 30))))
+
+    for _ in range(20):
+        for line, held in WORDS:
+            words = blanks(1).join(line.strip(" ;").split())
+            words = "".join(rng.choice((letter.lower(), letter)) for letter in words)
+            end = rng.choice(("", ";", " ;")) + blanks() + rng.choice(ENDS)
+            before = "".join(rng.choice(BEFORE) for _ in range(rng.randint(0, 3)))
+            text = before + blanks() + words + end
+            assert typed(robot, text, 20) == [], repr(text)
+            assert robot.remote() == readings(held), repr(text)
+            robot.wait(HOLD_MS)
 
 
 @pytest.mark.parametrize("line", [

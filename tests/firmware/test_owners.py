@@ -339,7 +339,7 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
     assert state_of(table, mine) == STATE_RUNNING
 
 
-# -- forgetting, text, making itself known --------------------------------------------------------
+# -- forgetting, text, identifying -----------------------------------------------------------------
 
 
 def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tiniscript import robots
-from tools.bench.firmware_stack import LEAST_FREE, measured
+from tools.bench.firmware_stack import LEAST_FREE, measure
 from tools.bench.stops import Busy, Place, sample
 from tools.uno import CYCLES_PER_MS
 
@@ -71,7 +71,7 @@ def test_the_sketch_leaves_stack_free(
     sketches: Callable[[str], Path],
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    stack = measured(sketches(environment), robots.load(robot), environment.partition("_")[0])
+    stack = measure(sketches(environment), robots.load(robot), environment.partition("_")[0])
     with capsys.disabled():
         print(f"\n  {stack.untouched} bytes untouched, {stack.least_free} at least", end=" ")
     assert stack.program > 100 and stack.interrupt > 20

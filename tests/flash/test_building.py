@@ -28,7 +28,7 @@ from tiniscript import robots
 from tiniscript.cli import firmware_build
 from tiniscript.cli.errors import CommandError
 from tiniscript.flash import building, ready
-from tiniscript.flash.building import COMPILING, FETCHING, Seen
+from tiniscript.flash.building import COMPILING, FETCHING, StepProgress
 from tiniscript.library import install_advice
 
 
@@ -60,7 +60,7 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
     with new_board(bootloader("uno")) as uno:
         done = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
         assert done.code == 0, done.err
-        assert "PlatformIO builds the firmware of mine for the uno" in done.err
+        assert "PlatformIO is building the firmware of mine for the uno" in done.err
         first = done.out.splitlines()[0]
         assert first.startswith("mine on the uno: ") and "read back and compared" in first
         info = process("doctor", "--json", "--port", uno.pty)
@@ -120,7 +120,7 @@ def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
     (folder / ready.name_of("tinibot", "nano", digest)).write_text(":00000001FF\n")
     rows = tsc(clone, "--list").out.splitlines()
     assert rows[:2] == [
-        "tinibot on uno: ready, 0 bytes", "tinibot on nano: is built when it is first written"
+        "tinibot on uno: ready, 0 bytes", "tinibot on nano: will be built the first time"
     ]  # fmt: skip
 
 
@@ -385,15 +385,15 @@ def test_a_package_without_sources_says_how_to_get_them(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("said", "seen"), [
     ("Processing uno (board: uno)\n", None),
-    ("Platform Manager: Installing atmelavr\n", Seen(FETCHING, 0, "atmelavr")),
+    ("Platform Manager: Installing atmelavr\n", StepProgress(FETCHING, 0, "atmelavr")),
     ("Tool Manager: Installing platformio/toolchain-atmelavr @ ~1.70300.0\nDownloading 0% 10%",
-     Seen(FETCHING, 10, "platformio/toolchain-atmelavr")),
+     StepProgress(FETCHING, 10, "platformio/toolchain-atmelavr")),
     ("Tool Manager: Installing a\nDownloading 100%\nTool Manager: Installing b\n",
-     Seen(FETCHING, 0, "b")),
-    ("Building in release mode\nCompiling a\nCompiling b\n", Seen(COMPILING, 20)),
-    ("Compiling a\n" * 50, Seen(COMPILING, 99)),
+     StepProgress(FETCHING, 0, "b")),
+    ("Building in release mode\nCompiling a\nCompiling b\n", StepProgress(COMPILING, 20)),
+    ("Compiling a\n" * 50, StepProgress(COMPILING, 99)),
 ])  # fmt: skip
-def test_how_far_it_is(said: str, seen: Seen | None) -> None:
+def test_how_far_it_is(said: str, seen: StepProgress | None) -> None:
     assert building.seen(said, 10) == seen
 
 
@@ -408,7 +408,7 @@ def test_all_sources_are_not_yet_all_of_it(tmp_path: Path, monkeypatch: pytest.M
         encoding="utf-8",
     )
     monkeypatch.setattr(building, "platformio", lambda: [sys.executable, str(script)])
-    sources, found = building.sources(), list[Seen]()
+    sources, found = building.sources(), list[StepProgress]()
     assert sources is not None
     with pytest.raises(building.CannotBuild):
         building.build(sources, robots.load("tinibot"), found.append)
@@ -455,4 +455,4 @@ def test_an_esp32_that_is_not_written_is_told(clone: Path, tmp_path: Path, code:
 
 
 def test_an_esp32_is_only_built_where_that_is_asked(clone: Path, tmp_path: Path) -> None:
-    written(clone, tmp_path, "--build", code=1).gives(0, out="its firmware builds")
+    written(clone, tmp_path, "--build", code=1).gives(0, out="the firmware is built.")

@@ -16,23 +16,23 @@ import pytest
 from tests.support.texts import in_all
 from tests.support.waiting import has_ended, until
 from tiniscript.flash import avrdude, children
-from tiniscript.flash.avrdude import Ended, Seen
+from tiniscript.flash.avrdude import Ended, StepProgress
 from tiniscript.flash.bootloaders import UNO
 
 WRITES = "import sys\nwhile True: sys.stdout.write({said!r}); sys.stdout.flush()\n"
 HALF = "Reading | ### |\\nWriting | " + "#" * 25
 
 
-def ended(folder: Path, body: str) -> tuple[Ended, list[Seen | None]]:
+def ended(folder: Path, body: str) -> tuple[Ended, list[StepProgress | None]]:
     """Let this avrdude write a firmware; return how it ended and what was seen of it.
 
     There is a file `seen` as soon as anything was.
     """
     program = folder / "avrdude.py"
     program.write_text(body, encoding="utf-8")
-    found: list[Seen | None] = []
+    found: list[StepProgress | None] = []
 
-    def look(seen: Seen | None) -> None:
+    def look(seen: StepProgress | None) -> None:
         found.append(seen)
         if seen:
             (folder / "seen").touch()
@@ -50,7 +50,7 @@ def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
     body = f'print("{HALF}", flush=True)\n' + waits + WRITES.format(said=" waiting\n")
     how, found = ended(tmp_path, body)
     assert how.how == avrdude.ENDLESS
-    assert Seen(avrdude.WRITING, 50) in found
+    assert StepProgress(avrdude.WRITING, 50) in found
 
 
 def test_one_that_says_a_little_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

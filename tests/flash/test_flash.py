@@ -28,7 +28,7 @@ from tiniscript.cli.commands import firmware as firmware_command
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import has_text
 from tiniscript.flash import avrdude, ready
-from tiniscript.flash.avrdude import Seen
+from tiniscript.flash.avrdude import StepProgress
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tiniscript.flash.ready import Ready
 from tiniscript.robots.profile import answered
@@ -170,7 +170,7 @@ def test_another_chip_is_refused(package: Path, tmp_path: Path) -> None:
 def test_a_memory_that_does_not_keep_it_is_seen(package: Path, tmp_path: Path) -> None:
     of = changed_optiboot(tmp_path, "__boot_page_write_short(", "(void)(")
     with new_board(of) as uno:
-        tsc(package, "--port", uno.pty).gives(3, "is not what was written")
+        tsc(package, "--port", uno.pty).gives(3, "does not contain what was written to it. Unplug")
 
 
 def test_a_port_in_use_is_said(package: Path) -> None:
@@ -219,7 +219,7 @@ def test_a_nano_is_tried_with_both_of_its_bootloaders(
 
 def test_half_a_firmware_is_said(package: Path, board: Uno, tmp_path: Path) -> None:
     body = f'{PROGRESS}\nprint("avrdude: programmer is not responding")\nsys.exit(1)'
-    tsc(package, "--port", board.pty, **fake(tmp_path, body)).gives(3, "half of its firmware")
+    tsc(package, "--port", board.pty, **fake(tmp_path, body)).gives(3, "its firmware is incomplete")
 
 
 def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
@@ -235,7 +235,7 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     terminal.until(r"\[#+\.+\]")  # it has read how far avrdude is
     terminal.interrupt()
     assert terminal.end() == 2
-    assert "half of its firmware" in " ".join(" ".join(terminal.whole()).split())
+    assert "board's firmware" in " ".join(" ".join(terminal.whole()).split())
     assert not Path(f"/proc/{told.read_text()}").exists()
 
 
@@ -246,15 +246,16 @@ def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
     """And nothing of that before: the board has what it had."""
 
     def write(*words: object) -> None:
-        look = cast("Callable[[Seen | None], None]", words[-1])
-        for progress in [None, None, *(Seen(avrdude.WRITING, 9 * k) for k in range(count)), None]:
+        look = cast("Callable[[StepProgress | None], None]", words[-1])
+        steps = (StepProgress(avrdude.WRITING, 9 * k) for k in range(count))
+        for progress in [None, None, *steps, None]:
             look(progress)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(avrdude, "write", write)
     firmware = Ready("tinibot", "uno", "0", Path("x.hex"))
     with pytest.raises((CommandError, KeyboardInterrupt)) as ended:
-        firmware_command._written(["x"], UNO, "x", firmware, "en")
+        firmware_command._write_firmware(["x"], UNO, "x", firmware, "en")
     assert getattr(ended.value, "key", None) == ("flash_stopped" if count else None)
 
 
@@ -277,15 +278,15 @@ def test_the_avrdude_of_another_program_is_found(
 ) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
-    assert avrdude.found() is None
+    assert avrdude.find_avrdude() is None
     program = tmp_path / place
     program.parent.mkdir(parents=True)
     program.touch(mode=0o755)
-    assert avrdude.found() is None  # without its settings it does nothing
+    assert avrdude.find_avrdude() is None  # without its settings it does nothing
     inside = program.parent.parent / "etc" if program.parent.name == "bin" else program.parent
     inside.mkdir(exist_ok=True)
     (inside / "avrdude.conf").touch()
-    assert avrdude.found() == [str(program), "-C", str(inside / "avrdude.conf")]
+    assert avrdude.find_avrdude() == [str(program), "-C", str(inside / "avrdude.conf")]
 
 
 @pytest.mark.parametrize(("how", "said"), [
@@ -373,13 +374,13 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
     ]  # fmt: skip
     for each in files:
         assert f"{each.title} on {each.board}: ready, {each.bytes:,} bytes" in done.out
-    assert "liner on nano: is built when it is first written" in done.out
+    assert "liner on nano: will be built the first time" in done.out
 
 
 @pytest.mark.parametrize(("words", "said"), [
     ([], "on which port"),
     (["--port", ""], "--port takes the name of a port"),
-    (["--port", "socket://localhost:1"], "is on a network or a radio"),
+    (["--port", "socket://localhost:1"], "is a network or radio port."),
     (["--port", "/dev/none"], "there is no port /dev/none"),
     (["--port", "x", "--chip", "teensy"], "uno, nano, nano-old or mega, not teensy"),
     (["--port", "x", "--robot", "grabber", "--chip", "uno"], "does not fit the board uno"),

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from tiniscript.flash import avrdude
-from tiniscript.flash.avrdude import MARKS, NOBODY_S, SILENCE_S, WHOLE_S, Ended, Seen
+from tiniscript.flash.avrdude import MARKS, NOBODY_S, SILENCE_S, WHOLE_S, Ended, StepProgress
 
 LOOK_S = 0.1
 MEGA_S = 50.0  # writing its 256 KB and reading them back
@@ -45,7 +45,7 @@ def watched(
     clock: Clock, parts: list[tuple[float, str]], until_s: float
 ) -> tuple[Ended | None, float]:
     """Return how the watch has ended it, or None, and when."""
-    seen: list[Seen | None] = []
+    seen: list[StepProgress | None] = []
     watch = avrdude._Watch(seen.append)
     began_s = clock.now_s
     while clock.now_s - began_s < until_s:

@@ -23,6 +23,7 @@ from tiniscript.base import languages
 from tiniscript.base.catalogue_source import UNKNOWN
 from tiniscript.base.languages import FOLDER, ITSELF, SOURCE
 from tiniscript.base.translations import read_language
+from tiniscript.base.words import WORDS
 from tiniscript.cli import main
 from tiniscript.cli.streams import wrapped
 from tiniscript.cli.texts import language_of
@@ -68,6 +69,14 @@ def test_a_language_is_in_step(language: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("language", ["es", "pt"])
 def test_a_whole_language_promises_to_be_complete(language: str) -> None:
     assert read_language(FOLDER / language / ITSELF).is_complete
+
+
+def test_what_messages_call_the_values_of_words_is_a_term() -> None:
+    """Else a message in another language has an English name in it; a letter is one in each."""
+    values = [argument for word in WORDS.values() for argument in word.arguments]
+    said = {each.name for each in values} | {each.unit for each in values if each.unit.islower()}
+    terms = {key for key, _ in SOURCES["messages"].entries}
+    assert {f"term/{each}" for each in said if len(each) > 1} <= terms
 
 
 def test_the_names_in_toml_files_are_translated() -> None:

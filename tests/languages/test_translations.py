@@ -502,6 +502,15 @@ def test_a_stranger_adds_a_language_text_by_text(
     assert "languages/fr/command.toml:2: no_verbe: there is no such English text\n" in out
 
 
+def test_what_is_missing_is_named_with_the_line_that_it_goes_after() -> None:
+    """That of the text before it in English; another order of the file changes nothing there."""
+    said = {"": "x"}
+    rows = [Entry("a", "A"), Entry("b", "B", said=said, line=7), Entry("c", "C", line=99),
+            Entry("d", "D", said=said, line=3), Entry("e", "E")]  # fmt: skip
+    found = [(line, what.partition(" ")[0]) for line, what in tool.missing(rows)]
+    assert found == [(1, "a"), (7, "c"), (3, "e")]
+
+
 @pytest.mark.parametrize("name", ["messages", "robot", "command"])
 def test_a_file_that_is_missing_is_named(
     name: str, place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]

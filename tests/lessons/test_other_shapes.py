@@ -95,7 +95,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "F(2.78, 80); W(2); B(2.78, 80)": "At the end the robot was 141 cm from the school",
         },
         "wrong": {
-            "F(3.7, 60); L(0.42, 60); F(3.7, 60); L(0.42, 60)": "At the end the robot looks 91 degrees too far to the left",
+            "F(3.7, 60); L(0.42, 60); F(3.7, 60); L(0.42, 60)": "At the end the robot faces 91 degrees too far to the left",
             "F(3.7, 60); L(0.42, 60)": "At the end the robot was 100 cm from the school",
         },
     },
@@ -110,7 +110,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "R(0.833, 60); LOOP(4); B(2.96, 60); L(0.417, 60); END_LOOP": "",
         },
         "rote": {
-            "LOOP(4); BEEP(0.1, 440); END_LOOP; F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60)": "The program has 4 moves that go ahead or back; 1 will do",
+            "LOOP(4); BEEP(0.1, 440); END_LOOP; F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60); L(0.417, 60); F(2.96, 60)": "The program has 4 moves forward or back, but needs only 1",
         },
         "wrong": {
             "LOOP(4); F(3.6, 60); L(0.417, 60); END_LOOP": "The robot went 17 cm past corner 1 before it stopped or turned",
@@ -126,11 +126,11 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF DIAG; L(0.2, 60); F(1.8, 60); B(1.8, 60); R(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(3); DIAG; END_LOOP": "",
         },
         "rote": {
-            "DEF HOP; W(0.1); END_DEF; HOP; HOP; HOP; LOOP(3); F(0.2, 60); BEEP(0.2, 440); B(0.2, 60); BEEP(0.2, 880); END_LOOP": "The robot does the task just as well without the word HOP",
+            "DEF HOP; W(0.1); END_DEF; HOP; HOP; HOP; LOOP(3); F(0.2, 60); BEEP(0.2, 440); B(0.2, 60); BEEP(0.2, 880); END_LOOP": "The program solves the task just as well without the word HOP",
         },
         "wrong": {
-            "DEF HOP; F(0.2, 60); B(0.2, 60); L(0.2, 60); R(0.2, 60); L(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(4); HOP; END_LOOP": "The program has 5 moves; 4 will do",
-            "DEF HOP; F(0.2, 60); B(0.2, 60); END_DEF; HOP; HOP; HOP; HOP": "The robot did not beep. Give it a sound: BEEP(0.2, 440)",
+            "DEF HOP; F(0.2, 60); B(0.2, 60); L(0.2, 60); R(0.2, 60); L(0.2, 60); BEEP(0.2, 440); BEEP(0.2, 880); END_DEF; LOOP(4); HOP; END_LOOP": "The program has 5 moves, but needs only 4",
+            "DEF HOP; F(0.2, 60); B(0.2, 60); END_DEF; HOP; HOP; HOP; HOP": "The robot did not beep. Add a sound: BEEP(0.2, 440)",
         },
     },
     6: {
@@ -144,7 +144,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         "wrong": {
             "SHOW(DISTANCE); F(6, 60); SHOW(DISTANCE); SHOW(DISTANCE)": "The robot touched the wall after 3.1 s",
             "SHOW(DISTANCE); F(0.3, 60); SHOW(DISTANCE); F(0.3, 60); SHOW(DISTANCE)": "The robot drove 16 cm; the task asks for at least 20 cm",
-            "SHOW(DISTANCE); SHOW(DISTANCE); SHOW(DISTANCE); F(1, 60)": "After it stops, the robot should show a value, but it does not",
+            "SHOW(DISTANCE); SHOW(DISTANCE); SHOW(DISTANCE); F(1, 60)": "After it stops, the robot should show a value, but does not",
         },
     },
     7: {
@@ -168,7 +168,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "F(2.59, 60); R(0.417, 60); SEEN = DISTANCE; L(0.417, 60); IF(SEEN < 60); L(0.417, 60); ELSE; R(0.417, 60); END_IF; F(2.4, 60)": "",
         },
         "rote": {
-            "SI|IF(DISTANCE < 30); BEEP(0.3, 220); ELSE; BEEP(0.3, 880); ENDIF": "The robot did not move. Give it a move with time and power: F(2, 80)",
+            "SI|IF(DISTANCE < 30); BEEP(0.3, 220); ELSE; BEEP(0.3, 880); ENDIF": "The robot did not move. Add a move with time and power: F(2, 80)",
         },
         "wrong": {
             "F(2.59, 60); R(0.417, 60); IF(DISTANCE < 60); L(0.833, 60); END_IF; F(1, 60)": "At the end the robot was 38 cm from the exit",
@@ -184,9 +184,9 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF PATROL; F(FOREVER, 60) UNTIL(DISTANCE < 20); R(0.42, 60); R(0.42, 60); END_DEF; LOOP(5); PATROL; END_LOOP": "",
         },
         "rote": {
-            "F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The program does not use LOOP. It helps here: LOOP(3) ... END_LOOP",
-            "LOOP(2); BEEP(0.1, 440); END_LOOP; F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The robot does the task just as well when each LOOP is done only once",
-            "LOOP(1); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); END_LOOP": "The LOOP of the program repeats nothing",
+            "F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The program does not use LOOP. Use it here: LOOP(3) ... END_LOOP",
+            "LOOP(2); BEEP(0.1, 440); END_LOOP; F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60)": "The program solves the task just as well if each LOOP runs only once.",
+            "LOOP(1); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); F(FOREVER, 60) UNTIL(DISTANCE < 25); R(0.833, 60); END_LOOP": "The program's LOOP repeats nothing.",
         },
     },
     10: {
@@ -198,11 +198,11 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "WHILE(LIGHT_L + LIGHT_R < 1800); D = LIGHT_L - LIGHT_R; M(40 - D / 4, 40 + D / 4); W(0.02); END_WHILE; S": "",
         },
         "rote": {
-            "SI|LOOP(100); DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE); W(0.05); END_LOOP": "The program ended when the lamp was still 53 cm away",
+            "SI|LOOP(100); DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE); W(0.05); END_LOOP": "The program ended while the lamp was still 53 cm away",
         },
         "wrong": {
             "DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE)": "here it ended before the robot could move",
-            "LOOP(FOREVER); D = (LIGHT_L - LIGHT_R) / 10; M(8 - D, 8 + D); W(0.05); END_LOOP": "After 25.0 s the time was over, and the robot was still on its way, 43 cm from the lamp",
+            "LOOP(FOREVER); D = (LIGHT_L - LIGHT_R) / 10; M(8 - D, 8 + D); W(0.05); END_LOOP": "When time ran out after 25.0 s, the robot was still on its way, 43 cm from the lamp",
         },
     },
     11: {
@@ -224,13 +224,13 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; LOOP(FOREVER); STRAIGHT; TO_LEFT; TO_RIGHT; IF(BUTTON); BREAK; ENDIF; END_LOOP; S; SHOW(TIME)": "",
         },
         "rote": {
-            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; STRAIGHT; S": "Is the question of UNTIL TRUE from the start?",
-            "DEF HOP; W(0.1) UNTIL(TRUE); END_DEF; HOP; WHILE(NOT BUTTON); M(30, 30); IF(LINE_L); M(0, 35); ENDIF; IF(LINE_R); M(35, 0); ENDIF; W(0.02); END_WHILE; S; SHOW(TIME)": "The robot does the task just as well without the word HOP",
+            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; STRAIGHT; S": "Is the condition of UNTIL TRUE from the start?",
+            "DEF HOP; W(0.1) UNTIL(TRUE); END_DEF; HOP; WHILE(NOT BUTTON); M(30, 30); IF(LINE_L); M(0, 35); ENDIF; IF(LINE_R); M(35, 0); ENDIF; W(0.02); END_WHILE; S; SHOW(TIME)": "The program solves the task just as well without the word HOP",
         },
         "wrong": {
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "The robot showed nothing. Write what it should show: SHOW(TIME)",
-            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; LOOP(FOREVER); STRAIGHT; TO_LEFT; TO_RIGHT; END_LOOP; SHOW(TIME)": "s the robot did more than 200000 things without a rest. Put W(0.05) into the loop.",
-            "SHOW(TIME); DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "After it stops, the robot should show a value, but it does not",
+            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; LOOP(FOREVER); STRAIGHT; TO_LEFT; TO_RIGHT; END_LOOP; SHOW(TIME)": "s the robot ran more than 200000 instructions without a pause. Put W(0.05) into the loop.",
+            "SHOW(TIME); DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "After it stops, the robot should show a value, but does not",
             "DEF WIG; L(0.05, 20); R(0.05, 20); END_DEF; LOOP(FOREVER); WIG; END_LOOP": "In 60.0 s the robot followed only 10 cm of the black line; the task asks for 240 cm",
         },
     },
@@ -241,7 +241,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "SI|LOOP(FOREVER); M(60, 60); W(0.5); END_LOOP\nWHEN(DISTANCE < 35); R(0.2, 60); END_WHEN\nTASK; LOOP(FOREVER); BEEP(0.1, 440); W(2); END_LOOP; END_TASK": "",
         },
         "wrong": {
-            "SI|W(1)\nWHEN(DISTANCE < 30); B(0.4, 60); R(0.5, 60); END_WHEN": "The robot did not move. Does the question of WHEN ever become TRUE? See what the robot reads: SHOW(DISTANCE)",
+            "SI|W(1)\nWHEN(DISTANCE < 30); B(0.4, 60); R(0.5, 60); END_WHEN": "The robot did not move. Does the condition of WHEN ever become TRUE? See what the robot reads: SHOW(DISTANCE)",
         },
     },
     14: {
@@ -252,7 +252,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "rote": {
             "SI|LOOP(3)\n  LED(TRUE); W(0.3)\n  LED(FALSE); W(0.3)\nEND_LOOP\nF(1, 60)": "The robot stopped 125 cm before the middle of the hospital. Make it go further.",
-            "SI|LOOP(13); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.19); END_LOOP; S; L(0.51, 60); LOOP(9); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.17); END_LOOP; S\nTASK; BEEP(0.1, 440); END_TASK": "The robot does the task just as well without the TASK. Let TASK do a part of the task.",
+            "SI|LOOP(13); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.19); END_LOOP; S; L(0.51, 60); LOOP(9); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.17); END_LOOP; S\nTASK; BEEP(0.1, 440); END_TASK": "The program solves the task just as well without the TASK. Use TASK for a part of the task.",
         },
         "wrong": {
             "SI|F(4, 60); L(0.51, 60); F(2, 60)\nTASK; LOOP(12); LED(TRUE); W(0.2); LED(FALSE); W(0.2); END_LOOP; END_TASK": "The robot stopped 40 cm before the middle of the hospital. Make it go further.",
@@ -307,11 +307,11 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF T(X, Y); M(X, Y); W(0.1); M(0, 0); END_DEF; LOOP(FOREVER); IF(KEY_UP); T(50, 50); END_IF; IF(KEY_DOWN); T(-50, -50); END_IF; IF(KEY_LEFT); T(-50, 50); END_IF; IF(KEY_RIGHT); T(50, -50); END_IF; IF(KEY_A); BEEP(0.2, 440); END_IF; W(0.02); END_LOOP": "",
         },
         "rote": {
-            "SI|W(1); F(1.5, 60); W(1); R(1, 40); W(1); F(1, 60); W(1); B(1, 60); W(1); BEEP(0.5, 440); W(1); L(0.5, 40)": "KEY_LEFT was held, and the robot did not turn to the left",
+            "SI|W(1); F(1.5, 60); W(1); R(1, 40); W(1); F(1, 60); W(1); B(1, 60); W(1); BEEP(0.5, 440); W(1); L(0.5, 40)": "KEY_LEFT was held down, but the robot did not turn to the left",
         },
         "wrong": {
-            "W(FOREVER) UNTIL(KEY_UP); F(5, 60)": "no key was held, and the robot moved all the same",
-            "W(FOREVER) UNTIL(KEY_UP); F(1, 60); W(FOREVER) UNTIL(KEY_DOWN); B(1, 60)": "KEY_RIGHT was held, and the robot did not turn to the right",
+            "W(FOREVER) UNTIL(KEY_UP); F(5, 60)": "no key was held down, but the robot still moved. Make",
+            "W(FOREVER) UNTIL(KEY_UP); F(1, 60); W(FOREVER) UNTIL(KEY_DOWN); B(1, 60)": "KEY_RIGHT was held down, but the robot did not turn to the right",
         },
     },
 }  # fmt: skip

@@ -33,11 +33,11 @@ CASES = [
     (HEAD, "The lesson has no criteria. Add one"),
     (HEAD + '[[criteria]]\nkind = "never_touch"\n', "Did you mean never_touches?"),
     (HEAD + '[[criteria]]\nkind = "flies"\n', "which is not a criterion. Write one of these: ends_in"),
-    (HEAD + TOUCH + "within_cm = 3\n", "criteria[1].within_cm means nothing in a lesson."),
+    (HEAD + TOUCH + "within_cm = 3\n", "criteria[1].within_cm has no meaning in a lesson."),
     (HEAD + '[[criteria]]\nkind = "ends_in"\n', 'criteria[1].at is missing. Add it, for example: at = "start"'),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = 5\n', "criteria[1].at is not a place."),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = []\n', "criteria[1].at is not a place."),
-    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "boxes[1]"\n', "world.toml has 0 of them"),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "boxes[1]"\n', "world.toml has only 0 of them"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "moon"\n', "Write start, or one of walls"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nwithin_cm = 900\n', "from 1 to 500"),
     (HEAD + '[[criteria]]\nkind = "follows"\nat_least_cm = 0\n', "from 1 to 10000"),
@@ -47,14 +47,14 @@ CASES = [
     (HEAD + '[[criteria]]\nkind = "order"\nwords = ["sings"]\n', "sings, which is not a known word"),
     (HEAD + '[[criteria]]\nkind = "shows"\nwhat = "LINE_L"\n', "Write one of these: LIGHT_R"),
     (HEAD + '[[criteria]]\nkind = "stands_before"\nlow_cm = 9\nhigh_cm = 5\n', "is larger than criteria[1].high_cm"),
-    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nx_cm = [5, -5]\n', "the first number is not the smaller one"),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nx_cm = [5, -5]\n', "must be smaller than the second."),
     (HEAD + '[[criteria]]\nkind = "reaches"\nat = "start"\nwhat = "TIME"\n', "Write one of these: LIGHT_R"),
     (HEAD + '[[criteria]]\nkind = "blinks"\n', 'what = "LED"'),
     (HEAD + '[[criteria]]\nkind = "blinks"\nwhat = "LED"\n', "Write one of these: -"),
     (HEAD + '[[criteria]]\nkind = "needs"\nwords = ["IF"]\n', "IF, which is not a known word"),
     (HEAD + '[[criteria]]\nkind = "moves"\nat_most = 1\nahead = 3\n', "criteria[1].ahead"),
-    (HEAD + TOUCH + '[[varies]]\npart = "walls[1]"\n', "world.toml has 0 of them"),
-    (HEAD + TOUCH + '[[varies]]\npart = "start"\nx_cm = [5, -5]\n', "the first number is not the smaller one"),
+    (HEAD + TOUCH + '[[varies]]\npart = "walls[1]"\n', "world.toml has only 0 of them"),
+    (HEAD + TOUCH + '[[varies]]\npart = "start"\nx_cm = [5, -5]\n', "must be smaller than the second."),
     (HEAD + TOUCH + '[[varies]]\npart = "start"\nheading = [-900, 5]\n', "from -360 to 360"),
     (HEAD + TOUCH * 101, "criteria has 101"),
     ("worlds = 99\n" + HEAD + TOUCH, "Write a number from 1 to 20."),
@@ -66,8 +66,8 @@ CASES = [
     (HEAD + TOUCH + PRESS.replace("_A", "_C"), "Write one of these: KEY_UP"),
     (HEAD + TOUCH + PRESS.replace("KEY_A", "PAD_X"), "Write one of these: KEY_UP"),
     (HEAD + TOUCH + PRESS.replace("= 2", "= 0"), "presses[1].seconds"),
-    (HEAD + TOUCH + PRESS + "x = 1\n", "presses[1].x means nothing in a lesson."),
-    ("x", "Line 1 is not TOML."),
+    (HEAD + TOUCH + PRESS + "x = 1\n", "presses[1].x has no meaning in a lesson."),
+    ("x", "Line 1 is not valid TOML."),
 ]  # fmt: skip
 
 
@@ -85,7 +85,7 @@ def test_all_complaints_come_at_once(folder: Path) -> None:
 
 def test_a_world_is_read_as_any_other(folder: Path) -> None:
     (folder / "world.toml").write_text(WORLD.replace("floor", "flor"), encoding="utf-8")
-    assert "flor means nothing" in " ".join(refused(folder, HEAD + TOUCH))
+    assert "flor has no meaning" in " ".join(refused(folder, HEAD + TOUCH))
 
 
 def test_answers_are_read_strictly(folder: Path) -> None:
@@ -104,7 +104,7 @@ def test_answers_are_read_strictly(folder: Path) -> None:
         ("key = 'stil'", "wrong[1].says.key has stil, which is not a known word"),
         ("key = 'touches/wall'", 'wrong[1].says.seconds is missing. Add it, for example: seconds = "…"'),
         ("key = 'touches/wall', seconds = 3", "says.seconds is a number. Write a text in quotes there"),
-        ("key = 'still', cm = '3'", "wrong[1].says.cm means nothing"),
+        ("key = 'still', cm = '3'", "wrong[1].says.cm has no meaning"),
     ],
 )  # fmt: skip
 def test_what_is_said_of_a_wrong_answer_is_a_sentence_of_the_checker(

@@ -39,8 +39,8 @@ class Place:
         self.tries = 0
         monkeypatch.setattr("tiniscript.library.opening.monotonic", lambda: self.now_s)
         monkeypatch.setattr("tiniscript.library.opening.sleep", self.pass_s)
-        monkeypatch.setattr(opening, "_resolved", self.resolved)
-        monkeypatch.setattr(opening, "_joined", lambda *_: None)
+        monkeypatch.setattr(opening, "_resolve_address", self.resolved)
+        monkeypatch.setattr(opening, "_join_shared", lambda *_: None)
         monkeypatch.setattr(opening, "_claimed", lambda *_: None)
         monkeypatch.setattr(opening, "_opened_line", self.opened)
 
@@ -214,7 +214,7 @@ def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
         thread = Thread(target=serves, daemon=True)
         thread.start()
         try:
-            found: object = opening._joined(ADDRESS, "upload", 115_200, "en")
+            found: object = opening._join_shared(ADDRESS, "upload", 115_200, "en")
             assert found is None and not reason
         except RobotError as failure:
             assert failure.reason == reason

@@ -234,7 +234,7 @@ def test_wrong_use_is_an_error_with_a_sentence(reason: str) -> None:
     assert str(raised.value).endswith((".", "]"))
     assert "{" not in str(raised.value)
     if reason == "bad_choice":
-        assert str(raised.value) == "machine is python or cpp, not 'perl'."
+        assert str(raised.value) == "machine must be python or cpp, not 'perl'."
 
 
 @pytest.mark.parametrize(

@@ -464,7 +464,7 @@ def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch
     """Its sentence says which ones there are; its reason is the one that the documents name."""
     from tiniscript.link import ports
 
-    for listed in ([], [ports.Found("/dev/other", "")]):
+    for listed in ([], [ports.ListedPort("/dev/other", "")]):
         monkeypatch.setattr(ports, "listed", lambda listed=listed: listed)
         with fails(tiniscript.RobotError, "port_missing") as raised:
             tiniscript.connect("/dev/none-here")
@@ -475,7 +475,7 @@ def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch
 def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
     pty_robot: PtyRobot, watches: bool
 ) -> None:
-    """A thread holds the port until that has ended."""
+    """A thread holds the port until the other has ended.."""
     robot = tiniscript.connect(pty_robot.port)
     robot.upload(FOREVER)
     other = Command("upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", pty_robot.port)
@@ -484,7 +484,7 @@ def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
     if watches:
         with fails(tiniscript.RobotError, "replaced"):
             robot.wait()
-    with pytest.warns(RuntimeWarning, match="holds the port until that has ended"):
+    with pytest.warns(RuntimeWarning, match="holds the port until the other has ended."):
         robot.close()
     robot.close()  # does nothing
     began_ms = pty_robot.robot_ms

@@ -111,7 +111,7 @@ def test_two_at_once_take_turns(ble: BleRobot) -> None:
     done = [command.ended() for command in both]
     assert 0 in [each.code for each in done]
     for each in done:
-        assert each.code == 0 or "another program is using" in each.err or "in reach" in each.err
+        assert each.code == 0 or "another program is using" in each.err or "in range" in each.err
 
 
 def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) -> None:
@@ -198,7 +198,7 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
         row["port"]: row["said"]
         for row in json.loads(inside("doctor", "--ports", "--ask", "--json").out)
     }
-    assert (said[NAME], said["ble://yesterday"]) == ("robot tinibot (free)", "out of reach now")
+    assert (said[NAME], said["ble://yesterday"]) == ("robot tinibot (free)", "out of range now")
     assert PLACE not in said
 
 
@@ -228,7 +228,7 @@ def test_what_is_no_robot_is_said(bluez: FakeBluez, monkeypatch: pytest.MonkeyPa
 def test_nobody_is_in_reach(ble: BleRobot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.SEARCH_S", 3.0)
     inside("doctor", "--identify", "--port", "ble://nobody").gives(
-        3, "no ble://nobody is in reach", "In reach: Tini 1"
+        3, "ble://nobody is not in range", "In range: Tini 1"
     )
     ble.is_on = False
     inside("doctor", "--identify", "--port", NAME, "--lang", "es").gives(

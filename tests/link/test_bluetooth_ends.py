@@ -59,7 +59,7 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     ble.parts_after = len(ble.heard) + heard
     done = inside("upload", "-e", LONG, "--port", PLACE)
     assert done.code == 3
-    assert f"the Bluetooth connection to {PLACE} has ended" in done.err
+    assert f"lost the Bluetooth connection to {PLACE}" in done.err
     ble.parts_after = None
     stops_by_itself(ble)
     ours = tmp_path / "ours.bin"
@@ -74,7 +74,7 @@ def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
 ) -> None:
     command = uploading(ble)
     bluez.part(ble)
-    command.ended().gives(3, f"the Bluetooth connection to {PLACE} has ended")
+    command.ended().gives(3, f"lost the Bluetooth connection to {PLACE}")
     stops_by_itself(ble)
     assert inside("upload", "-e", DRIVE, "--port", NAME).code == 0
     port = ports.opened(PLACE, 9600)
@@ -132,9 +132,9 @@ def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.parametrize(("has_bluez", "has_adapter", "said"), [
-    (False, False, ("the Bluetooth service of this computer does not run",
+    (False, False, ("this computer's Bluetooth service is not running.",
                     "el servicio de Bluetooth de esta computadora no está en marcha")),
-    (True, False, ("the Bluetooth of this computer is off",
+    (True, False, ("Bluetooth is off on this computer",
                    "el Bluetooth de esta computadora está apagado")),
 ])  # fmt: skip
 def test_a_computer_without_bluetooth(

@@ -34,7 +34,7 @@ def school(tmp_path: Path) -> Iterator[Mosquitto]:
     """A broker that knows thirty robots of the class 3b."""
     mosquitto = Mosquitto(tmp_path, "robots", "word")
     robots = [
-        {"topic": f"{broker.ROOT}/3b/{k:08x}", "payload": f"+R{k}", "retain": True}
+        {"topic": f"{broker.ROOT}/3b/{k:08x}", "payload": f"+R{k}", "qos": 1, "retain": True}
         for k in range(ROBOTS)
     ]
     paho.multiple(

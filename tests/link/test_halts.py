@@ -49,7 +49,7 @@ def test_its_run_ends_and_what_others_want_is_done(wanted: Ask | None, after_ms:
     session, robot, run = driving()
     request = wanted(session) if wanted else None
     robot.talk(session, after_ms)
-    session.halt(run, robot.now_ms)
+    session.end_run(run, robot.now_ms)
     began_ms = robot.now_ms
     if request is not None:
         assert robot.until(session, request) == OK
@@ -67,7 +67,7 @@ def test_its_run_ends_and_what_others_want_is_done(wanted: Ask | None, after_ms:
 def test_a_run_of_another_goes_on() -> None:
     session, robot, run = driving()
     assert robot.until(session, session.upload(DRIVES, saves=False)) == OK
-    session.halt(run, robot.now_ms)
+    session.end_run(run, robot.now_ms)
     robot.talk(session, 1000)
     assert moves(robot) and session.run != run
 
@@ -118,7 +118,7 @@ def test_a_program_that_was_sent_before_is_saved_all_the_same() -> None:
     session, robot = greeted()
     assert robot.until(session, session.upload(DRIVES)) == OK
     assert session.run is not None
-    session.halt(session.run, robot.now_ms)
+    session.end_run(session.run, robot.now_ms)
     robot.talk(session, 3000)
     status = session.status()
     assert robot.until(session, status) == OK

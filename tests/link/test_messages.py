@@ -48,7 +48,7 @@ def test_numbers_are_used_once_and_leave_the_bits_alone() -> None:
     lower = [number for number, _ in (*REFUSALS.values(), *RULES.values())]
     assert max(lower) < FIRST_STATUS
     for message in MESSAGES:
-        assert message.acts == (FIRST_ACTING <= message.number < FIRST_EVENT)
+        assert message.is_action == (FIRST_ACTING <= message.number < FIRST_EVENT)
 
 
 def test_no_request_is_or_ends_a_line() -> None:
@@ -74,7 +74,7 @@ def test_every_payload_fits_a_frame() -> None:
     large = payload_bytes(LARGE_FRAME)
     for message in MESSAGES:
         for fields, before in ((message.request, 0), (message.reply, message.number < FIRST_EVENT)):
-            fills = any(field.fills for field in fields)
+            fills = any(field.fills_frame for field in fields)
             most = before + sizes(fields)[1]
             assert most == large if fills else most <= PAYLOAD_BYTES, message.name
     assert PAYLOAD_BYTES - MODE_BYTES == SHORT_BYTES == 55

@@ -197,7 +197,7 @@ def test_two_robots_of_one_name_are_not_announced(tini: Robot) -> None:
 def test_an_address_outside_is_not_called(address: str) -> None:
     with announced(f"bait-{HERE}", address, 7007):
         done = inside("doctor", "--identify", "--port", f"tcp://bait-{HERE}")
-        said = f"an address that is not in this network ({address})"
+        said = f"an address outside this network ({address})"
         assert (done.code, said in done.err) == (3, True)
 
 
@@ -266,7 +266,7 @@ def test_without_multicast_the_address_is_the_next_step(
         raise OSError(101, "Network is unreachable")
 
     monkeypatch.setattr(network, "Zeroconf", fail)
-    for language, said in (("en", "reaches no network with multicast"),
+    for language, said in (("en", "is not on a network with multicast"),
                            ("es", "no llega a ninguna red con multicast")):  # fmt: skip
         tsc("doctor", "--identify", "--port", "tcp://tini", "--lang", language).gives(
             3, said, "socket://HOST"

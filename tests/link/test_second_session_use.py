@@ -49,6 +49,9 @@ class Said(NamedTuple):
 def first(rng: random.Random) -> Wire:
     """Return both ends when the first story is over."""
     wire = Wire(rng)
+    if rng.random() < 0.7:  # it is open, and heartbeats go on
+        wire.session.hello()
+        wire.turns(300)
     for _ in range(rng.randint(1, 4)):
         for _ in range(rng.randint(0, 3)):
             rng.choice(ACTING if rng.random() < 0.6 else OTHERS)(wire.session)
@@ -64,15 +67,24 @@ def first(rng: random.Random) -> Wire:
 
 def happens(rng: random.Random, wire: Wire) -> None:
     # A STOP of who has said no HELLO may bear a number that is ahead of ours: not "a message".
-    how = rng.choice(("zeros", "the button", "the cable", "its own stop", "a reset", "a silence"))
+    how = rng.choice(("zeros", "the button", "the cable", "its own stop", "a reset", "a silence",
+                      "a dead line", "a dead line"))  # fmt: skip
     if how in STOPS:
         wire.turn(STOPS[how](wire.robot, wire.session))
     elif how == "its own stop":
         wire.session.stop(wire.robot.now_ms)
     elif how == "a silence":
         wire.robot.wait(rng.choice((400, 4000)))
+    elif how == "a dead line":  # mostly for so long that the robot is given up
+        for _ in range(rng.choice((40, 400, 1200))):
+            wire.session.poll(wire.robot.now_ms)
+            wire.robot.wait(10)
     elif how == "a reset":
-        fresh = HostFirmware(TINIBOT, wire.robot.memory(), seed=rng.getrandbits(32) | 1)
+        # Its epoch is the seed's last byte: after one reset of 256 the same as before, and then a
+        # lost stop cannot be told from one that has come since, so what is asked for is STALE.
+        epoch = wire.session._epoch + 128 & 0xFF
+        seed = (rng.getrandbits(24) | 1) << 8 | epoch
+        fresh = HostFirmware(TINIBOT, wire.robot.memory(), seed=seed)
         fresh.now_ms = wire.robot.now_ms
         fresh.wait(200)
         wire.robot = fresh
@@ -98,6 +110,8 @@ def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
         began_ms = robot.now_ms
         if rng.random() < 0.3:
             session.stop(robot.now_ms)
+        elif rng.random() < 0.3 and session.is_running:  # one that stands was stopped before
+            session.receive(robot.step(bytes(4)), robot.now_ms)  # somebody else
         robot.talk(session, rng.choice((5, 700)))
         what += [str(event) for event in session.events() if not isinstance(event, MissedEvent)]
     robot.talk(session, 1500)

@@ -14,13 +14,13 @@ from tests.support.simulated_wire import SimulatedWire
 from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS
 from tiniscript.link.modules.set_up import Outcome, Wanted
-from tiniscript.link.modules.talk import Module, found
+from tiniscript.link.modules.talk import Module, find_module
 
 of_each = pytest.mark.parametrize("kind", KINDS)
 
 
 def met(wire: SimulatedWire) -> Module:
-    module = found(wire)
+    module = find_module(wire)
     assert module is not None
     return module
 
@@ -113,10 +113,10 @@ def test_nobody_and_a_wire_that_only_echoes_are_no_module() -> None:
         def restart(self) -> None:
             """Nobody is there."""
 
-    assert found(SimulatedWire(Echo())) is None
+    assert find_module(SimulatedWire(Echo())) is None
     end = Hc06()
     end.is_on = False
-    assert found(SimulatedWire(end)) is None
+    assert find_module(SimulatedWire(end)) is None
 
 
 def test_every_dialect_has_a_simulated_module() -> None:
@@ -173,7 +173,7 @@ def test_a_module_that_sleeps_is_woken() -> None:
     end = Hm10()
     end.is_asleep = True
     wire = SimulatedWire(end)
-    assert found(wire, wakes=False) is None
+    assert find_module(wire, wakes=False) is None
     assert met(wire).dialect.name == "HM-10"
 
 

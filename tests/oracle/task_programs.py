@@ -201,3 +201,48 @@ def rival_program(rng: random.Random) -> tuple[str, dict[str, list[int]]]:
     distances = [1000 * rng.choice((5, 9, 50, 50, 50)) for _ in range(40)]
     lights = [1000 * rng.choice((0, 0, 600)) for _ in range(40)]
     return text, {"DISTANCE": distances, "LIGHT_L": lights}
+
+
+class SharedAuthor(TaskAuthor):
+    """Writes programs whose tasks share DEFs with values, which call each other."""
+
+    def program(self) -> str:
+        """1 to 4 DEFs, each with names of the same few, and 1 to 4 tasks that reach them."""
+        rng = self.rng
+        for number in range(rng.randint(1, 4)):
+            name = f"D{number}"
+            self.own = rng.sample(("V", "U", "T", YES_NO), rng.choice((0, 1, 1, 2, 2, 3, 4)))
+            brackets = f"({', '.join(self.own)})" if self.own else rng.choice(("", "()"))
+            self.lines.append(f"DEF {name}{brackets}")
+            for _ in range(rng.randint(1, 3)):
+                self.instruction(DEPTH - 1)
+            if self.defs and rng.random() < 0.6:
+                self.lines.append(self.call(rng.choice(list(self.defs))))
+            if self.own and rng.random() < 0.7:
+                self.lines.append(f"SHOW({rng.choice(self.own)})")
+            self.lines.append("END_DEF")
+            self.defs[name], self.own = self.own, []
+            if YES_NO in self.defs[name]:  # the first call says what it is
+                self.lines += ["IF(FALSE)", self.call(name), "ENDIF"]
+        for _ in range(rng.choice((1, 1, 2, 2, 3, 4))):
+            self.task()
+        self.body(rng.randint(0, 1), 0)
+        self.lines.append(self.call(rng.choice(list(self.defs))))
+        return ";".join(self.lines)
+
+    def body(self, count: int, depth: int) -> None:
+        super().body(count, depth)
+        if depth == 0 and self.rng.random() < 0.8:
+            self.lines.append(self.call(self.rng.choice(list(self.defs))))
+
+
+def shared_program(rng: random.Random) -> tuple[str, dict[str, list[int]]]:
+    """A program whose DEFs have values, and the readings of its sensors in thousandths."""
+    text = SharedAuthor(rng).program()
+    readings = {
+        "DISTANCE": [1000 * rng.choice((5, 9, 50)) for _ in range(rng.randint(0, 12))],
+        "LIGHT_L": [1000 * rng.choice((0, 600)) for _ in range(rng.randint(0, 4))],
+        "KEY_A": [rng.randint(0, 1) for _ in range(rng.randint(0, 6))],
+        "PAD_X": [1000 * rng.choice((-100, 0, 3)) for _ in range(rng.randint(0, 4))],
+    }
+    return text, readings

@@ -31,7 +31,7 @@ KNOWN: tuple[Known, ...] = (
           "self._line.withdraw(request.pending)", "pass",
           "tests/sharing/test_run_owners.py::test_what_a_client_that_leaves_has_asked_for_is_withdrawn"),
     Known("the page that asked last", "compiler/tiniscript/studio/serving.py",
-          "found = self._connections.pop(client, None)", "found = self._connections.get(client)",
+          "result = self._connections.pop(client, None)", "result = self._connections.get(client)",
           "tests/studio/test_serving_robots.py::test_the_page_that_has_asked_last_is_kept"),
     Known("a lamp behind", "compiler/tiniscript/virtual/sensing.py",
           "max(0.0, math.cos(angle))", "math.cos(angle)",

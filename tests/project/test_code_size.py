@@ -8,7 +8,7 @@ from tools.bench.compiler import PROGRAMS
 
 
 def test_a_statement_takes_a_fifth_less_than_in_instruction_set_1() -> None:
-    measured = code_size.measured()
+    measured = code_size.measure()
     assert measured.programs >= 50
     assert measured.per_statement <= 0.8 * code_size.BEFORE / code_size.STATEMENTS
 
@@ -20,6 +20,6 @@ def test_the_papers_programs() -> None:
 
 def test_the_programs_of_the_documents_use_what_the_set_has_for_them() -> None:
     """A family that no program of the documents needs would not be worth its codes."""
-    families = {name.rpartition("_")[0] for name in code_size.measured().opcodes}
+    families = {name.rpartition("_")[0] for name in code_size.measure().opcodes}
     short = {"PUSH_NUM", "PUSH_VAR", "SET_VAR", "PUSH_SENSOR", "PUSH_READ", "READ", "SET"}
     assert short | {"IF8", "UNTIL8", "UNTIL16", "IF_VAR8"} <= families

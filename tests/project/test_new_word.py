@@ -150,7 +150,7 @@ def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
     assert formatted(Source(PROGRAM.lower())) == PROGRAM
     form = read(PROGRAM, KIT)
     horn = form.body[0].bodies[0][0]
-    assert (horn.kind, horn.word, horn.values) == ("fixed", HORN.text, ())
+    assert (horn.kind, horn.word, horn.values) == ("plain", HORN.text, ())
     assert print_blocks(form).text == PROGRAM
     compiled = compile_text(PROGRAM, KIT)
     assert compiled.program is not None
@@ -203,11 +203,11 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) ->
         text=True,
     )
     blocks, labels, tables, (body, printed) = json.loads(ran.stdout)
-    assert HORN.text in blocks["kinds"]["fixed"]["words"]
-    assert WIGGLE.text in blocks["kinds"]["fixed_1"]["words"]
-    assert blocks["says"]["fixed_1"] == "%1 %2"
+    assert HORN.text in blocks["kinds"]["plain"]["words"]
+    assert WIGGLE.text in blocks["kinds"]["plain_1"]["words"]
+    assert blocks["says"]["plain_1"] == "%1 %2"
     value = [["NAME", "X"], ["NUMBER", "2"], ["ADD", ""]]
-    assert body == [["fixed_1", WIGGLE.text, [value]]]
+    assert body == [["plain_1", WIGGLE.text, [value]]]
     assert printed == "SI|WIGGLE(X + 2)\n"
     own = "{CHIME} CHIME = BEEP(0.5, 440)"  # the catalogue has nothing to say of it
     assert labels == [*(f"{{{HORN.text}}} {says}" for says in SAID.values()), own]
@@ -216,6 +216,54 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) ->
         assert f"// {word}" in packed and f"// {word}" not in rows
     (times,) = WIGGLE.arguments  # no robot reads the word
     assert text_tables.bytes_of_table(packed_range(times.low, times.high)) not in ranges
+
+
+# The same of a word with a role of its own, of which no stage but the table of words knows.
+OWN_ROLE = """
+import sys
+from pathlib import Path
+from tests.support.new_word import LAMP, with_texts
+from tiniscript.base import languages
+languages.FOLDER = with_texts(Path(sys.argv[1]))
+from tiniscript.base.words import WORDS
+WORDS[LAMP.text] = LAMP
+import json
+from tiniscript import robots
+from tiniscript.robots.text_levels import LEVELS
+from tiniscript.studio import block_kinds
+from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_reading import read
+from tools.generate import documents, poster, text_tables
+form = read("SI|LAMP(50)", robots.load("tinibot").kit)
+lines = [line.text for line in poster.page("es") if isinstance(line, poster.Line)]
+print(json.dumps({
+    "lacked": [LAMP.text in level.lacks for level in LEVELS.values()],
+    "tables": text_tables.words_tables("a test"),
+    "block": [form.body[0].kind, print_blocks(form).text, block_kinds.SAYS[LAMP.text]],
+    "says": lines[lines.index(LAMP.example) + 1],
+    "reference": documents.language_document("docs/es/language.md", "es"),
+}))
+"""
+
+
+def test_what_needs_no_more_than_the_table_has_a_word_with_a_role_of_its_own(
+    tmp_path: Path,
+) -> None:
+    """No robot's reader knows it; it has a block, and a place on the poster and in references."""
+    ran = subprocess.run(
+        [sys.executable, "-c", OWN_ROLE, str(tmp_path / "said")],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    found = json.loads(ran.stdout)
+    assert all(found["lacked"])
+    packed, rows, _ = found["tables"].split("tini_progmem = {")[1:]
+    assert "// LAMP" in packed and "// LAMP" not in rows
+    assert found["block"] == ["plain_1", "SI|LAMP(50)\n", "{LAMP} LAMP"]
+    assert found["says"] == SAID["es"]
+    assert f"\n- Otras instrucciones: `LAMP(POWER)` {SAID['es']}\n" in found["reference"]
 
 
 @pytest.mark.parametrize(("language", "says"), SAID.items())

@@ -234,7 +234,7 @@ def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, pa
         packed.extractall(tmp_path / "made")
     version = python("-m", "tiniscript", "--version", "--lang", "en", folder=tmp_path,
                      PYTHONPATH=str(tmp_path / "made"))  # fmt: skip
-    assert "without ready firmware" in version.stdout
+    assert "without prebuilt firmware" in version.stdout
     assert ("without the page" in version.stdout) == (page == "none")
 
 

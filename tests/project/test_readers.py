@@ -15,7 +15,7 @@ def test_the_readers_that_ask_what_was_meant_are_there() -> None:
 def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:
     readers.main(["SI|REPEAT 4;F(1, 50);END"])
     first, *rest = capsys.readouterr().out.splitlines()
-    assert first == "SI|REPEAT 4;F(1, 50);END: meant_surely"
+    assert first == "SI|REPEAT 4;F(1, 50);END: sure_findings"
     assert any("->  LOOP ( 4 ) ; F ( 1 , 50 )" in line for line in rest)
     assert "    by the row of repite 4: ⏎ F(1, 60) => LOOP(4) ⏎ F(1, 60) ⏎ END_LOOP" in rest
     assert rest[-1] == "TS023 {'found': 'END', 'right': 'END_LOOP'} made"
@@ -26,9 +26,9 @@ def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:
     [
         ("F(2, 80)", []),
         ("1. F(2, 80)", ["1. F(2, 80): labels", "TS054 {'found': '1.'} made"]),
-        ("W(2×3)", ["W(2×3): meant_surely", "    by the row of W(2×3) => W(2*3)"]),
+        ("W(2×3)", ["W(2×3): sure_findings", "    by the row of W(2×3) => W(2*3)"]),
         ("avanza 2 segundos", ["    by no row (slots.py, or a sign: lines.py)"]),
-        ("F(2, 80", ["F(2, 80: meant_surely"]),
+        ("F(2, 80", ["F(2, 80: sure_findings"]),
         ("W(1); XYZZY", ["W(1); XYZZY: no reader, so usage.py says what it knows of the mistake"]),
     ],
 )

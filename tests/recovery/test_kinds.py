@@ -280,7 +280,7 @@ def test_named_values_of_a_def_stand_in_its_order(call: str, right: str, between
 @pytest.mark.parametrize("text", ["SEMPRE; F(1, 60); {}", "W(1)\nSIEMPRE\nF(1, 60)\n{}\n"])
 def test_an_end_that_ends_a_block_is_no_word_too_many(text: str, end: str) -> None:
     assert not any("not needed" in each for each in messages(f"SI|{text.format(end)}"))
-    assert "The word THEN is not needed here." in messages("IF(DISTANCE < 9) THEN;S;ENDIF")
+    assert "THEN is not needed here." in messages("IF(DISTANCE < 9) THEN;S;ENDIF")
 
 
 @pytest.mark.parametrize("sign", ["**", "^", " ** ", " ^"])

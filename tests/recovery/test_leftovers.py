@@ -24,7 +24,7 @@ def test_words_after_an_order_without_values_are_taken_out(
 ) -> None:
     wrong = place.format(f"{order} {words}")
     (found,) = [each for each in check(wrong) if each.is_mistake]
-    assert message(found, Source(wrong), "en").fix == f"Take out {words}"
+    assert message(found, Source(wrong), "en").fix == f"Remove {words}"
     assert applied(wrong, edits_of(found) or []) == place.format(order)
     assert fixed(wrong, check).text == wrong
 
@@ -64,7 +64,7 @@ def test_a_second_start_behind_an_instruction_is_a_separator(
 def test_a_task_that_is_called_has_no_name_and_begins_by_itself(between: str) -> None:
     wrong = between.join(("SI|TASK siren", "BEEP(1, 440)", "END_TASK", "START siren", "F(4, 70)"))
     said = [message(each, Source(wrong), "en").fix for each in check(wrong)]
-    assert said == ["TASK", "Take out siren"]
+    assert said == ["TASK", "Remove siren"]
 
 
 @pytest.mark.parametrize("word", ["Fim", "FIM.", "Fin;", "end", "End."])

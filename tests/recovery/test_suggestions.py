@@ -39,14 +39,14 @@ def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
 def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
     """Each row of what was found is the one that tells its example, and none is in vain."""
     telling: list[Row] = []
-    told = usage.Found.told
+    told = usage.Usage.told
 
-    def noted(place: usage.Found, row: Row, gaps: Gaps) -> Diagnostic:
+    def noted(place: usage.Usage, row: Row, gaps: Gaps) -> Diagnostic:
         telling.append(row)
         return told(place, row, gaps)
 
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(usage.Found, "told", noted)
+        patched.setattr(usage.Usage, "told", noted)
         for row in rows():
             check.cache_clear()
             telling.clear()

@@ -260,7 +260,9 @@ def test_a_missing_table_is_one_complaint() -> None:
 def test_a_lamp_cannot_be_held() -> None:
     refused = refusal(edited("grabber", "pin = 30", 'pin = 30\nat_stop = "hold"'))
     assert codes(refused) == ["at_stop_of_no_servo"]
-    assert describe(refused, "en")[0].endswith("Take the line out; only a servo can hold on.")
+    assert describe(refused, "en")[0].endswith(
+        "Remove the line; only a servo can keep its position."
+    )
     assert "Quita esa línea" in describe(refused, "es")[0]
 
 
@@ -285,7 +287,7 @@ def test_a_refusal_says_what_to_do() -> None:
         ("tinibot", "length_cm", "lenght_cm", ["Did you mean length_cm?"]),
         ("tinibot", "left_pwm = 5", "left_pvm = 5", ["Did you mean left_pwm?"]),
         ("tinibot", 'name = "DISTANCE"', 'name = "F"', ["a word of TiniScript"]),
-        ("tinibot", 'name = "DISTANCE"', 'name = "AÑO"', ["no accents or ñ"]),
+        ("tinibot", 'name = "DISTANCE"', 'name = "AÑO"', ["without accents or ñ."]),
         # what is missing for another cause is told
         ("tinibot", "length_cm = 21\nwidth_cm", "lenght_cm = 21\n#",
          ["width_cm is missing", "Did you mean length_cm?"]),

@@ -105,6 +105,8 @@ ADVISED = [
     ("D = DISTANCE;LOOP(5);F(1, 60);SHOW(D);END_LOOP", "TS823"),
     ("LOOP(FOREVER);X = DISTANCE;SHOW(X);END_LOOP", "TS804"),
     ("LOOP(4);END_LOOP;F(1, 60)", "TS828"),
+    ("TASK;F(5, 50);BEEP(5, 440);END_TASK", "TS835"),
+    ("IF(KEY_UP);F(1, 60);ENDIF", "TS836"),
 ]  # fmt: skip
 
 
@@ -251,9 +253,9 @@ def test_advice_is_for_right_programs_alone() -> None:
 @each_row(
     "text, wanted",
     [
-        ("TASK;W(1);END_TASK", "TASK;LOOP(FOREVER);W(1);END_LOOP;END_TASK"),
-        ("TASK // beeps\n  W(1) // so\nENDTASK",
-         "TASK\nLOOP(FOREVER) // beeps\n  W(1) // so\nEND_LOOP\nENDTASK"),
+        ("TASK;W(1);END_TASK;S", "TASK;LOOP(FOREVER);W(1);END_LOOP;END_TASK;S"),
+        ("TASK // beeps\n  W(1) // so\nENDTASK;S",
+         "TASK\nLOOP(FOREVER) // beeps\n  W(1) // so\nEND_LOOP\nENDTASK;S"),
     ],
 )  # fmt: skip
 def test_a_loop_is_put_around_a_task_that_is_done_once(text: str, wanted: str) -> None:

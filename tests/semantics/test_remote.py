@@ -317,6 +317,7 @@ def test_the_example_runs_and_is_that_of_the_documents() -> None:
 
 def test_a_stick_at_rest_may_be_asked_for() -> None:
     """It reads exactly 0 then, and hardly ever another number that is asked for."""
-    assert not compile_text("IF(PAD_X = 0);SHOW(1);ENDIF", TINIBOT).diagnostics
-    assert codes_of(compile_text("IF(PAD_X = 50);SHOW(1);ENDIF", TINIBOT)) == [codes.EXACT.number]
+    asked = "LOOP(FOREVER);IF(PAD_X = {});SHOW(1);ENDIF;W(1);END_LOOP"
+    assert not compile_text(asked.format(0), TINIBOT).diagnostics
+    assert codes_of(compile_text(asked.format(50), TINIBOT)) == [codes.EXACT.number]
     assert REMOTE[-1].kind == NUMBER

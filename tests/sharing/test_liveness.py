@@ -21,8 +21,8 @@ from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.shared_connection import DEAF_S, SharedConnection
 
 LONG_S = 20 * DEAF_S
-ANSWER = {"id": 1, "status": OK, "detail": 0, "heard": 9, "is_echoed": False, "boot": 0,
-          "values": {}}  # fmt: skip
+ANSWER = {"id": 1, "status": OK, "detail": 0, "heard": 9, "came": "fe", "is_echoed": False,
+          "boot": 0, "values": {}}  # fmt: skip
 SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.of_event(ShownEvent(5, 0))}
 
 
@@ -126,3 +126,4 @@ def test_a_request_that_takes_long_is_answered(
     holder.says(ANSWER, takes_s)
     assert line.wait(request).status == OK
     assert holder.now_s - 100.0 >= takes_s
+    assert (line.heard, line.came) == (9, b"\xfe")

@@ -43,7 +43,7 @@ Json = dict[str, Any]
 class SteppedLine:
     """The port of a simulated robot, without a thread."""
 
-    address, held_by, gone, heard, is_echoed, boot = "", "", None, 0, False, 0
+    address, held_by, gone, heard, came, is_echoed, boot = "", "", None, 0, b"", False, 0
 
     def __init__(self) -> None:
         self.robot_itself, self.session = switched_on(), computer()
@@ -68,8 +68,8 @@ class SteppedLine:
     def stop(self) -> None:
         self.session.stop(self.robot_itself.now_ms)
 
-    def halt(self, run: int) -> None:
-        self.session.halt(run, self.robot_itself.now_ms)
+    def end_run(self, run: int) -> None:
+        self.session.end_run(run, self.robot_itself.now_ms)
 
     def withdraw(self, request: PendingRequest[Any]) -> None:
         self.session.withdraw(request)

@@ -53,7 +53,7 @@ def pair() -> tuple[socket.socket, socket.socket]:
 def test_the_end_of_a_connection_has_its_user() -> None:
     here, there = pair()
     with here, there:
-        found = peers._other_end(here.getpeername(), here.getsockname())
+        found = peers._socket_owner(here.getpeername(), here.getsockname())
         assert found == (os.geteuid(), os.fstat(there.fileno()).st_ino)
         assert peers.is_of_this_user(here)
         there.shutdown(socket.SHUT_WR)  # it listens on
@@ -66,14 +66,14 @@ def test_whoever_has_hung_up_can_have_been_anybody() -> None:
     with here:
         there.sendall(LINE)
         there.close()
-        assert not peers._other_end(here.getpeername(), here.getsockname()).is_open
+        assert not peers._socket_owner(here.getpeername(), here.getsockname()).is_open
         assert not peers.is_of_this_user(here)
 
 
 @linux
 def test_of_an_end_that_is_nobody_s_the_kernel_says_so() -> None:
     with pytest.raises(FileNotFoundError):
-        peers._other_end(("127.0.0.1", 1), ("127.0.0.1", 2))
+        peers._socket_owner(("127.0.0.1", 1), ("127.0.0.1", 2))
 
 
 @linux
@@ -92,7 +92,7 @@ def test_which_ends_are_let_in(
     monkeypatch: pytest.MonkeyPatch, own: int, user: int, inode: int, is_let_in: bool
 ) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: own)
-    monkeypatch.setattr(peers, "_other_end", lambda there, here: peers.End(user, inode))
+    monkeypatch.setattr(peers, "_socket_owner", lambda there, here: peers.End(user, inode))
     here, there = pair()
     with here, there:
         assert peers.is_of_this_user(here) == is_let_in
@@ -107,11 +107,11 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 
     here, there = pair()
     with here, there:
-        monkeypatch.setattr(peers, "_other_end", failing(errno.EOPNOTSUPP))
+        monkeypatch.setattr(peers, "_socket_owner", failing(errno.EOPNOTSUPP))
         assert peers.is_of_this_user(here)
         monkeypatch.setattr(sys, "platform", "linux")
         for number in (errno.ENOENT, errno.EMFILE, errno.ENFILE):  # gone, or nothing can be asked
-            monkeypatch.setattr(peers, "_other_end", failing(number))
+            monkeypatch.setattr(peers, "_socket_owner", failing(number))
             assert not peers.is_of_this_user(here)
 
 
@@ -175,7 +175,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
             for words in (["show"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
                 for port in (address, address.replace("127.0.0.1", "localhost")):
                     done = inside(*words, "--port", port)
-                    done.gives(3, "another user of this computer listens")
+                    done.gives(3, "another user of this computer is listening")
         server.settimeout(HANGS_S)
         peer, _ = server.accept()
         with peer:
@@ -307,12 +307,12 @@ def test_a_folder_that_others_can_read_is_closed_and_what_was_in_it_is_not_belie
     registration = Registration("/dev/x", 1, "a" * 32, "b" * 32, "link", 9600, os.getpid())
     registry.write(registration)
     folder = files.cache_folder() / "held"
-    assert registry.found("/dev/x") == registration
+    assert registry.find_registration("/dev/x") == registration
     folder.chmod(0o750)
-    assert registry.found("/dev/x") is None
+    assert registry.find_registration("/dev/x") is None
     registry.write(registration)
     assert folder.stat().st_mode & 0o777 == 0o700
-    assert registry.found("/dev/x") == registration
+    assert registry.find_registration("/dev/x") == registration
 
 
 def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
@@ -335,4 +335,4 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
         patch.setattr(registry, "_read", read)
         registry.remove(before)
     assert len(paths) == 2
-    assert registry.found("/dev/x") == now
+    assert registry.find_registration("/dev/x") == now

@@ -97,7 +97,7 @@ def test_a_server_that_registers_while_another_command_removes_is_found(
     for has_registered in each_line(prepare):
         if not has_registered:
             continue
-        assert registry.found(PORT) == live
+        assert registry.find_registration(PORT) == live
         assert registry.all_found() == [live]
         registry.remove(live)
         assert registry.all_found() == []

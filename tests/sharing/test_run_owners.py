@@ -30,7 +30,7 @@ class FakeLine:
     """A line whose robot does what the test says: begins run 7, ends it, and tells events."""
 
     address, gone, robot, held_by = PORT, None, None, ""
-    heard, is_echoed, boot, has_ended = 0, False, 0, False
+    heard, came, is_echoed, boot, has_ended = 0, b"", False, 0, False
 
     def __init__(self) -> None:
         self.is_running = False
@@ -62,7 +62,7 @@ class FakeLine:
         self.stops += 1
         return 0
 
-    def halt(self, run: int) -> None:
+    def end_run(self, run: int) -> None:
         self.halted.append(run)
 
     def withdraw(self, request: PendingRequest[Any]) -> None:
@@ -111,7 +111,7 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
         assert [
             registration for registration in registry.all_found() if registration.token == own.token
         ] == [own]
-        other = registry.found(line.address)
+        other = registry.find_registration(line.address)
         assert other is not None and other.token == own.token
 
 

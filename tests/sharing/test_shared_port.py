@@ -45,7 +45,7 @@ def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
     done = on(pty_robot, "stop")
     assert (done.code, done.out) == (
-        0, f"Stopped: the robot on {pty_robot.port} has confirmed it.\n",
+        0, f"Stopped: the robot on {pty_robot.port} has confirmed the stop.\n",
     )  # fmt: skip
     assert not pty_robot.moves
     command.ended().gives(3, out="The robot was stopped from a computer.")
@@ -87,11 +87,11 @@ def test_all_names_of_a_port_lead_to_its_server(
     rows = json.loads(process("doctor", "--ports", "--json").out)
     assert {row["port"]: row["held_by"] for row in rows}[pty_robot.port] == "monitor --hold"
     done = process("doctor", "--ports", "--ask", "--port", name)
-    assert "robot" in done.out and "held by tsc monitor --hold" in done.out
+    assert "robot" in done.out and "in use by tsc monitor --hold" in done.out
     process("show", "--port", name, "--baud", "115200").gives(
-        3, "held by tsc monitor --hold, at 9600 baud"
+        3, "in use by tsc monitor --hold, at 9600 baud"
     )
-    process("monitor", "--hold", "--port", name).gives(3, "shared already, by tsc monitor --hold")
+    process("monitor", "--hold", "--port", name).gives(3, "already shared, by tsc monitor --hold")
 
 
 BRIDGE = """
@@ -232,7 +232,7 @@ def test_a_program_ends_with_its_command_unless_it_needs_nobody(
 ) -> None:
     command = uploading(pty_robot)
     command.signal(signal.SIGINT)
-    command.ended().gives(2, "the robot has confirmed it")
+    command.ended().gives(2, "the robot has confirmed the stop")
     assert not pty_robot.moves
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     pty_robot.ask(lambda robot: robot.wait(1500))
@@ -248,10 +248,12 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     first = uploading(pty_robot)
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
     second.ended().gives(0, out="Done.")
-    done = first.ended().gives(3, "another program", "holds the port until that has ended")
-    assert done.err.index("holds the port") < done.err.index("another program")
+    done = first.ended().gives(
+        3, "another command started a program", "holds the port until the other has ended."
+    )
+    assert done.err.index("holds the port") < done.err.index("another command started a program")
     assert hellos(pty_robot) == 1
-    assert registry.found(pty_robot.port) is None
+    assert registry.find_registration(pty_robot.port) is None
 
 
 def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRobot) -> None:
@@ -275,7 +277,7 @@ def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
     assert on(pty_robot, "stop").code == 0
     assert not pty_robot.moves
     second.ended().gives(3, out="The robot was stopped from a computer.")
-    first.ended().gives(3, "another program")
+    first.ended().gives(3, "another command started a program")
 
 
 # -- endings of a server --------------------------------------------------------------------------
@@ -288,8 +290,8 @@ def test_a_server_that_leaves_stops_the_run_of_its_client(
     link.signal(signal.SIGINT)
     assert link.ended().code == 0
     assert not pty_robot.moves
-    command.ended().gives(3, "has ended (tsc monitor --hold)")
-    assert registry.found(pty_robot.port) is None
+    command.ended().gives(3, "(tsc monitor --hold) has ended")
+    assert registry.find_registration(pty_robot.port) is None
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert hellos(pty_robot) == 2
 
@@ -297,13 +299,13 @@ def test_a_server_that_leaves_stops_the_run_of_its_client(
 def test_a_server_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Command) -> None:
     command = uploading(pty_robot)
     link.process.kill()
-    command.ended().gives(3, "has ended (tsc monitor --hold)")
+    command.ended().gives(3, "(tsc monitor --hold) has ended")
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
-    assert registry.found(pty_robot.port) is not None
+    assert registry.find_registration(pty_robot.port) is not None
     rows = json.loads(process("doctor", "--ports", "--json").out)
     assert pty_robot.port not in [row["port"] for row in rows if row["held_by"]]
     on(pty_robot, "doctor").gives(0, "", out="LINK_LOST")
-    assert registry.found(pty_robot.port) is None
+    assert registry.find_registration(pty_robot.port) is None
 
 
 def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
@@ -359,7 +361,7 @@ def test_of_three_who_want_a_place_one_gets_it(
     [holder] = [command for command in commands if command.process.poll() is None]
     losers = [command.ended() for command in commands if command is not holder]
     assert [loser.code for loser in losers] == [3, 3]
-    assert all("shared already" in loser.err for loser in losers)
+    assert all("already shared" in loser.err for loser in losers)
     assert process("stop", "--port", wanted).code == 0
     holder.signal(signal.SIGINT)
     done = holder.ended()
@@ -377,7 +379,7 @@ def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
     for words, command in zip(asked, commands, strict=True):
         done = command.ended()
         for _ in range(TRIES):
-            if "has ended (tsc " in done.err:
+            if "has ended; without --detach" in done.err:
                 done = begun(*words).ended()
         assert (done.code, done.err) == (0, "")
 
@@ -388,7 +390,7 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
     )
     command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer)
     command.until("running")
-    for language, words in (("en", "another version, 9.1"), ("es", "otra versión, 9.1")):
+    for language, words in (("en", "another version of tsc, 9.1"), ("es", "otra versión, 9.1")):
         on(pty_robot, "show", "--lang", language).gives(3, words)
     assert on(pty_robot, "stop").code == 0
     assert command.ended().code == 3

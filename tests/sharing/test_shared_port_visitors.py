@@ -52,7 +52,7 @@ def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPa
 
 
 def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
-    registration = registry.found(pty_robot.port)
+    registration = registry.find_registration(pty_robot.port)
     assert registration is not None
     folder = registry._folder()
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
@@ -131,10 +131,10 @@ def test_a_file_that_says_nothing_is_no_server(pty_robot: PtyRobot) -> None:
         path = registry._path(other.port)
         for text in ("", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"):
             path.write_text(text)
-            assert registry.found(other.port) is None, text[:20]
+            assert registry.find_registration(other.port) is None, text[:20]
             assert registry.all_found() == []
     path.write_text(json.dumps(registration._replace(port=pty_robot.port)._asdict()))
-    assert registry.found(other.port) is None
+    assert registry.find_registration(other.port) is None
 
 
 def test_somebody_else_at_the_number_of_a_crashed_server_is_no_server(pty_robot: PtyRobot) -> None:
@@ -148,7 +148,7 @@ def test_somebody_else_at_the_number_of_a_crashed_server_is_no_server(pty_robot:
             peer.sendall(protocol.written({"tsc": __version__, "answer": "c"}))
             done = command.ended()
     assert (done.code, done.err) == (0, "")
-    assert registry.found(pty_robot.port) is None
+    assert registry.find_registration(pty_robot.port) is None
 
 
 def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:

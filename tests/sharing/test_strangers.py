@@ -87,7 +87,7 @@ def say_all(port: str, seed: int, count: int) -> None:
 
 
 def registration_of(port: str) -> Registration:
-    registration = registry.found(port)
+    registration = registry.find_registration(port)
     assert registration is not None
     return registration
 

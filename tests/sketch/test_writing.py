@@ -42,7 +42,7 @@ def test_each_instruction_has_its_tiniscript_beside_it() -> None:
 
 def test_a_simple_program_has_simple_numbers() -> None:
     text = sketch("SI|LOOP(3);F(0.5, 80);IF(DISTANCE < 10.5);BEEP(0.1, 440);ENDIF;END_LOOP")
-    assert "struct" not in text and "Serial." not in text and "float seconds" in text
+    assert "struct " not in text and "Serial." not in text and "float seconds" in text
     assert "for (int i = 0; i < 3; i++) {" in text and "if (distance < 10.5) {" in text
 
 

@@ -519,7 +519,7 @@ const PARTS = {
       return { ends: [told.some((each) => each.error) ? 'failed' : 'good'], seen: [told.map(({ id, error }) => [id, error ?? 'ok']), number - first] };
     };
   },
-  // What the compiler says while somebody types.
+  // Messages while somebody types.
   async checking() {
     const page = freshPage();
     await learns(page);

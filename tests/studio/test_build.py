@@ -193,7 +193,7 @@ def test_the_same_sources_give_the_same_page(
 def test_a_page_of_other_sources_is_not_used(tmp_path: Path) -> None:
     assert studio.COMMAND in studio.stale(tmp_path)
     (tmp_path / studio.STAMP).write_text('{"sources": "others"}')
-    assert "other sources" in studio.stale(tmp_path)
+    assert "is out of date: the sources" in studio.stale(tmp_path)
     assert studio.main(["--check", "-o", str(tmp_path)]) == 2
 
 

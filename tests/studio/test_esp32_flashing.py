@@ -159,7 +159,7 @@ def test_a_teacher_puts_the_firmware_on_an_esp32(browser: Browser, tmp_path: Pat
         page.locator("#flash_write").wait_for()
         assert page.locator("#flash_board option").all_inner_texts() == ["ESP32"]
         page.click("#flash_write")
-        page.get_by_text("There is no firmware of this robot for this board here.").wait_for()
+        page.get_by_text("There is no firmware here for this robot on this board.").wait_for()
         page.select_option("#robot", "tinibot32")
         page.click("#flash_write")
         page.get_by_text("Connecting").first.wait_for()

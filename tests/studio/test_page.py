@@ -76,7 +76,7 @@ def test_every_wrong_program_gets_the_words_of_the_command(
 
 def test_a_mistake_of_ours_is_told_with_its_name(page: Page) -> None:
     """The packed Python knows no lines of its sources; its tracebacks are made all the same."""
-    with pytest.raises(Exception, match=r"in _asked\nKeyError: 'nonsense'"):
+    with pytest.raises(Exception, match=r"in _request_handler\nKeyError: 'nonsense'"):
         asked(page, [{"do": "nonsense", "text": ""}])
 
 

@@ -48,7 +48,7 @@ LISTEN = """(place) => {
 }"""
 STANDING = re.compile(r"…|^Stopping|STOP: 0 of 1")  # what it says goes on
 CONNECTED = "Connected: "
-CONFIRMED = "the robot has confirmed it|has confirmed the stop now"
+CONFIRMED = "has (?:now )?confirmed the stop"
 UNCONFIRMED = "has not confirmed the stop"
 
 
@@ -339,7 +339,7 @@ ASKS = "[data-text=class_ask]"
 BUTTONS |= {"ask": ASKS, "stop all": "#stop"}
 ENDS |= {
     "ask": r"^(?!Connecting|Choose|$)",
-    "stop all": "STOP: 1 of 1|Not confirmed|has not reached",
+    "stop all": "STOP: 1 of 1|Not confirmed|did not reach",
 }
 CLASS_ACTIONS = ("ask", "run", "stop", "stop all", "leave")
 CLASS_LINES = tuple(each for each in LINES if each.name in (

@@ -25,7 +25,7 @@ from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.studio.block_form import data_of, kinds_in
-from tiniscript.studio.block_kinds import FIXED, KINDS
+from tiniscript.studio.block_kinds import KINDS, PLAIN
 from tiniscript.studio.block_reading import read
 from tools.builds.page_texts import page_texts
 from tools.builds.studio import BLOCKLY, stale
@@ -546,7 +546,7 @@ def offered(page: Page) -> set[str]:
 
 def test_every_word_that_has_a_block_can_be_dragged_out(page: Page) -> None:
     """And to begin with, those of several things at once. A grey block is what nobody can read."""
-    kinds = set(KINDS) - {"grey"} - ({"fixed"} if not FIXED else set())
+    kinds = set(KINDS) - {"grey"} - ({"plain"} if not PLAIN else set())
     with_names = "SI|SPEED = 5;\nDEF HOP;\n  F(1, SPEED);\nEND_DEF;\nHOP;\n"
     page.select_option("#robot", "grabber")
     start(page, with_names, "all")
@@ -776,7 +776,7 @@ def test_more_cases_of_an_if(page: Page) -> None:
     for name, wanted in (
         ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
         ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSEIF(TRUE);\nELSE;\nENDIF;\n"),
-        ("Take the last case away", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
+        ("Remove the last case", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
     ):
         href = "more.svg" if name.startswith("Add") else "less.svg"
         page.locator(f"#blocks .blocklyBlockCanvas image[*|href$='{href}']").first.click()

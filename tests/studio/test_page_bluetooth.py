@@ -167,7 +167,7 @@ def test_a_robot_is_driven_by_bluetooth(radio_page: tuple[Browser, Page], servic
         while not drives_now(radio.did):  # the radio is heard while the page is waited for
             page.wait_for_timeout(20)
         page.keyboard.press("Escape")
-        said(page, "Stopped: the robot has confirmed it.")
+        said(page, "Stopped: the robot has confirmed the stop.")
         assert not drives_now(radio.did)
         radio.go_away()
-        said(page, "The Bluetooth connection has ended.")
+        said(page, "The Bluetooth connection was lost. The")

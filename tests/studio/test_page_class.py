@@ -182,7 +182,7 @@ def test_three_pupils_share_a_robot(
     big.locator("img[src^=blob]").wait_for()
     big.locator("[data-text=class_stop_all]").click()
     robot.until(lambda: not robot.moves, "the teacher stops it")
-    linked(ana, "Stopped: the robot has confirmed it.")
+    linked(ana, "Stopped: the robot has confirmed the stop.")
     teacher.locator("#stops").filter(has_text="STOP: 1 of 1 robots have confirmed it.").wait_for()
     assert not teacher.locator("#stops .wrong").count()
     time.sleep(LATCH_S)
@@ -528,7 +528,7 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
     found = {each["name"]: each["text"] for each in json.loads(file.read_text())["pupils"]}
     assert found["Ana"] == "F(1, 77)"
     write(ana, "F(1, 33)")
-    for name, says in (("bad.json", "bad.json is not saved work"), ("class.json", "Opened: ")):
+    for name, says in (("bad.json", "bad.json is not saved work"), ("class.json", "Opened. ")):
         (tmp_path / "bad.json").write_text('{"tiniscript_class": 1, "pupils": [{"name": 5}]}')
         teacher.click("#class_settings")
         teacher.set_input_files("#class_window input[type=file]", tmp_path / name)

@@ -118,7 +118,7 @@ def test_breakpoints_are_seen_and_set_at_blocks(page: Page) -> None:
     page.locator("#blocks .breakpoint").filter(has_text="+").wait_for()
     show = page.locator("#blocks .blocklyDraggable", has_text="SHOW").last
     show.click(button="right", position={"x": 6, "y": 6})
-    page.get_by_role("menuitem", name="Stop here, or not (F9)").click()
+    page.get_by_role("menuitem", name="Breakpoint on or off (F9)").click()
     page.locator("#blocks .show.breakpoint").wait_for()
     page.click("#run")
     for line in (3, 5, 3):

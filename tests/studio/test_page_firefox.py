@@ -127,7 +127,7 @@ def test_programs_are_shared_kept_and_pictured(page: Page) -> None:
     assert width > 200 and height > 200 and counts[MOVE] > 1000
     page.keyboard.press("Escape")
     page.goto(link)
-    page.locator("#note").filter(has_text="This program came with a link").wait_for()
+    page.locator("#note").filter(has_text="This program came from a link.").wait_for()
     assert content(page).rstrip() == PROGRAM
 
 

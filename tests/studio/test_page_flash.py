@@ -53,19 +53,19 @@ def test_a_new_board_becomes_a_robot(
         # Of another robot there is no firmware here; what is no firmware is not written.
         found.select_option("#robot", "liner")
         found.click("#flash_write")
-        said(found, "There is no firmware of this robot for this board here.")
+        said(found, "There is no firmware here for this robot on this board.")
         found.select_option("#robot", "tinibot")
         found.set_input_files("#flash_file", {"name": "<b>.hex", "mimeType": "", "buffer": b":00"})
-        said(found, "<b>.hex is next")
+        said(found, "<b>.hex is ready")
         found.click("#flash_write")
-        said(found, "That is not a whole HEX file")
+        said(found, "That is not a complete HEX file")
         assert found.locator("#flash_board option").all_inner_texts() == ["Uno"]
         # Cancelled in the middle it does nothing, and is whole once it has got its firmware again.
         found.click("#flash_write")
         done = "document.querySelector('#flash_progress').value"  # the page evaluates no text
         until(lambda: float(found.evaluate(done)) >= 0.1, "a tenth is written")
         found.click("#flash_cancel")
-        said(found, "Cancelled in the middle: ")
+        said(found, "Cancelled halfway ")
         assert found.locator("#flash_cancel, #flash_progress").filter(visible=True).count() == 0
         found.click("#flash_write")
         said(found, "Connected: ")

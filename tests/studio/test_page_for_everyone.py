@@ -191,7 +191,7 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
 def test_a_screen_reader_hears_what_is_said(page: Page) -> None:
     write(page, "F(-2, 80)")
     assert page.get_by_role("status").first.inner_text() == "1 mistake"
-    said = "Line 1: -2 does not fit: here F takes 0 or more. Try: B(2, 80)"
+    said = "Line 1: -2 is out of range: here F takes 0 or more. Try: B(2, 80)"
     assert page.get_by_role("status").get_by_text(said).count() == 1
     assert page.get_by_role("button", name=said).inner_text() == "Line 1"
     assert page.get_by_role("textbox", name="Program").count() == 1

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SCRIPT = Path(__file__).with_name("progress_in_node.mjs")
 FILE = "tinibot-uno-digest.hex"
-STUCK = "The port takes nothing any more."
+STUCK = "The port no longer accepts data."
 # A serial port that takes no bytes: what is written never ends, until it is aborted.
 SERIAL = """
 const port = window.port = {
@@ -119,15 +119,15 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     for count, ends in enumerate(("cancel", "nothing"), 1):
         page.click("#flash_write")
         hears(page, partial(held.has, count), "it is fetched")
-        said(page, "Fetching the firmware. Nothing is written yet.")
+        said(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
         said(page, "The firmware has not arrived.")
         if ends == "cancel":
             page.click("#flash_cancel")
-            said(page, "Cancelled. Nothing was written: the board is as it was.")
+            said(page, "Cancelled. Nothing was written: the board has not changed.")
         else:
             page.clock.fast_forward(25_000)
-            said(page, "The firmware did not arrive, and nothing was written")
+            said(page, "The firmware did not arrive, so nothing was written")
         assert page.locator("#flash_cancel, #flash_progress").filter(visible=True).count() == 0
     assert page.evaluate("window.port.opened") == 0
 
@@ -141,11 +141,11 @@ def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
     for _ in range(2):
         page.click("#flash_write")
         hears(page, lambda: held.routes, "it is fetched")
-        said(page, "Fetching the firmware. Nothing is written yet.")
+        said(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
         said(page, "The firmware has not arrived.")
         page.click("#flash_cancel")
-        said(page, "Cancelled. Nothing was written: the board is as it was.")
+        said(page, "Cancelled. Nothing was written: the board has not changed.")
     assert page.evaluate("window.port.opened") == 0
 
 
@@ -162,7 +162,7 @@ def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
         hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
         assert page.evaluate("window.port.opened") == count
     page.click("#flash_write")
-    said(page, "Writing the firmware")
+    said(page, "Writing and verifying the firmware")
     page.click("#flash_cancel")
     said(page, "Cancelled. Nothing was written")
     hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
@@ -180,7 +180,8 @@ def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: servi
 # -- what a run needs
 
 # What the page says where something is held; the pictures and the style are the browser's to fetch.
-WORDS = "#coming, #status:has-text('not arrive'), #doing:has-text('not arrive')"
+WORDS = ("#coming, #status:has-text('not load'), #status:has-text('not arrive'), "
+         "#doing:has-text('not load'), #doing:has-text('not arrive')")  # fmt: skip
 OF_THE_COMPILER = ("worker.js", "pyodide.asm.mjs", "pyodide.asm.wasm", "python.zip",
                    "tiniscript.zip", "messages.en.json")  # fmt: skip
 BEGINS = "html[data-screen=start] [data-begin=dance]"
@@ -220,7 +221,7 @@ new MutationObserver(() => {
   if (said !== window.told.at(-1)) window.told.push(said);
 }).observe(document, {subtree: true, childList: true, characterData: true})"""
 WAITED = """window.told
-  .map((said) => /waits(?= for the compiler)|did not arrive/.exec(said ?? '')?.[0])
+  .map((said) => /waiting(?= for the compiler)|did not load/.exec(said ?? '')?.[0])
   .filter(Boolean).filter((each, k, all) => each !== all[k - 1])"""
 TRIES = 10
 
@@ -261,7 +262,7 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
         held.let_go()
         if not page.locator("html[data-screen=program]").count():
             page.click(BEGINS)
-        elif page.locator("#doing", has_text="did not arrive").count():
+        elif page.locator("#doing", has_text="did not load").count():
             page.click("#run")  # this computer was slow: it was given up
         danced(page)
         page.context.close()
@@ -278,18 +279,18 @@ def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
     page.goto(visits.address)
     page.click("[data-begin=dance]")
     for _ in range(2):
-        page.locator("#doing", has_text="The compiler did not arrive. Run tries").wait_for()
+        page.locator("#doing", has_text="The compiler did not load. Press Run to try").wait_for()
         page.click("#run")
-        page.locator("#doing", has_not_text="did not arrive").wait_for()
-    assert page.evaluate(WAITED)[:4] == ["waits", "did not arrive"] * 2
+        page.locator("#doing", has_not_text="did not load").wait_for()
+    assert page.evaluate(WAITED)[:4] == ["waiting", "did not load"] * 2
     page.context.unroute_all()
-    outcome = page.locator("html[data-phase=running], #doing:has-text('did not arrive')")
+    outcome = page.locator("html[data-phase=running], #doing:has-text('did not load')")
     for _ in range(TRIES):
         outcome.first.wait_for(state="attached")
-        if not page.locator("#doing", has_text="did not arrive").count():
+        if not page.locator("#doing", has_text="did not load").count():
             break
         page.click("#run")  # this computer was slow: it was given up
-        page.locator("#doing", has_not_text="did not arrive").wait_for()
+        page.locator("#doing", has_not_text="did not load").wait_for()
     danced(page)
     page.click("#stop")
     checked(page)
@@ -300,7 +301,7 @@ def test_who_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visits: P
     held = Held(page, "**/pyodide.asm.mjs")
     page.goto(visits.address)
     page.click("[data-begin=dance]")
-    page.locator("#doing", has_text="STOP ends the wait").wait_for()
+    page.locator("#doing", has_text="STOP cancels.").wait_for()
     page.click("#stop")
     hears(page, lambda: "compiler" not in page.locator("#doing").inner_text(), "it waits no more")
     held.let_go()
@@ -331,6 +332,6 @@ def test_a_stop_that_nobody_hears_says_so_at_once_and_is_tried_on(pages: Pages) 
         hears(page, lambda: held.routes, "it is asked")
         page.clock.fast_forward(3100)
         locator = page.locator("#stops")
-        locator.filter(has_text="STOP has not reached tsc studio.").wait_for(state="attached")
+        locator.filter(has_text="STOP did not reach tsc studio.").wait_for(state="attached")
         page.context.unroute_all()
         hears(page, lambda: page.locator("#stops").is_hidden(), "it is heard: there is no robot")

@@ -64,7 +64,7 @@ def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
     assert check(page, right[0].program) == ("passed", [])
     lesson = catalogue.load(FOLDERS[number - 1])
     worlds = f", in {lesson.worlds} worlds" if lesson.worlds > 1 else ""
-    wanted = f"Done! The task of lesson {number} is solved{worlds}."
+    wanted = f"Done! You solved lesson {number}{worlds}."
     assert page.inner_text("#lesson_said") == wanted
     assert page.inner_text("#lesson_stars") == "★" * lesson.worlds
 
@@ -91,7 +91,7 @@ def test_a_check_can_be_ended(page: Page) -> None:
     page.click("#lesson_check")
     page.locator("#lesson_said", has_text="World 1 of 5").wait_for()
     page.click("#lesson_end")
-    assert page.inner_text("#lesson_said") == "You ended the check. There is no result."
+    assert page.inner_text("#lesson_said") == "You stopped the check, so there is no result."
     assert page.evaluate("document.activeElement.id") == "lesson_check"
     choose(page, 1)
     right, _ = catalogue.answers(FOLDERS[0])

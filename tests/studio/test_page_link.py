@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 KIT = robots.load("tinibot").kit
 PATIENCE_MS = 90_000
 RUNS = 5
-VOID = "The robot was stopped meanwhile"
+VOID = "The robot was stopped first, so it"
 BLINKS = "The robot that blinks and plays its tune is"
 
 
@@ -138,7 +138,7 @@ def test_a_program_and_a_line_are_sent_and_run(page: Page, robot: PtyRobot) -> N
     assert not robot.moves
     write(page, "X = 0;\nF(0.1, 50);\nSHOW(1 / X)")
     page.click("#link_upload")
-    said(page, "Line 3: something is divided by 0.")
+    said(page, "Line 3: the program divided by 0.")
     page.locator(".cm-activeLine").filter(has_text="SHOW").wait_for()
 
 
@@ -146,12 +146,12 @@ def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     robot.switch_off()
     robot.switch_on()
-    said(page, "The robot was restarted, and that ended its program.")
+    said(page, "The robot restarted, which ended its program.")
     assert not robot.moves
     page.click("#link_upload")  # the connection goes on
     said(page, "The robot has it")
     page.click("#stop")
-    said(page, "Stopped: the robot has confirmed it.")
+    said(page, "Stopped: the robot has confirmed the stop.")
 
 
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
@@ -166,7 +166,7 @@ def test_stop_stops(page: Page, robot: PtyRobot) -> None:
             page.click("#stop")
         robot.until(lambda: not robot.moves, f"it stands: {way}")
         page.click("#side_real")
-        said(page, "Stopped: the robot has confirmed it.")
+        said(page, "Stopped: the robot has confirmed the stop.")
 
 
 def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
@@ -188,7 +188,7 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     drives(page, robot)
     page.context.set_offline(True)
     robot.until(lambda: not robot.moves, "it stands")
-    said(page, "tsc studio does not answer any more")
+    said(page, "tsc studio no longer answers")
     page.context.set_offline(False)
     wrong = first[0].wrong
     assert wrong and all("ERR_INTERNET_DISCONNECTED" in each for each in wrong)
@@ -200,7 +200,7 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")
     other.click("#link_connect")
-    said(other, "Another tab of this browser drives this robot.")
+    said(other, "Another tab of this browser is driving this robot.")
     drives(page, robot)
     other.click("#stop")  # whoever sees STOP may press it
     robot.until(lambda: not robot.moves, "it stands")
@@ -216,14 +216,14 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.click("#link_teacher summary")
     page.fill("#link_rename_to", "Ñandú")
     page.click("#link_rename")
-    said(page, "The robot is called Ñandú now.")
+    said(page, "The robot is now called Ñandú.")
     assert page.locator("#link_name").inner_text() == "Ñandú"
     page.fill("#trim_balance", "-7")
     page.check("#trim_left")
     page.click("#trim_set")
-    said(page, "The robot keeps it.")
+    said(page, "The robot has saved it.")
     pace = page.locator("#trim_pace")
-    assert pace.inner_text() == "Its pace is that of its kit: tsc set trim measures it."
+    assert pace.inner_text() == "Its speed is estimated from its kit; tsc set trim measures it."
     page.click("#link_leave")
     said(page, "Disconnected.")
     time.sleep(0.3)
@@ -235,10 +235,10 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.locator("#trim_left:checked").wait_for(state="attached")
     assert page.input_value("#trim_balance") == "-7"
     page.click("#trim_set")  # leaves the pace
-    said(page, "The robot keeps it.")
+    said(page, "The robot has saved it.")
     assert pace.inner_text() == (
-        "It goes 20 cm in a second at 40 %, and 45 at 80 %."
-        " It turns 100 degrees in a second at 40 %, and 212.5 at 80 %."
+        "It drives 20 cm per second at 40 %, and 45 at 80 %."
+        " It turns 100 degrees per second at 40 %, and 212.5 at 80 %."
     )
 
 
@@ -267,7 +267,7 @@ def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -
     page.click("#link_teacher summary")
     page.fill("#link_rename_to", "<b>x</b>")
     page.click("#link_rename")
-    said(page, "The robot is called <b>x</b> now.")
+    said(page, "The robot is now called <b>x</b>.")
     assert page.evaluate("document.querySelectorAll('*').length === window.before")
     assert not page.evaluate("'taken' in window")
     page.click("#link_leave")
@@ -318,7 +318,7 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     """And a page that is closed stops its robot."""
     entrance = server.entrance()
     first, second = pages.visit(entrance), pages.visit(entrance)
-    studio.noted(second, "This address was opened before")
+    studio.noted(second, "This address has already been used")
     assert first.locator("#note").inner_text() == ""
     for page, has_robots in ((first, True), (second, False)):
         page.click("#side_real")
@@ -331,7 +331,7 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     second.evaluate("sessionStorage.setItem('tiniscript.token', '0'.repeat(32))")
     enter(second, server.address)
     second.click("#side_real")
-    said(second, "tsc studio was started again meanwhile,")
+    said(second, "tsc studio was restarted")
     assert [each for each in pages.wrong if "403" not in each] == []
     pages.wrong.clear()
 
@@ -382,7 +382,7 @@ def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> 
     assert names[: len(late)] == ["NEAR"] * len(late), names
     page.unroute_all(behavior="wait")
     page.click("#stop")
-    said(page, "Stopped: the robot has confirmed it")
+    said(page, "Stopped: the robot has confirmed the stop")
 
 
 def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
@@ -424,10 +424,10 @@ def agrees(page: Page, run: Callable[[], None]) -> None:
         page.click("#side_real")
         run()
         page.click("#record_play")
-        doing.filter(has_text=re.compile("Comparisons|another time")).wait_for()
-        if "another time" not in doing.inner_text():
+        doing.filter(has_text=re.compile("Values compared|different time")).wait_for()
+        if "a different time" not in doing.inner_text():
             break
-    assert doing.inner_text() == "Both did the same. Comparisons: 3."
+    assert doing.inner_text() == "Both did the same. Values compared: 3."
 
 
 def events(page: Page) -> list[str]:
@@ -435,7 +435,7 @@ def events(page: Page) -> list[str]:
     page.click("#side_virtual")
     page.click("#runs_open")
     with page.expect_download() as saved:
-        page.locator("#runs_list li button", has_text="Save it").first.click()
+        page.locator("#runs_list li button", has_text="Save run").first.click()
     page.click("#runs_close")
     page.click("#side_real")
     return [row.event for row in read(saved.value.path().read_bytes()).rows]
@@ -453,7 +453,7 @@ def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) ->
     write(page, "SHOW(6)")
     page.click("#record_play")  # it has its own program
     page.locator(".cm-content", has_text="SHOW(DISTANCE)").wait_for()
-    page.locator("#doing", has_text="Comparisons: 3.").wait_for()
+    page.locator("#doing", has_text="Values compared: 3.").wait_for()
     page.click("#side_real")
 
 

@@ -19,13 +19,13 @@ from tiniscript.studio.attending import LEFT_S
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
 
-CONFIRMED = "Stopped: the robot has confirmed it."
-HIDDEN = "The robot was stopped: this page was hidden. Come back here to drive it."
+CONFIRMED = "Stopped: the robot has confirmed the stop."
+HIDDEN = "The robot was stopped because this page was hidden. Come back here to drive it."
 SILENT = (
     "The robot has not confirmed the stop."
-    " If it moves, lift it, and take its batteries or its plug out."
+    " If it moves, lift it and remove its batteries or unplug it."
 )
-LATE = "The robot has confirmed the stop now: it stands still."
+LATE = "The robot has now confirmed the stop: it stands still."
 # What is said beneath the buttons from now on.
 LISTEN = """() => {
   const line = document.querySelector('#link_said');
@@ -111,7 +111,7 @@ def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> 
     page.wait_for_timeout(300)
     assert page.locator("html[data-robot=connected]").count() and robot.moves
     torn = tears(page, "beat", refuse, times=1000)  # but one that goes on is told
-    said(page, "tsc studio does not answer any more")
+    said(page, "tsc studio no longer answers")
     assert torn
 
 
@@ -133,7 +133,7 @@ def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
     page.click("#link_look")
     page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
     page.click("#link_connect")
-    said(page, "tsc studio does not answer any more")
+    said(page, "tsc studio no longer answers")
     page.evaluate(LISTEN)
     page.click("#link_connect")
     said(page, "Connected: ")
@@ -270,12 +270,12 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     page.evaluate(LISTEN)
     write(page, FOREVER)
     page.click("#link_upload")
-    said(page, "The robot does not answer any more")
+    said(page, "The robot no longer answers")
     page.wait_for_timeout(4000)
     told = page.evaluate("window.told")
     assert [each.split(";")[0] for each in told] == [
         "Sending…",
-        "The robot does not answer any more",
+        "The robot no longer answers",
     ]
 
 
@@ -287,7 +287,7 @@ def test_who_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     robot.switch_off()
     page.evaluate(LISTEN)
     page.click("#link_identify")
-    said(page, "The robot does not answer any more")
+    said(page, "The robot no longer answers")
     assert page.evaluate("window.told")[0] == "Waiting for the robot…"
 
 

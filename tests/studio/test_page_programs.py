@@ -50,12 +50,12 @@ def test_a_link_brings_the_program_and_runs_nothing(pages: Pages, page: Page) ->
     wanted = image(page)
     link = share(page)
     assert link.startswith(pages.address + "#program=")
-    assert "opens on this computer only" in page.inner_text("#shared_told")
+    assert "works only on this computer. To share with others" in page.inner_text("#shared_told")
     page.keyboard.press("Escape")
     page.select_option("#robot", "tinibot")
     write(page, "SI|F(9, 90)")
     page.goto(link)  # in an open tab: only the part after # changes
-    noted(page, "This program came with a link")
+    noted(page, "This program came from a link.")
     checked(page)
     assert content(page).rstrip() == TEXT.rstrip()
     assert (page.input_value("#robot"), image(page)) == ("grabber", wanted)
@@ -65,7 +65,7 @@ def test_a_link_brings_the_program_and_runs_nothing(pages: Pages, page: Page) ->
     assert "SI|F(9, 90)" in opened(page)
     page.keyboard.press("Escape")
     visitor = pages.visit(link)  # in a new tab
-    noted(visitor, "This program came with a link")
+    noted(visitor, "This program came from a link.")
     checked(visitor)
     assert image(visitor) == wanted
     visitor.reload()  # and it is kept from then on
@@ -108,7 +108,7 @@ def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     write(page, "SI|F(1, 34)")
     share(page)
     for address, told in (("https://school.example/studio/", "sees the program in this page, at"),
-                          ("http://192.168.1.9:8000/", "in this network")):  # fmt: skip
+                          ("http://192.168.1.9:8000/", "on this network")):  # fmt: skip
         page.fill("#public", address)
         page.locator("#public").blur()
         page.locator("#shared_told", has_text=told).wait_for()
@@ -116,10 +116,10 @@ def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     page.fill("#public", "javascript:alert(1)")
     page.locator("#public").blur()
     page.locator("#programs[data-shared=wrong]").wait_for()
-    assert "begins with https://" in page.inner_text("#shared_told")
+    assert "must begin with https://" in page.inner_text("#shared_told")
     page.fill("#public", "")
     page.locator("#public").blur()
-    page.locator("#shared_told", has_text="on this computer only").wait_for()
+    page.locator("#shared_told", has_text="only on this computer").wait_for()
     page.click("#programs_close")
 
 
@@ -319,7 +319,7 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
     write(page, "S;" * 1600)
     page.click("#my_programs")
     page.click("#share_picture")
-    page.locator("#shared_told", has_text="There is no picture").wait_for()
+    page.locator("#shared_told", has_text="No picture is available").wait_for()
     page.keyboard.press("Escape")
 
 
@@ -407,7 +407,7 @@ def test_a_browser_that_keeps_nothing_says_so(page: Page) -> None:
         " Storage.prototype.setItem = () => { throw new DOMException('full'); }; }"
     )
     page.click("#run")
-    noted(page, "This browser keeps nothing")
+    noted(page, "This browser does not save anything")
     page.evaluate("() => { Storage.prototype.setItem = window.kept; }")
     page.click("#stop")
 

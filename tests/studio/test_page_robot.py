@@ -233,7 +233,7 @@ def test_a_fault_is_named_where_it_is(page: Page) -> None:
     write(page, "X = 0;\nSHOW(1 / X)")
     page.select_option("#speed", "20")
     page.click("#run")
-    page.locator("#doing").filter(has_text="Line 2: something is divided by 0.").wait_for()
+    page.locator("#doing").filter(has_text="Line 2: the program divided by 0.").wait_for()
     assert page.locator(".cm-running").all_inner_texts() == ["SHOW(1 / X)"]
     write(page, "X = 0;\nSHOW(1 / Y)")
     page.locator(".cm-running").wait_for(state="detached")
@@ -244,7 +244,7 @@ def test_another_world_or_robot_begins_again(page: Page) -> None:
     page.click("#run")
     page.locator(".cm-running").first.wait_for()
     page.select_option("#world", "line")
-    page.locator("#doing").filter(has_text="Take the flags").wait_for()
+    page.locator("#doing").filter(has_text="Collect the flags").wait_for()
     page.click("#run")
     page.locator(".cm-running").first.wait_for()
     page.select_option("#robot", "liner")

@@ -52,7 +52,7 @@ def kept(page: Page) -> list[str]:
 
 def saved(page: Page, row: int) -> bytes:
     with page.expect_download() as download:
-        page.locator("#runs_list li").nth(row).locator("button", has_text="Save it").click()
+        page.locator("#runs_list li").nth(row).locator("button", has_text="Save run").click()
     assert download.value.suggested_filename == "run.tsr"
     return Path(download.value.path()).read_bytes()
 
@@ -82,12 +82,12 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
     ran(page, "SI|Y = 8;\nSHOW(Y)", "SHOW 8")
     assert len(kept(page)) >= 2
     page.locator("#runs_list li").nth(1).locator("button").first.click()
-    told(page, "Looking back: this was after ")  # its text is another one
+    told(page, "Looking back: this was at ")  # its text is another one
     assert page.locator("#where").text_content() == pose
     assert value(page, "X") == "7"
     page.focus("#time_at")
     page.keyboard.press("Home")
-    assert page.locator("#doing").inner_text().startswith("Looking back: this was after 0.0 s.")
+    assert page.locator("#doing").inner_text().startswith("Looking back: this was at 0.0 s.")
     page.click("#step")
     page.locator("#doing", has_not_text="Looking back").wait_for()
     in_phase(page, "paused")
@@ -131,7 +131,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     page.click("#runs_close")
     write(page, "SI|S")
     opened(page, data, tmp_path / "run.tsr")
-    told(page, f"The virtual robot did all of it again. Rows: {played.agreed}.")
+    told(page, f"The virtual robot did exactly the same again. Rows: {played.agreed}.")
     kept(page)
     assert read(saved(page, 0)).rows == recording.rows
     page.click("#runs_close")
@@ -140,7 +140,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
 def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path) -> None:
     data, rows = next(run for run in map(recorded, range(99)) if b'"tinibot32"' in run[0])
     opened(page, data, tmp_path / "run.tsr")
-    told(page, f"The virtual robot did all of it again. Rows: {len(rows)}.")
+    told(page, f"The virtual robot did exactly the same again. Rows: {len(rows)}.")
     first = json.loads(data.splitlines()[0])
     assert (page.input_value("#robot"), page.input_value("#world")) == (
         first["robot"], first["world"])  # fmt: skip
@@ -152,7 +152,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
 ) -> None:
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
     opened(page, real(*rows), tmp_path / "run.tsr")
-    told(page, "Both did the same. Comparisons: 4.")
+    told(page, "Both did the same. Values compared: 4.")
     changed = (*rows[:2], (451, "SHOW 6"), (452, "DONE"))
     opened(page, real(*changed), tmp_path / "run.tsr")
     told(page, "Line 5: the robot says 6 after 0.5 s, the virtual one 5 after")
@@ -162,16 +162,19 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     page.click("#runs_close")
     text = "SI|X = DISTANCE;\nSHOW(X)"
     opened(page, real((20, "SHOW 3"), text=text), tmp_path / "run.tsr")
-    told(page, "Line 1: the program reads DISTANCE, and the recording does not have")
+    told(page, "Line 1: the program reads DISTANCE, but the recording lacks")
 
 
 @pytest.mark.parametrize(
     ("data", "said"),
     [
-        (b"a letter", "It is damaged, or no run (line 1)."),
+        (b"a letter", "It is damaged, or is not a run (line 1)."),
         (real((1, "DONE")).encode()[:-10], "Its end is missing (after line 2)."),
-        (b'{"tiniscript_recording": 1}', "It is of an older version"),
-        (real((1, "DONE")).replace('run":1', 'run":9').encode(), "It comes from a newer version."),
+        (b'{"tiniscript_recording": 1}', "It was recorded by an older version"),
+        (
+            real((1, "DONE")).replace('run":1', 'run":9').encode(),
+            "It was recorded by a newer version.",
+        ),
         (b" " * 1_100_000, "It is too long"),
     ],
     ids=["letter", "cut", "older", "newer", "huge"],
@@ -200,6 +203,8 @@ def test_a_file_that_is_dropped_is_opened(page: Page) -> None:
         document.body.dispatchEvent(new DragEvent('drop', given));
     }"""
     page.evaluate(drop, ["x.png", "no"])
-    page.locator("#note", has_text="x.png was not opened. The name of a run's file").wait_for()
+    page.locator(
+        "#note", has_text="x.png was not opened. A saved run's file name ends in .tsr."
+    ).wait_for()
     page.evaluate(drop, ["mine.tsr", real(*rows)])
-    told(page, "Both did the same. Comparisons: 4.")
+    told(page, "Both did the same. Values compared: 4.")

@@ -60,7 +60,7 @@ def page(context: BrowserContext) -> Page:
 def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
     write(page, "SHOW(2.5);\nF(0.2, 80);\nX = 0;\nSHOW(1 / X)")
     page.click("#link_upload")
-    said(page, "Line 4: something is divided by 0.")
+    said(page, "Line 4: the program divided by 0.")
     assert page.locator("#link_shown").inner_text() == "2.5"
     assert "MOTORS 80 80" in robot.did
 
@@ -68,7 +68,7 @@ def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     page.keyboard.press("Escape")
-    said(page, "Stopped: the robot has confirmed it.")
+    said(page, "Stopped: the robot has confirmed the stop.")
     assert not robot.moves
 
 
@@ -85,7 +85,7 @@ def test_two_tabs_do_not_fight(context: BrowserContext, page: Page, robot: PtyRo
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")
     other.click("#link_connect")
-    said(other, "Another tab of this browser drives this robot.")
+    said(other, "Another tab of this browser is driving this robot.")
     other.close()
     assert page.locator("html[data-robot=connected]").count() == 1
 
@@ -109,4 +109,4 @@ def test_what_a_reload_has_left_is_met_again(page: Page) -> None:
 
 def test_a_cable_that_is_pulled_is_said(page: Page, robot: PtyRobot) -> None:
     robot.pull()
-    said(page, "The cable is out.")
+    said(page, "The cable is unplugged. The")

@@ -108,9 +108,9 @@ def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> N
     page.locator(START).wait_for(state="attached")
     assert locator.count() > 3
     page.click("[data-begin=dance]")
-    page.locator("#doing", has_text="The compiler did not arrive. Run tries it again").wait_for()
+    page.locator("#doing", has_text="The compiler did not load. Press Run to try again").wait_for()
     page.click("#side_lessons")
-    page.locator("#lesson_said", has_text="The compiler did not arrive.").wait_for()
+    page.locator("#lesson_said", has_text="The compiler did not load. Press").wait_for()
     hears(page, lambda: pages.wrong, "what the compiler lacks")
     pages.wrong.clear()
 
@@ -139,7 +139,7 @@ def test_the_address_says_which_screen_is_seen(start: Page) -> None:
 
 def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -> None:
     start.goto(f"{pages.address}#program={GOOD}")
-    noted(start, "This program came with a link")
+    noted(start, "This program came from a link.")
     assert screen(start) == "program"
     checked(start)
     assert image(start) == compile("SI|F(9, 90)").image

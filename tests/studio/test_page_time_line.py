@@ -45,9 +45,7 @@ def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
     times, shown = [end_s], []
     while times[-1] > 0:
         page.keyboard.press("ArrowLeft")
-        assert doing(page).startswith(
-            f"Looking back: after {seconds(page):.1f} s line 5 ran, F(0.5, "
-        )
+        assert doing(page).startswith(f"Looking back: at {seconds(page):.1f} s line 5 ran, F(0.5, ")
         assert seconds(page) < times[-1] or seconds(page) == times[-1] == 0
         if seconds(page) == times[-1]:
             break
@@ -112,5 +110,5 @@ def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page)
     page.focus("#time_at")
     page.keyboard.press("Home")
     part, *values = doing(page).split("   ")
-    assert part == "Looking back: after 0.0 s line 2 ran, F(1, 60) UNTIL(DISTANCE < NEAR)"
+    assert part == "Looking back: at 0.0 s line 2 ran, F(1, 60) UNTIL(DISTANCE < NEAR)"
     assert values[0].startswith("DISTANCE ") and values[1:] == ["NEAR 30"]

@@ -113,7 +113,7 @@ def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Page
     page = pages.open(is_alone=True)
     page.evaluate(FULL, ["localStorage"])
     write(page, "SI|F(2, 20)")
-    noted(page, "This browser keeps nothing for this page")
+    noted(page, "This browser does not save anything for this page. Save")
     page.locator("#world_draw:enabled").wait_for()
     page.click("#world_draw")
     page.click("#world_add_walls")
@@ -125,7 +125,7 @@ def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Page
     checked(page)
     page.click("#view_text")
     write(page, "SI|F(0.1, 80)")
-    noted(page, "This browser keeps nothing for this page")
+    noted(page, "This browser does not save anything for this page. Save")
     assert image(page) == compile("SI|F(0.1, 80)").image
     page.click("#run")
     in_phase(page, "ended")
@@ -144,7 +144,7 @@ def test_a_program_that_is_too_long_to_be_kept_says_so(page: Page) -> None:
             assert page.inner_text("#note") == ""
             page.click("#my_programs")
             page.click("#programs_close")
-        noted(page, "This program is too long for the browser to keep")
+        noted(page, "This program is too long for the browser to save. Save")
         kept = page.evaluate("JSON.parse(localStorage['tiniscript.work']).text.length")
         assert (kept > 400_000) == (count == 30_000)
     write(page, "S")

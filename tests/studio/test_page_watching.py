@@ -232,6 +232,6 @@ def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
     assert count(page, "2a9d6f") > 100  # the flags that were taken
     heard = page.locator("#where").inner_text()
     assert "Flags: 2 of 2. Points: 230. Stars: 3 of 3." in heard
-    assert "cm from the left and 50 cm from the bottom, and looks to the right." in heard
+    assert "cm from the left and 50 cm from the bottom, and faces to the right." in heard
     page.select_option("#world", "obstacles")
     assert not page.locator("#score").is_visible()

@@ -244,7 +244,7 @@ def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
     assert chosen(floor) == "Flag 1"
     floor.check("#world_rests")
     flag = saved(floor).flags[0]
-    assert (round(flag.place.x), round(flag.place.y), flag.reach_cm, flag.rests) == (
+    assert (round(flag.place.x), round(flag.place.y), flag.reach_cm, flag.needs_rest) == (
         150, 100, 12, True,
     )  # fmt: skip
     floor.select_option("#world_part", label="Floor")
@@ -392,7 +392,7 @@ def test_a_damaged_world_does_no_harm(page: Page) -> None:
     page.reload()
     checked(page)
     assert page.input_value("#world") == "obstacles"
-    said(page, "cannot be read any more")
+    said(page, "drew can no longer be read.")
     page.click("#run")
     in_phase(page, "running")
     page.keyboard.press("Escape")

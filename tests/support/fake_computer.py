@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tiniscript.doctor.system import Owner, System
-from tiniscript.link.ports import Found
+from tiniscript.link.ports import ListedPort
 
 
 class FakeComputer(System):
@@ -14,7 +14,7 @@ class FakeComputer(System):
     def __init__(self, root: Path, platform: str) -> None:
         super().__init__(root)
         self.platform = platform
-        self.listed: list[Found] = []
+        self.listed: list[ListedPort] = []
         self.outputs: dict[tuple[str, ...], str] = {}
         self.owners: dict[str, tuple[int, bool]] = {}
         self.group_numbers: set[int] = set()
@@ -22,7 +22,7 @@ class FakeComputer(System):
         self.asked: list[tuple[str, ...]] = []
 
     def add_port(self, port: str, description: str = "") -> None:
-        self.listed.append(Found(port, description))
+        self.listed.append(ListedPort(port, description))
         self.owners.setdefault(port, (20, True))
 
     def write(self, path: str, text: str) -> None:
@@ -50,7 +50,7 @@ class FakeComputer(System):
             folder.mkdir()
             (folder / "3").symlink_to(opens)
 
-    def ports(self) -> list[Found]:
+    def ports(self) -> list[ListedPort]:
         return self.listed
 
     def owner(self, path: str) -> Owner | None:

@@ -1,4 +1,7 @@
-"""Words that the language could have: they stand for instructions, three of them with values."""
+"""Words that the language could have: they stand for instructions, three of them with values.
+
+One, LAMP, stands for none and has a role of its own.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import shutil
 from pathlib import Path
 
 from tiniscript.base.languages import FOLDER
-from tiniscript.base.words import POWER, ROLES, SECONDS, Argument, Word
+from tiniscript.base.words import POWER, ROLES, SECONDS, Argument, Role, Word
 
 HORN = Word("HORN", ROLES["fixed"], stands_for="BEEP(0.5, 440)")
 SAID = {"en": "honks", "es": "toca la bocina"}
@@ -18,6 +21,7 @@ SHAKE = Word(
     "SHAKE_POWER = POWER;LOOP(BEATS);L(0.2, SHAKE_POWER);R(0.2, SHAKE_POWER);END_LOOP",
 )  # fmt: skip
 DANCE = Word("DANCE", ROLES["fixed"], (SECONDS, TIMES), "BEEP(SECONDS, 440);HORN;WIGGLE(N)")
+LAMP = Word("LAMP", Role("lamp", is_instruction=True), (POWER._replace(sample="50"),))
 
 
 def with_texts(folder: Path) -> Path:
@@ -25,6 +29,6 @@ def with_texts(folder: Path) -> Path:
     shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.texts"))
     for language, said in SAID.items():
         with (folder / language / "studio.toml").open("a", encoding="utf-8") as file:
-            for word in (HORN, SHAKE):
+            for word in (HORN, SHAKE, LAMP):
                 file.write(f'"block/{word.text}" = "{{{word.text}}} {said}"\n')
     return folder

@@ -40,7 +40,7 @@ class Keys(KeyRing):
     def accepts(self, robot: int) -> bool:
         return robot in self.accepted
 
-    def _kept(self) -> list[RobotKey]:
+    def _stored_keys(self) -> list[RobotKey]:
         return self.found
 
     def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:

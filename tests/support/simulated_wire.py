@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import random
 from typing import Protocol
 
+from tests.support.uart import at_speed
 from tiniscript.link.wire import MOST_BYTES, QUIET_MS, Wire
 
 
@@ -20,11 +20,7 @@ class OtherEnd(Protocol):
 
 def garbled(data: bytes, sent: int, heard: int) -> bytes:
     """Return what an UART at one speed hears of bytes that were sent at another one."""
-    if sent == heard or not data:
-        return data
-    chance = random.Random(f"{data!r} {sent} {heard}")
-    count = max(1, len(data) * heard // sent)
-    return bytes(chance.choice((0x00, 0x80, 0xE0, 0xF8, 0xFE, 0x98)) for _ in range(count))
+    return at_speed(data, sent, heard) if sent != heard else data
 
 
 class SimulatedWire(Wire):
@@ -45,7 +41,7 @@ class SimulatedWire(Wire):
         if self.is_gone:
             raise OSError("gone")
         self.sent.append((self.baud, data))
-        self._there += garbled(data, self.baud, self.end.baud)
+        self._there += garbled(data, self.baud, self._speed())
 
     def heard(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
         if self.is_gone:
@@ -59,9 +55,13 @@ class SimulatedWire(Wire):
 
     def _step(self) -> bytes:
         self.now_ms += 1
-        speed = self.end.baud  # an answer has the speed of before the command
+        speed = self._speed()  # an answer has the speed of before the command
         data, self._there = self._there, b""
         return garbled(self.end.step(data), speed, self.baud)
+
+    def _speed(self) -> int:
+        """Return the speed of what is at the other end; a bare wire has that of its bytes."""
+        return self.baud if getattr(self.end, "is_bare", False) else self.end.baud
 
     def set_baud(self, baud: int) -> None:
         self.baud = baud

@@ -17,7 +17,7 @@ from tests.machines import Senses
 from tests.machines.python import lists_of
 from tests.machines.text_reader import LARGEST_ROOM, Answer, TextReader
 from tests.oracle import programs
-from tests.oracle.task_programs import task_program
+from tests.oracle.task_programs import shared_program, task_program
 from tests.support.campaign import each_seed, wanted
 from tests.support.casefile import Case, all_cases
 from tests.support.kits import KITS
@@ -168,9 +168,19 @@ def texts_of(seed: int, broken: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
 
 
 def tasks_of(seed: int, broken: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
-    """Return a random program with tasks, every second one with ways, and its slips."""
+    """Return a random program with tasks, and its slips.
+
+    Every second one has ways, every fourth one DEFs with values that tasks share.
+    """
     rng = random.Random(seed)
-    text, readings = task_program(rng, ways=seed % 2 == 1)
+    if seed // 4 % 4 == 0:
+        has_yes_no = seed // 16 % 4 == 0
+        text, readings = shared_program(rng)
+        # some have too many copies, or are called too deep
+        while (not has_yes_no and "Q" in text) or not is_right(text.encode(), KITS[0][1]):
+            text, readings = shared_program(rng)
+    else:
+        text, readings = task_program(rng, ways=seed % 2 == 1)
     if seed % 4 == 1:
         text = re.sub(r"(?<=\d) CM", rng.choice(("cm", "Cm", "\ncm")), text)
         text = re.sub(" DEG", rng.choice((" deg", "°", "º", " \n°")), text)

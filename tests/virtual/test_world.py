@@ -101,11 +101,11 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
     "text, said",
     [
         ("", "floor is missing. Add it, for example: [floor]"),
-        (RIGHT + "[[wall]]\n", "wall means nothing in a world. Did you mean walls?"),
+        (RIGHT + "[[wall]]\n", "wall has no meaning in a world. Did you mean walls?"),
         (RIGHT + "[[walls]]\n", "walls[1].points is missing. Add it, for example: points ="),
         (RIGHT + "[[walls]]\npoints = 7\n", "walls[1].points is a number. Write a list of points"),
         (RIGHT + "[[walls]]\npoints = [[1, 2], 3]\n", "walls[1].points is a list. Write a list of"),
-        (RIGHT + "[[walls]]\npoints = [[1, 2]]\n", "Points of walls[1].points: 1. Write 2 to 200"),
+        (RIGHT + "[[walls]]\npoints = [[1, 2]]\n", "walls[1].points has 1 points. Write 2 to 200"),
         (
             RIGHT + "[[walls]]\npoints = [[1, 2], ['a', 3]]\n",
             "walls[1].points[2] is a text in quotes. Write a number there.",
@@ -120,13 +120,13 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
         ),
         (RIGHT + "[[boxes]]\nx_cm = nan\ny_cm = 1\nlength_cm = 1\nwidth_cm = 1\n", "digits"),
         (RIGHT.replace("200", "0"), "floor.width_cm is 0. Write a number from 1 to 2000."),
-        (RIGHT + "[[walls]]\npoints = [[0, 0], [1, 1]]\n" * 101, "walls has 101 parts. Leave"),
+        (RIGHT + "[[walls]]\npoints = [[0, 0], [1, 1]]\n" * 101, "walls has 101 parts. Keep"),
         (
             RIGHT + f"[[walls]]\npoints = {[[k, k] for k in range(201)]}",
-            "Points of walls[1].points: 201",
+            "walls[1].points has 201 points",
         ),
-        (RIGHT + "[[walls", "Line 7 is not TOML."),
-        (RIGHT + "a = " + "[" * 5000, "is not TOML"),
+        (RIGHT + "[[walls", "Line 7 is not valid TOML."),
+        (RIGHT + "a = " + "[" * 5000, "is not valid TOML."),
         (RIGHT + "[labels]\nen = '\t'\n", "labels.en is empty or cannot be printed."),
         (
             RIGHT.replace("y_cm = 50", "y_cm = 200.5"),
@@ -156,7 +156,9 @@ def test_a_robot_that_does_not_fit_is_refused() -> None:
     with pytest.raises(WorldRefused) as exception_info:
         robot_in(floor(start="x_cm = 5\ny_cm = 50"))
     [said] = describe(exception_info.value, "en")
-    assert said.startswith("The robot does not fit where it starts, at x_cm = 5, y_cm = 50. Move")
+    assert said.startswith(
+        "The robot does not fit at its starting point, x_cm = 5, y_cm = 50. Move"
+    )
 
 
 @pytest.mark.parametrize("verb", [["robot"], ["upload", "--virtual", "-e", "SI|S"]])
@@ -167,13 +169,13 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
     wrong.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
     for name, said in (
         ("obstacle", "Did you mean obstacles?"),
-        ("nowhere", f"Take one of these: {', '.join(worlds.names())}"),
+        ("nowhere", f"Choose one of these: {', '.join(worlds.names())}"),
         ("", "There is no world"),
         (str(tmp_path), "is a folder"),
         (str(tmp_path / "missing.toml"), "There is no file"),
         (str(binary), "is not UTF-8"),
         (str(large), "Check that it is a world"),
-        (str(wrong), "w.toml cannot be used:\n  lamps[1].x_cm is missing"),
+        (str(wrong), "w.toml has mistakes:\n  lamps[1].x_cm is missing"),
         ("a\0b.toml", "cannot be read"),
     ):
         for language in ("en", "es"):

@@ -134,7 +134,9 @@ def test_of_those_with_a_newer_word_as_a_name_it_is_told_since_when() -> None:
     assert len(olds) >= 5
     for old in olds:
         (message,) = check(old.text, old.robot)
-        assert message.code == "TS105" and "is a word of TiniScript since 0.3" in message.message
+        assert (
+            message.code == "TS105" and "has been a word of TiniScript since 0.3" in message.message
+        )
         word = message.message.split()[0]
         assert message.fix.startswith(f"MY_{word}")
         new = re.sub(rf"(?i)\b{word}\b", f"MY_{word}", old.text)  # as it says

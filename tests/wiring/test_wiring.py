@@ -220,7 +220,7 @@ def test_what_a_robot_does_not_have_is_not_said() -> None:
     assert "tsc doctor --module --port P --baud 57600" in said["grabber"]
     assert "tsc doctor --module" not in said["tinibot"]
     assert "STATE tells" in said["tinibot"]
-    assert "STATE stays free" in said["liner"]
+    assert "STATE stays unconnected" in said["liner"]
     assert "resistors of 10 kΩ at STBY" in said["liner"]
     assert "Unplug the HC-05" in said["liner"]
 
@@ -235,7 +235,7 @@ def test_a_battery_has_the_resistors_that_its_range_asks_for() -> None:
     for full, ohms in (("10", "10 kΩ"), ("15", "20 kΩ"), ("12.5", "15 kΩ")):
         plan = plan_of(read(text.replace("full = 10", f"full = {full}"), "x"), "en")
         (row,) = [row for row in wire_rows(plan) if row[2] == "BATTERY"]
-        assert row[3:] == ("M+", f"{ohms} in the wire; 10 kΩ from the pin to GND")
+        assert row[3:] == ("M+", f"{ohms} in series; 10 kΩ from the pin to GND")
 
 
 @pytest.mark.parametrize("name", robots.names())
@@ -254,7 +254,7 @@ def test_no_pin_gets_more_than_it_takes(name: str) -> None:
         assert volts >= (2.5 if is_3v3 else 5.0), "a yes is above three quarters of the supply"
     if is_3v3:
         rows = [row[4] for row in wire_rows(plan) if row[3] == "ECHO"]
-        assert rows == ["1 kΩ in the wire; 2 kΩ from the pin to GND"]
+        assert rows == ["1 kΩ in series; 2 kΩ from the pin to GND"]
 
 
 # -- the drawing

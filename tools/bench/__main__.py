@@ -19,8 +19,8 @@ PAGE = Path(__file__).parent.parent.parent / "docs" / "en" / "figures.md"
 def commands() -> list[list[str]]:
     """Return the name of each benchmark of the page and its arguments, in the page's order."""
     text = " ".join(PAGE.read_text(encoding="utf-8").split())
-    found = re.findall(r"`python -m tools\.bench\.(\w+(?: [^`]+)?)`", text)
-    return [command.split() for command in dict.fromkeys(found)]
+    result = re.findall(r"`python -m tools\.bench\.(\w+(?: [^`]+)?)`", text)
+    return [command.split() for command in dict.fromkeys(result)]
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -24,13 +24,13 @@ FLAGS = (*USUAL, "-flto", "-mrelax", "-mcall-prologues")  # the first ones of pl
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
 MARK = b"TiniScript: here is the request"
 REQUEST_BYTES = 8192
-PACKAGES = "apt-get install gcc-avr avr-libc binutils-avr simavr"
+INSTALL_COMMAND = "apt-get install gcc-avr avr-libc binutils-avr simavr"
 
 
 def missing() -> str:
     """Return why there is no simulated chip, or nothing."""
     names = [name for name in ("avr-g++", "simavr") if not shutil.which(name)]
-    return f"no {' and no '.join(names)} ({PACKAGES})" if names else ""
+    return f"no {' and no '.join(names)} ({INSTALL_COMMAND})" if names else ""
 
 
 # What a program needs besides the machine.
@@ -50,7 +50,7 @@ def built(name: str, sources: Path = SOURCES, *more: str, chip: str = CHIP) -> b
         sources / "extras" / "chip" / "text.cpp",
         *sorted((sources / "src" / "vm").glob("*.[cS]*")),
     ]
-    code += [sources / "src" / each for each in MORE.get(name, ())]
+    code += [sources / "src" / item for item in MORE.get(name, ())]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"
         flags = f"-mmcu={chip}", *FLAGS[1:], *more, *WARNINGS
@@ -76,8 +76,8 @@ def run(program: bytes, request: bytes, chip: str = CHIP, limit_s: int = 120) ->
             capture_output=True,
             timeout=limit_s,
         )
-    said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", completed.stdout + completed.stderr)
-    lines = [line.decode() for line in said]
+    text = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", completed.stdout + completed.stderr)
+    lines = [line.decode() for line in text]
     if not lines or lines.pop() != "END":
         raise RuntimeError(
             f"the chip did not end: {(completed.stdout + completed.stderr)[-2000:]!r}"

@@ -61,7 +61,7 @@ def _robot_of(parts: dict[str, str]) -> str:
     return ""
 
 
-def measured() -> Measured:
+def measure() -> Measured:
     programs = statements = code_bytes = 0
     opcodes: Counter[str] = Counter()
     for compiled in corpus():
@@ -75,8 +75,8 @@ def measured() -> Measured:
 
 
 def main() -> None:
-    found = measured()
-    print(f"A statement takes {found.per_statement:.1f} bytes.")
+    result = measure()
+    print(f"A statement takes {result.per_statement:.1f} bytes.")
 
 
 if __name__ == "__main__":

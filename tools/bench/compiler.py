@@ -30,11 +30,11 @@ def main() -> None:
 
 
 def sizes() -> None:
-    found = []
+    matches = []
     for name, text in zip(ROWS, PROGRAMS, strict=True):
         ours = compile_text(text, KIT)
-        found.append((name, *(f"{len(each)} bytes" for each in (ours.code, ours.image))))
-    page.show("compiler", found)
+        matches.append((name, *(f"{len(item)} bytes" for item in (ours.code, ours.image))))
+    page.show("compiler", matches)
 
 
 def median_pair(ours: Callable[[], object], theirs: Callable[[], object], runs: int) -> list[float]:
@@ -42,9 +42,9 @@ def median_pair(ours: Callable[[], object], theirs: Callable[[], object], runs: 
     pairs = []
     for _ in range(runs):
         times = []
-        for each in (ours, theirs):
+        for item in (ours, theirs):
             start = time.perf_counter()
-            each()
+            item()
             times.append(time.perf_counter() - start)
         pairs.append((times[0], times[1], times[0] / times[1]))
     return [statistics.median(column) for column in zip(*pairs, strict=True)]

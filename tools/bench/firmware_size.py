@@ -1,8 +1,8 @@
-"""Prints how much flash and RAM the whole sketch takes, for each robot on each board it fits.
+"""Prints how much flash and RAM the whole sketch takes, for each robot on an Uno and on a Nano.
 
-Builds every AVR environment of `vm_arduino/platformio.ini` with PlatformIO, offline stand-ins
-included. RAM is what is always taken; the stack comes on top. What the stack leaves free is
-measured on a simulated board, where that can be built.
+Builds these environments of `vm_arduino/platformio.ini` with PlatformIO, offline stand-ins
+included; a Mega has six times as much room. RAM is what is always taken; the stack comes on top.
+What the stack leaves free is measured on a simulated board, where that can be built.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import NamedTuple
 from tiniscript import robots
 from tiniscript.flash import building
 from tools import ROOT, uno
-from tools.bench import firmware_stack
+from tools.bench import firmware_stack, page
 from tools.builds.platformio_offline import config_of
 
 PROJECT = ROOT / "vm_arduino"
@@ -45,7 +45,28 @@ def environments() -> list[str]:
             and config.get(f"env:{name}", "platform").split()[0] == PLATFORM]  # fmt: skip
 
 
-def measured(name: str, project: Path = PROJECT) -> Sketch:
+def parts_of(name: str) -> tuple[str, str]:
+    """Return the robot and the board of an environment."""
+    board, _, robot = name.partition("_")
+    return robot or DEFAULT, board
+
+
+def row_of(robot: str, board: str) -> str:
+    """Return the page's row of what is built for a robot with a board: `liner`, Nano."""
+    return f"`{robot}`, {board.capitalize()}"
+
+
+def short_of_room() -> list[str]:
+    """Return the environments for an ATmega328P: an Uno, or a Nano."""
+    return [name for name in environments() if parts_of(name)[1] in ("uno", "nano")]
+
+
+def page_rows() -> list[str]:
+    """Return the rows of the page's table."""
+    return [row_of(*parts_of(name)) for name in short_of_room()]
+
+
+def measure(name: str, project: Path = PROJECT) -> Sketch:
     """Build one environment and return its sizes. Raises RuntimeError with the log."""
     command = [sys.executable, "-m", "tools.builds.platformio_offline", "--project", str(project)]
     completed = subprocess.run(
@@ -60,35 +81,28 @@ def measured(name: str, project: Path = PROJECT) -> Sketch:
     used = {name: (int(bytes), int(holds)) for name, bytes, holds in rows}
     if completed.returncode != 0 or len(used) != 2:
         raise RuntimeError(completed.stdout[-4000:])
-    board, _, robot = name.partition("_")
     elf = project / ".pio" / "build" / name / "firmware.elf"
-    return Sketch(robot or DEFAULT, board, *used["Flash"], used["RAM"][0], elf)
+    return Sketch(*parts_of(name), *used["Flash"], used["RAM"][0], elf)
 
 
 def main() -> int:
     try:
-        sketches = [measured(name) for name in environments()]
+        sketches = [measure(name) for name in short_of_room()]
     except RuntimeError as why:
         print(why, file=sys.stderr)
         return 2
-    print("| robot | board | flash | of | RAM | free after the stack |")
-    print("|---|---|---:|---:|---:|---:|")
     is_enough = True
+    found = []
     for sketch in sketches:
         is_enough &= sketch.flash <= sketch.holds
         free = "-"
         if not uno.missing():
-            stack = firmware_stack.measured(
-                sketch.firmware, robots.load(sketch.robot), sketch.board
-            )
+            stack = firmware_stack.measure(sketch.firmware, robots.load(sketch.robot), sketch.board)
             is_enough &= stack.least_free >= firmware_stack.LEAST_FREE
             free = f"{stack.least_free:,}"
-        sizes = f"{sketch.flash:,} | {sketch.holds:,} | {sketch.ram:,}"
-        print(f"| {sketch.robot} | {sketch.board} | {sizes} | {free} |")
-    print(
-        f"\nBytes. {firmware_stack.LEAST_FREE} must stay free where the deepest interrupt comes "
-        "in the deepest place of the program."
-    )
+        sizes = [f"{size:,}" for size in (sketch.flash, sketch.holds, sketch.ram)]
+        found.append([row_of(sketch.robot, sketch.board), *sizes, free])
+    page.show("firmware_size", found)
     if uno.missing():
         print(uno.missing())
     return int(not is_enough)

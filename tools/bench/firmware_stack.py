@@ -48,7 +48,7 @@ SEEN_BITS = 9.5625  # from the start bit of a byte until the chip has it
 DIVIDES_BY_ZERO = "X = 0; X = 5 / X"
 
 
-def measured(firmware: Path, robot: Robot, board: str) -> Stack:
+def measure(firmware: Path, robot: Robot, board: str) -> Stack:
     """Run a firmware through everything that goes deep. Raises RuntimeError where it does not.
 
     `board` is that of the firmware: it may be another one than that of the robot's profile.
@@ -71,8 +71,8 @@ def connected(uno: Uno, robot: Robot, baud: int = 0, keys: Keys | None = None) -
 
 def free_from(firmware: Path) -> int:
     """Return the first address of the RAM that only the stack uses."""
-    said = subprocess.run(["avr-nm", firmware], capture_output=True, text=True, check=True).stdout
-    rows = (row.split() for row in said.splitlines())
+    text = subprocess.run(["avr-nm", firmware], capture_output=True, text=True, check=True).stdout
+    rows = (row.split() for row in text.splitlines())
     (address,) = [row[0] for row in rows if row[-1] == FREE_FROM]
     return int(address, 16) - RAM
 
@@ -148,10 +148,10 @@ def type_deep(uno: Uno, kit: Kit) -> None:
     for text in TYPED:
         uno.send(text.encode())
         uno.run_ms(2 * len(text) + 400)
-    said = bytes(byte.value for byte in uno.sent[before:]).decode("latin-1")
+    sentence = bytes(byte.value for byte in uno.sent[before:]).decode("latin-1")
     for answer in ANSWERS:
-        if answer not in said:
-            raise RuntimeError(f"the robot has not said {answer} but {said}")
+        if answer not in sentence:
+            raise RuntimeError(f"the robot has not said {answer} but {sentence}")
 
 
 def drive_a_way(wired: Wired, robot: Robot) -> None:

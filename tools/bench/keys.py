@@ -91,18 +91,18 @@ class Hand:
 
     def _ms_from(self, begun: int, told: int, are_on: bool) -> float:
         """Raises RuntimeError where the motors are not as they must be in the end."""
-        found = [
+        matches = [
             event
             for event in self._board.events[told:]
             if event.what == "pin" and event["pin"] in MOTORS
         ]
-        last = {event["pin"]: event["is"] for event in found}
+        last = {event["pin"]: event["is"] for event in matches}
         if {last.get(pin) for pin in PWM_PINS} != {"pwm" if are_on else "low"}:
             raise RuntimeError(f"the motors have not gone {'on' if are_on else 'off'}: {last}")
-        return (found[-1].cycle - begun) / CYCLES_PER_MS
+        return (matches[-1].cycle - begun) / CYCLES_PER_MS
 
 
-def measured(firmware: Path, baud: int) -> list[list[float]]:
+def measure(firmware: Path, baud: int) -> list[list[float]]:
     """Return the ms of each try, by row."""
     with Hand(firmware, baud, AT_ONCE) as hand:
         changes = [(hand.change(AHEAD), hand.change(NOTHING)) for _ in range(TRIES)]
@@ -113,10 +113,10 @@ def measured(firmware: Path, baud: int) -> list[list[float]]:
 
 
 def main() -> int:
-    return on_each_baud(measured, shown)
+    return on_each_baud(measure, print_figures)
 
 
-def shown(found: dict[int, list[list[float]]], _: Path) -> bool:
+def print_figures(found: dict[int, list[list[float]]], _: Path) -> bool:
     """Print the figures, half and the slowest of each; return whether they are kept."""
     by_row = zip(*found.values(), strict=True)
     page.show("keys", [

@@ -55,10 +55,10 @@ class Wire:
             self._queue.append((self._free_ms + self._late_ms, byte))
 
     def arrived(self, now_ms: int) -> bytes:
-        found = bytearray()
+        result = bytearray()
         while self._queue and self._queue[0][0] <= now_ms:
-            found.append(self._queue.popleft()[1])
-        return bytes(found)
+            result.append(self._queue.popleft()[1])
+        return bytes(result)
 
 
 def program(code_bytes: int) -> Image:

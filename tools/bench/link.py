@@ -74,7 +74,7 @@ def built(baud: int, folder: Path) -> Path:
     if not count:
         raise RuntimeError("tinibot.h says nothing of a baud")
     (kits / "own.h").write_text(own, encoding="utf-8")
-    firmware_size.measured("uno", project)
+    firmware_size.measure("uno", project)
     return project / ".pio" / "build" / "uno" / "firmware.elf"
 
 
@@ -89,7 +89,7 @@ def first_move(board: Uno, since: int) -> int:
     return max(changes)
 
 
-def measured(firmware: Path, baud: int) -> Figures:
+def measure(firmware: Path, baud: int) -> Figures:
     with Uno(firmware, baud=baud) as board:
         wired = connected(board, robots.load(ROBOT), baud)
         must(wired, wired.session.hello())
@@ -144,18 +144,18 @@ def on_each_baud(
 
 
 def main() -> int:
-    return on_each_baud(measured, shown)
+    return on_each_baud(measure, print_figures)
 
 
-def shown(found: dict[int, Figures], folder: Path) -> bool:
+def print_figures(found: dict[int, Figures], folder: Path) -> bool:
     """Print the figures, and those of the other sketches; return whether all are kept."""
     figures = [*found.values()]
     page.show("link", [
-        (ROWS[0], *(f"{each.start_ms:.1f} ms" for each in figures)),
-        (ROWS[1], *(f"{each.live_us:.0f} µs" for each in figures)),
-        (ROWS[2], *(f"{each.stop.us:.1f} µs" for each in figures)),
-        (ROWS[3], *(f"{each.stop.median_us:.1f} µs" for each in figures)),
-        (ROWS[4], *(f"{each.stop.together_us:.1f} µs" for each in figures)),
+        (ROWS[0], *(f"{figure.start_ms:.1f} ms" for figure in figures)),
+        (ROWS[1], *(f"{figure.live_us:.0f} µs" for figure in figures)),
+        (ROWS[2], *(f"{figure.stop.us:.1f} µs" for figure in figures)),
+        (ROWS[3], *(f"{figure.stop.median_us:.1f} µs" for figure in figures)),
+        (ROWS[4], *(f"{figure.stop.together_us:.1f} µs" for figure in figures)),
     ])  # fmt: skip
     others = others_stopped(folder)
     page.show("link", [
@@ -171,18 +171,18 @@ def shown(found: dict[int, Figures], folder: Path) -> bool:
 def others_stopped(folder: Path) -> dict[str, stops.Slowest]:
     """Return the slowest stops of the other sketches, by environment, each at its robot's baud."""
     project = copied(folder / "vm_arduino")
-    found = {}
+    result = {}
     for name in (*OTHERS, *UNSHOWN):
-        sketch = firmware_size.measured(name, project)
+        sketch = firmware_size.measure(name, project)
         robot = robots.load(sketch.robot)
-        found[name] = stops.slowest(sketch.firmware, robot, sketch.board, robot.board.baud)
-    return found
+        result[name] = stops.slowest(sketch.firmware, robot, sketch.board, robot.board.baud)
+    return result
 
 
-def is_kept(baud: int, found: Figures) -> bool:
+def is_kept(baud: int, figures: Figures) -> bool:
     """Return whether the figures are as they must be."""
-    is_quick = found.start_ms <= MUST_MS[baud] and found.live_us <= LIVE_US
-    return is_quick and found.stop.us <= STOP_US and found.stop.together_us <= TOGETHER_US
+    is_quick = figures.start_ms <= MUST_MS[baud] and figures.live_us <= LIVE_US
+    return is_quick and figures.stop.us <= STOP_US and figures.stop.together_us <= TOGETHER_US
 
 
 if __name__ == "__main__":

@@ -24,10 +24,10 @@ ROWS = ("TiniScript", "TiniScript, in the shipped sketch")
 def count(code: bytes, readings: Sequence[int], budget: int, *more: str) -> tuple[list[int], int]:
     """Return the values that the chip shows, and the cycles in `tick` in all."""
     request = pack(f"<BB{len(readings)}iH", budget, len(readings), *readings, len(code)) + code
-    said = avr_bench.run(avr_bench.built("cycles", avr_bench.SOURCES, *more), request)
-    *shown, cycles, status = (line.split() for line in said)
+    text = avr_bench.run(avr_bench.built("cycles", avr_bench.SOURCES, *more), request)
+    *shown, cycles, status = (line.split() for line in text)
     if status != ["STATUS", str(DONE)]:
-        raise RuntimeError(f"the program did not end, or a tick was too long: {said[-5:]}")
+        raise RuntimeError(f"the program did not end, or a tick was too long: {text[-5:]}")
     return [int(value) for _, value in shown], int(cycles[1])
 
 
@@ -55,9 +55,9 @@ def cycles() -> None:
     if not avr_bench.missing():
         alone = [f"{per_iteration(work):,.0f}" for work in workloads.WORKS]
     if not uno.missing():
-        firmware = firmware_size.measured("uno").firmware
-        found = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
-        sketch = [f"{each:,.0f}" for each in found]
+        firmware = firmware_size.measure("uno").firmware
+        matches = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
+        sketch = [f"{item:,.0f}" for item in matches]
     rows = zip(ROWS, (alone, sketch), strict=True)
     page.show("machine", [(row, "thousandths", *its) for row, its in rows])
     for why in filter(None, (avr_bench.missing(), uno.missing())):

@@ -44,19 +44,20 @@ class Drive(NamedTuple):
 
 
 def main() -> None:
-    found = []
+    matches = []
     for row, name in zip(ROWS, PROGRAMS, strict=True):
         text = (ROOT / "examples" / name).read_text(encoding="utf-8")
         with ProcessPoolExecutor() as pool:
             drives = list(pool.map(partial(drive, text), range(SEEDS)))
-        contacts = [each.contacts for each in drives]
-        metres = median(each.driven_m for each in drives)
-        stood_s = max(each.stood_s for each in drives)
-        stuck = sum(each.stood_s >= STUCK_S for each in drives)
+        contacts = [item.contacts for item in drives]
+        metres = median(item.driven_m for item in drives)
+        stood_s = max(item.stood_s for item in drives)
+        stuck = sum(item.stood_s >= STUCK_S for item in drives)
         longest = f"{stood_s:.1f} s" if stood_s < STUCK_S else f"{stood_s:.0f} s"
-        found.append((row, f"{median(contacts):.0f}", f"{max(contacts)}", f"{metres:.0f}", longest,
+        matches.append((row, f"{median(contacts):.0f}", f"{max(contacts)}", f"{metres:.0f}",
+            longest,
                       f"{stuck} of {SEEDS}"))  # fmt: skip
-    page.show("obstacles", found)
+    page.show("obstacles", matches)
 
 
 def drive(text: str, seed: int) -> Drive:

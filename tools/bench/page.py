@@ -43,17 +43,17 @@ def written(row: Sequence[str]) -> str:
 
 def tables(name: str) -> list[Table]:
     """Return the tables in the section of a benchmark, `link`."""
-    found: list[list[str]] = []
+    matches: list[list[str]] = []
     is_inside = is_table = False
     for line in PAGE.read_text(encoding="utf-8").splitlines():
-        if begun := _BEGINS.match(line):
-            is_inside = begun[1] == f"tools.bench.{name}"
+        if match := _BEGINS.match(line):
+            is_inside = match[1] == f"tools.bench.{name}"
         if line.startswith("|") and is_inside:
             if not is_table:
-                found.append([])
-            found[-1].append(line)
+                matches.append([])
+            matches[-1].append(line)
         is_table = line.startswith("|")
-    return [Table(head, rule, tuple(rows)) for head, rule, *rows in found]
+    return [Table(head, rule, tuple(rows)) for head, rule, *rows in matches]
 
 
 def show(name: str, found: Sequence[Sequence[str]], which: int = 0, keys: int = 1) -> None:

@@ -98,7 +98,7 @@ bool port_may_write_ahead() { return sink; }
 uint8_t* port_memory(uint16_t length, bool) { return length > 400 ? nullptr : (uint8_t*)0x200; }
 void port_forget() { sink = 0; }
 void port_take(uint8_t mode, bool) { sink = mode; }
-void port_seal(const uint8_t* image) { sink = *image; }
+void port_has_checksum(const uint8_t* image) { sink = *image; }
 void port_start(bool is_live) { sink = is_live; }
 void port_stop(uint8_t fault) { sink = fault; }
 void port_release() { sink = 0; }
@@ -128,14 +128,14 @@ PORT_USED = """port_identity(); port_status(); port_device_info(); sink = port_r
   port_may_write_ahead(); port_prepare_upload(sink); port_memory(sink, 0); port_forget();
   port_take(sink, 0);
   port_undo();
-  port_seal(bytes); port_start(sink); port_stop(sink);
+  port_has_checksum(bytes); port_start(sink); port_stop(sink);
   port_release(); sink = port_image_length(); port_image_byte(sink, bytes); port_rename(bytes, 1);
   port_key(1, bytes); port_keep_key(1, bytes); port_identify();
 """
 LINK = """{ static Link link;
         link.begin(&receiver, sink); sink = receiver.put(sink, sink);
         link.pass_time(sink); link.tick(); sink = link.has_tx_byte();
-        link.send_due(); link.seal();
+        link.send_due(); link.write_checksum();
         uint8_t byte; while (link.next_tx_byte(&byte)) sink = byte;
         link.done(); link.faulted(); link.stopped(Cause::kButton);
         link.expire(); sink = link.confirm_claim(); sink = link.show(sink, sink); }"""
@@ -217,7 +217,7 @@ def missing(chip: str) -> str:
     """Return why a chip cannot be measured here, or nothing."""
     if chip != AVR:
         return chips.missing(EMULATED[chip])
-    return "" if shutil.which("avr-g++") else f"no avr-g++ ({avr_bench.PACKAGES}): no {AVR}"
+    return "" if shutil.which("avr-g++") else f"no avr-g++ ({avr_bench.INSTALL_COMMAND}): no {AVR}"
 
 
 def size(name: str, chip: str = AVR) -> Size:
@@ -240,13 +240,15 @@ def _built(part: Part, use: str, chip: str) -> Size:
     with tempfile.TemporaryDirectory() as folder:
         source, made = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(program, encoding="utf-8")
-        _done("avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(made))
-        said = _done("avr-size", str(made))
-    text, data, bss = (int(word) for word in said.splitlines()[1].split()[:3])
+        _finished(
+            "avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(made)
+        )
+        sentence = _finished("avr-size", str(made))
+    text, data, bss = (int(word) for word in sentence.splitlines()[1].split()[:3])
     return Size(text + data, data + bss)
 
 
-def _done(*command: str) -> str:
+def _finished(*command: str) -> str:
     ran = subprocess.run(command, capture_output=True, text=True)
     if ran.returncode != 0:
         raise RuntimeError(f"{command[0]} fails:\n{ran.stderr[:4000]}")
@@ -261,7 +263,7 @@ def main() -> int:
             print(missing(chip), file=sys.stderr)
             continue
         sizes = [size(part, chip) for part in SHOWN]
-        print(f"| {chip} |", " | ".join(f"{each.flash:,} | {each.ram}" for each in sizes), "|")
+        print(f"| {chip} |", " | ".join(f"{item.flash:,} | {item.ram}" for item in sizes), "|")
     return 0
 
 

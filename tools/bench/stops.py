@@ -144,7 +144,7 @@ class Busy:
     def together(self) -> int:
         """Return the cycles of a stop before which all comes that may: once, at its longest."""
         received = RECEIVED[self.chip.board]
-        spans = [each for each in self.chip.masked() if each.vector != received]
+        spans = [item for item in self.chip.masked() if item.vector != received]
         entries = {span.vector: span.cycles for span in spans if _is_before(span, received)}
         before = max(
             span.cycles + sum(entries[vector] for vector in entries if vector != span.vector)
@@ -181,8 +181,10 @@ def slowest(firmware: Path, robot: Robot, board: str, baud: int) -> Slowest:
 
 
 def summed_up(stopped: Busy) -> Slowest:
-    each = sorted(stopped.cycles)
-    return Slowest(len(each), *map(_us, (each[-1], each[len(each) // 2], stopped.together())))
+    item = sorted(stopped.cycles)
+    return Slowest(
+        len(item), *map(_microseconds, (item[-1], item[len(item) // 2], stopped.together()))
+    )
 
 
 def with_echoes(places: Iterable[int]) -> list[Place]:
@@ -205,5 +207,5 @@ def sample(stopped: Busy, count: int, seed: int) -> list[Place]:
     return places + (with_edges([places[0].at]) if stopped.has_discs else [])
 
 
-def _us(cycles: int) -> float:
+def _microseconds(cycles: int) -> float:
     return cycles / CYCLES_PER_MS * 1000

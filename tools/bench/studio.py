@@ -119,21 +119,21 @@ TYPE = """async ([text, count, isPausing]) => {
 def main() -> None:
     if why := studio.missing():
         sys.exit(why)
-    found: list[tuple[str, ...]] = []
+    matches: list[tuple[str, ...]] = []
     with (
         studio.driver() as driver,
         studio.served() as server,
         studio.browser(driver, is_whole=True) as browser,
     ):
-        for rows in (_measured, _moved, _drawn):
-            found += [(ROWS[name], *its) for name, *its in rows(browser, server.address)]
+        for rows in (_measured, _time_to_move, _drawing_cost):
+            matches += [(ROWS[name], *its) for name, *its in rows(browser, server.address)]
         slowest_ms = _stopped_ms(browser)
-    with studio.served(_packed()) as server:
-        rated = _rated(server.address).values()
-        found.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in rated), "95"))
+    with studio.served(_packed_files()) as server:
+        rated = _lighthouse_scores(server.address).values()
+        matches.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in rated), "95"))
     packed = int(size_rows(PAGE)[-1].split()[1].replace(",", ""))
-    found.append((ROWS["files"], f"{packed / 1e6:.2f} MB", "6 MB"))
-    page_of_figures.show("studio", found)
+    matches.append((ROWS["files"], f"{packed / 1e6:.2f} MB", "6 MB"))
+    page_of_figures.show("studio", matches)
     if slowest_ms > STOP_LEAVES_MS:
         sys.exit(f"STOP ALL left the page after {slowest_ms:.0f} ms")
 
@@ -162,7 +162,7 @@ def _typed_ms(page: Page, is_pausing: bool) -> float:
     return 1000 * (_processor_s(page) - before_s - 2 * short_s) / (2 * TYPED)
 
 
-def _moved(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
+def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     """A processor that is four times as slow, from a click on a picture to a robot that moves."""
     cold: list[float] = []
     warm: list[float] = []
@@ -189,11 +189,11 @@ def _moved(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
         context.close()
     yield "moving", f"{median(cold):.2f} s", "2.5 s"
     yield "again", f"{median(warm):.2f} s", "2.5 s"
-    late = sum(each > LATE_MS for each in frames)
+    late = sum(frame > LATE_MS for frame in frames)
     yield "pictures", f"{late} of {len(frames):,}", "none"
 
 
-def _drawn(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
+def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     """The same by the work of the page's main thread for each picture: load changes it less."""
     works: list[float] = []
     for _ in range(STARTS):
@@ -210,7 +210,7 @@ def _drawn(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
         works += _works_ms(json.loads(browser.stop_tracing())["traceEvents"])
         context.close()
     slow = [THROTTLED * work for work in works]
-    late = sum(each > LATE_MS for each in slow)
+    late = sum(item > LATE_MS for item in slow)
     yield "work", f"{late} of {len(slow):,}, median {median(slow):.1f} ms", "none"
 
 
@@ -268,9 +268,9 @@ def _processor_s(page: Page) -> float:
     """Return what the page's process has taken of processors: other work does not change that."""
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
-    found = session.send("Performance.getMetrics")["metrics"]
+    result = session.send("Performance.getMetrics")["metrics"]
     session.detach()
-    return next(float(each["value"]) for each in found if each["name"] == "ProcessTime")
+    return next(float(item["value"]) for item in result if item["name"] == "ProcessTime")
 
 
 @contextmanager
@@ -296,14 +296,14 @@ def _program(lines: int = LINES) -> str:
     return ";\n".join([*rows, "  S", "  W(1)", "END_LOOP"])
 
 
-def _packed() -> dict[str, serving.File]:
+def _packed_files() -> dict[str, serving.File]:
     return {
         name: file._replace(packed=gzip.compress(file.data, 6, mtime=0))
         for name, file in serving.files().items()
     }
 
 
-def _rated(address: str) -> dict[str, float]:
+def _lighthouse_scores(address: str) -> dict[str, float]:
     """Return the median points of each of Lighthouse's categories."""
     tools = found_tools()
     call = [*tools.npm, "exec", "--yes", "--ignore-scripts", LIGHTHOUSE, "--", address,
@@ -312,11 +312,11 @@ def _rated(address: str) -> dict[str, float]:
     node = str(Path(tools.node[0]).parent)  # npm starts Lighthouse by the first node in PATH
     settings = {**os.environ, "CHROME_PATH": studio.chromium() or "",
                 "PATH": os.pathsep.join((node, os.environ["PATH"]))}  # fmt: skip
-    found: list[dict[str, Any]] = []
+    matches: list[dict[str, Any]] = []
     for _ in range(RATINGS):
         completed = subprocess.run(call, env=settings, capture_output=True, text=True, check=True)
-        found.append(json.loads(completed.stdout)["categories"])
-    return {name: 100 * median(each[name]["score"] for each in found) for name in RATED}
+        matches.append(json.loads(completed.stdout)["categories"])
+    return {name: 100 * median(item[name]["score"] for item in matches) for name in RATED}
 
 
 if __name__ == "__main__":

@@ -56,8 +56,8 @@ def main() -> int:
         print(why, file=sys.stderr)
         return 2
     try:
-        firmware = firmware_size.measured("uno").firmware
-        without = firmware_size.measured(building.SMALLER["uno"][0]).firmware
+        firmware = firmware_size.measure("uno").firmware
+        without = firmware_size.measure(building.SMALLER["uno"][0]).firmware
     except RuntimeError as failed:
         print(failed, file=sys.stderr)
         return 2
@@ -70,7 +70,7 @@ def main() -> int:
           f"to {most:,.0f} where it is the second to the fourth.\n")  # fmt: skip
     less = parts_of(without)
     page.show("tasks", [
-        (part, *(f"{size[what] - less[part][what] or ''}" for what in ("flash", "ram")))
+        (part, *(f"{size[item] - less[part][item] or ''}" for item in ("flash", "ram")))
         for part, size in parts_of(firmware).items()
     ], which=1)  # fmt: skip
     return 0
@@ -79,9 +79,9 @@ def main() -> int:
 def parts_of(firmware: Path) -> dict[str, Counter[str]]:
     """Return the bytes of flash and RAM of a firmware, by part."""
     command = ["avr-nm", "-S", "-C", "--radix=d", str(firmware)]
-    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     parts: dict[str, Counter[str]] = {part: Counter() for part in PARTS}
-    for size, kind, name in SYMBOL.findall(said):
+    for size, kind, name in SYMBOL.findall(text):
         part = next(part for part, names in PARTS.items() if re.search(names, name))
         parts[part]["ram" if kind in "bBdD" else "flash"] += int(size)
     return parts
@@ -114,7 +114,7 @@ def jitter_ms(firmware: Path, others: int) -> float:
             board.analog(SENSOR_PIN, 100)
             board.run_ms(120)
         first = at_ms[0]
-        late = [(each - first + LOOK_MS / 2) % LOOK_MS for each in at_ms]
+        late = [(at_m - first + LOOK_MS / 2) % LOOK_MS for at_m in at_ms]
         return max(late) - min(late)
 
 

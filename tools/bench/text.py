@@ -40,17 +40,17 @@ def slowest(board: Uno, line: str) -> float:
     return max(typed(board, line, 300 + k) for k in range(TRIES))
 
 
-def measured(firmware: Path, baud: int) -> list[float]:
+def measure(firmware: Path, baud: int) -> list[float]:
     with Uno(firmware, baud=baud) as board:
         board.run_ms(SILENCE_MS)
         return [slowest(board, line) for line in (SHORT, OBSTACLE)]
 
 
 def main() -> int:
-    return on_each_baud(measured, shown)
+    return on_each_baud(measure, print_figures)
 
 
-def shown(found: dict[int, list[float]], _: Path) -> bool:
+def print_figures(found: dict[int, list[float]], _: Path) -> bool:
     """Print the figures; return whether the short line's are kept."""
     by_line = zip(*found.values(), strict=True)
     page.show("text", [(row, *(f"{ms:.2f} ms" for ms in its))

@@ -78,11 +78,11 @@ class Bench:
         return took_ms
 
 
-def measured(bench: Bench, runs: int) -> tuple[float, float]:
+def measure(bench: Bench, runs: int) -> tuple[float, float]:
     """Return the medians (ms) of an upload and of a process that does nothing, taken in turn."""
     bench.moves_ms()  # what is cached is cached now
-    found = [(bench.moves_ms(), bench.nothing_ms()) for _ in range(runs)]
-    moves_ms, nothing_ms = (statistics.median(each) for each in zip(*found, strict=True))
+    matches = [(bench.moves_ms(), bench.nothing_ms()) for _ in range(runs)]
+    moves_ms, nothing_ms = (statistics.median(item) for item in zip(*matches, strict=True))
     return moves_ms, nothing_ms
 
 
@@ -125,10 +125,10 @@ def main() -> int:
         holder = bench.start("monitor", "--hold")
         assert holder.stdout
         holder.stdout.readline()
-        held_ms, _ = measured(bench, runs)
+        held_ms, _ = measure(bench, runs)
         holder.terminate()
         holder.wait()
-        opening_ms, nothing_ms = measured(bench, runs)
+        opening_ms, nothing_ms = measure(bench, runs)
         found_ms = held_ms, opening_ms, nothing_ms, *crowd(CROWD, max(1, runs // 3), folder)
     page.show("upload", [(row, f"{ms:.0f} ms") for row, ms in zip(ROWS, found_ms, strict=True)])
     return 0

@@ -28,14 +28,14 @@ ROWS = tuple(f"`{name}`" for name, _, _ in PROGRAMS)
 
 
 def main() -> None:
-    found = []
+    matches = []
     for name, robot, world in PROGRAMS:
-        times = max(SECONDS / _alone_s(name, robot, world) for _ in range(RUNS))
-        found.append((f"`{name}`", f"`{world}`", f"{times:,.0f}"))
-    page.show("virtual", found)
+        times = max(SECONDS / _run_alone_s(name, robot, world) for _ in range(RUNS))
+        matches.append((f"`{name}`", f"`{world}`", f"{times:,.0f}"))
+    page.show("virtual", matches)
 
 
-def _alone_s(name: str, robot: str, world: str) -> float:
+def _run_alone_s(name: str, robot: str, world: str) -> float:
     virtual = VirtualRobot(robots.load(robot), worlds.load(world))
     text = (ROOT / "examples" / name).read_text(encoding="utf-8")
     Talk(virtual).upload(text, is_detached=True)

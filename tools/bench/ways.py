@@ -29,7 +29,7 @@ from tiniscript.link.trim import Pace, Trim
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.wheels import Roughness
 from tools.bench import page
-from tools.bench.firmware_size import PROJECT, measured
+from tools.bench.firmware_size import PROJECT, measure
 
 SEEDS = 100
 WANTED = 95  # of them
@@ -82,14 +82,14 @@ class Robot(Talk):
         weaker = round(100 * (1 - SLOW / FAST))
         trim = Trim(balance=weaker if seed % 2 else -weaker)
         self.until(self.session.trim(trim.data()))
-        found = []
+        matches = []
         for power in (40, 80):
             ahead, _, _ = self.driven(f"F(2, {power})")
-            found.append(round(ahead / TAPE_CM) * TAPE_CM / 2)
+            matches.append(round(ahead / TAPE_CM) * TAPE_CM / 2)
         for power in (40, 80):
             _, _, turned = self.driven(f"R(1, {power})")
-            found.append(round(abs(turned) / PROTRACTOR) * PROTRACTOR)
-        self.until(self.session.trim(trim._replace(pace=Pace(*found)).data()))
+            matches.append(round(abs(turned) / PROTRACTOR) * PROTRACTOR)
+        self.until(self.session.trim(trim._replace(pace=Pace(*matches)).data()))
 
 
 def off(seed: int, slip: float, how: str) -> tuple[float, float, float]:
@@ -132,24 +132,26 @@ def flash() -> int:
             text, found = re.subn(pattern, none, text)
             assert found == 1, pattern
         header.write_text(text, encoding="utf-8")
-        return measured("uno").flash - measured("uno", project).flash
+        return measure("uno").flash - measure("uno", project).flash
 
 
 def main(seeds: int = SEEDS, is_uno: bool = False) -> int:
     if is_uno:
-        firmware = measured(ENVIRONMENT).firmware
-        found = Off.of("discs", [off_uno(firmware, seed, SLIPS[0]) for seed in range(1, seeds + 1)])
-        along, aside, turn = found.cells()
+        firmware = measure(ENVIRONMENT).firmware
+        result = Off.of(
+            "discs", [off_uno(firmware, seed, SLIPS[0]) for seed in range(1, seeds + 1)]
+        )
+        along, aside, turn = result.cells()
         print(f"With discs and 0.5 % of slip {along} along, {aside} aside and {turn}, "
-              f"{found.within} within.")  # fmt: skip
-        return int(not found.is_good)
+              f"{result.within} within.")  # fmt: skip
+        return int(not result.is_good)
     is_good = True
     rows = []
     for how, (row, slips) in SHOWN.items():
         for slip in slips:
-            found = Off.of(how, [off(seed, slip, how) for seed in range(1, seeds + 1)])
-            rows.append((row, f"{100 * slip:g} %", *found.cells(), found.within))
-            is_good = is_good and (found.is_good or slip != SLIPS[0])
+            result = Off.of(how, [off(seed, slip, how) for seed in range(1, seeds + 1)])
+            rows.append((row, f"{100 * slip:g} %", *result.cells(), result.within))
+            is_good = is_good and (result.is_good or slip != SLIPS[0])
     page.show("ways", rows, keys=2)
     return int(not is_good)
 
@@ -164,8 +166,8 @@ class Off(NamedTuple):
     @classmethod
     def of(cls, how: str, found: Sequence[tuple[float, float, float]]) -> Off:
         limits = LIMITS[how]
-        ways = sum(each[0] <= limits[0] and each[1] <= limits[1] for each in found)
-        turns = sum(each[2] <= limits[2] for each in found)
+        ways = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in found)
+        turns = sum(item[2] <= limits[2] for item in found)
         within = f"{ways} and {turns}" if limits[0] < math.inf else "-"
         is_good = 100 * min(ways, turns) >= WANTED * len(found)
         return cls(tuple(worst(column) for column in zip(*found, strict=True)), within, is_good)

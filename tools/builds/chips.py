@@ -101,8 +101,8 @@ def missing(chip: Chip, can_run: bool = False) -> str:
     if can_run:
         tools.append(chip.emulator)
     names = dict.fromkeys(words[0] for words in tools if words)
-    wanted = [name for name in names if not shutil.which(name)]
-    return f"no {' and no '.join(wanted)} on this computer: no {chip.board}" if wanted else ""
+    expected = [name for name in names if not shutil.which(name)]
+    return f"no {' and no '.join(expected)} on this computer: no {chip.board}" if expected else ""
 
 
 def build(
@@ -145,12 +145,12 @@ def compile_one(chip: Chip, path: Path, made: str, flags: Sequence[str]) -> None
     if not chip.assembler:
         _command([*chip.compiler, *usual, str(path), "-o", made])
         return
-    written = f"{made}.s"
+    text = f"{made}.s"
     if path.suffix == ".cpp":
-        _command([*chip.compiler, *usual, str(path), "-o", written])
+        _command([*chip.compiler, *usual, str(path), "-o", text])
     else:
-        _command([chip.compiler[0], "-E", "-x", "assembler-with-cpp", str(path), "-o", written])
-    _command([*chip.assembler, written, "-o", made])
+        _command([chip.compiler[0], "-E", "-x", "assembler-with-cpp", str(path), "-o", text])
+    _command([*chip.assembler, text, "-o", made])
 
 
 def _command(words: Sequence[str]) -> str:

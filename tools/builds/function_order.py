@@ -86,12 +86,12 @@ def calls(disassembled: str, sections: list[Section]) -> list[Call]:
                 return section.number, section.at + address - section.begin
         return None
 
-    found = []
+    calls = []
     for at, target in _CALL.findall(disassembled):
         here, there = place(int(at, 16)), place(int(target, 16))
         if here and there and here[0] != there[0]:
-            found.append(Call(*here, *there))
-    return found
+            calls.append(Call(*here, *there))
+    return calls
 
 
 def far(order: list[int], among: list[Piece], all_calls: list[Call]) -> int:
@@ -121,7 +121,7 @@ def moved(order: list[int], chance: random.Random) -> list[int]:
 
 def best(among: list[Piece], all_calls: list[Call], tries: int, chance: random.Random) -> list[int]:
     """Search by simulated annealing."""
-    order = kept = list(range(len(among)))
+    order = result = list(range(len(among)))
     now = least = far(order, among, all_calls)
     for number in range(tries):
         heat = 3.0 * (1 - number / tries) + 0.05
@@ -130,15 +130,15 @@ def best(among: list[Piece], all_calls: list[Call], tries: int, chance: random.R
         if count <= now or chance.random() < math.exp((now - count) / heat):
             order, now = other, count
             if now < least:
-                kept, least = order, now
-    return kept
+                result, least = order, now
+    return result
 
 
 def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         linked = Path(folder) / "map"
         os.environ["PLATFORMIO_BUILD_FLAGS"] = f"-Wl,-Map={linked}"
-        sketch = firmware_size.measured(BOARD)
+        sketch = firmware_size.measure(BOARD)
         del os.environ["PLATFORMIO_BUILD_FLAGS"]
         among, sections = pieces(linked.read_text(encoding="utf-8"))
     command = ["avr-objdump", "-d", str(sketch.firmware)]
@@ -152,7 +152,7 @@ def main() -> int:
     before, after = text.index(BEGIN) + len(BEGIN), text.index(END)
     rows = "".join(f"    *({among[number].pattern})\n" for number in order)
     SCRIPT.write_text(text[:before] + rows + text[after:], encoding="utf-8")
-    print(f"{firmware_size.measured(BOARD).flash:,} bytes with the new order")
+    print(f"{firmware_size.measure(BOARD).flash:,} bytes with the new order")
     return 0
 
 

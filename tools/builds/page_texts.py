@@ -5,7 +5,7 @@ from __future__ import annotations
 from tiniscript.base.languages import Texts, about, texts
 
 # Of what the page's Python says; the sentences of lessons come with these.
-MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names")
+MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names", "foreign")
 # What the page says as the command does: how a recording compares, and why a run has ended.
 OF_COMMAND = {
     **{f"record_{what}": f"replay_{what}" for what in (
@@ -28,14 +28,14 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
     The one without a key has which form is for which number, from 0 to 199.
     """
     own = about(language)
-    said = texts("command", language)
-    found = texts("studio", language) | {key: said[value] for key, value in OF_COMMAND.items()}
+    text = texts("command", language)
+    result = texts("studio", language) | {key: text[value] for key, value in OF_COMMAND.items()}
     return {
         "": own.form_of,
         **{
             key: value if isinstance(value, str)
             else [value.get(form, value["other"]) for form in own.forms]
-            for key, value in found.items()
+            for key, value in result.items()
         },
     }  # fmt: skip
 

@@ -188,12 +188,12 @@ def refuse_others(project: Path) -> None:
     config = config_of(project)
     for environment in config.envs():
         platform = config.get(f"env:{environment}", "platform")
-        wanted = PackageSpec(platform)
-        stand_in = STAND_INS / str(wanted.name)
-        if not stand_in.is_dir() or not wanted.requirements:
+        expected = PackageSpec(platform)
+        stand_in = STAND_INS / str(expected.name)
+        if not stand_in.is_dir() or not expected.requirements:
             continue
         version = version_of(stand_in)
-        if Version(version) not in wanted.requirements:
+        if Version(version) not in expected.requirements:
             raise CannotMake(
                 f"[env:{environment}] wants {platform}, the stand-in is one for {version}"
             )
@@ -203,10 +203,12 @@ def scons_wanted() -> tuple[str, str]:
     """Return the version of the package tool-scons that PlatformIO wants, and that of SCons."""
     from platformio.dependencies import get_core_dependencies
 
-    wanted = get_core_dependencies()["tool-scons"]
-    match = re.fullmatch(r"~(4\.(\d)(\d\d)(\d\d)\.\d+)", wanted)
+    expected = get_core_dependencies()["tool-scons"]
+    match = re.fullmatch(r"~(4\.(\d)(\d\d)(\d\d)\.\d+)", expected)
     if not match:
-        raise CannotMake(f"PlatformIO wants tool-scons {wanted}: which SCons that is, I cannot say")
+        raise CannotMake(
+            f"PlatformIO wants tool-scons {expected}: which SCons that is, I cannot say"
+        )
     return match[1], ".".join(str(int(part)) for part in match.groups()[1:])
 
 
@@ -222,16 +224,18 @@ def add_doctest(folder: Path, project: Path) -> None:
     named = re.search(r"doctest/doctest@[^\"']+", runner)
     if named is None:
         raise CannotMake("vm_arduino/test/test_custom_runner.py names no doctest/doctest@")
-    wanted = PackageSpec(named[0])
-    if Version(version) not in wanted.requirements:
-        raise CannotMake(f"doctest-dev is doctest {version}, the tests want {wanted.requirements}")
+    expected = PackageSpec(named[0])
+    if Version(version) not in expected.requirements:
+        raise CannotMake(
+            f"doctest-dev is doctest {version}, the tests want {expected.requirements}"
+        )
     if folder.exists():
         return
 
     def fill(new: Path) -> None:
         (new / "include").mkdir()
         shutil.copy(DOCTEST, new / "include" / "doctest.h")
-        describe(new, "library.json", "library", "doctest", version, wanted.owner)
+        describe(new, "library.json", "library", "doctest", version, expected.owner)
 
     make(folder, fill)
 

@@ -93,7 +93,7 @@ def main(arguments: list[str] | None = None) -> int:
             take(language, scene, picture(language, scene))
             print(f"wrote {picture(language, scene).relative_to(ROOT)}")
         return 0
-    wrong = [why for each in product(LANGUAGES, SCENES) if (why := stale(*each))]
+    wrong = [why for item in product(LANGUAGES, SCENES) if (why := stale(*item))]
     for why in wrong:
         print(f"screenshot: {why}", file=sys.stderr)
     return 1 if wrong else 0
@@ -114,7 +114,7 @@ def take(language: str, scene: str, target: Path) -> None:
         shots.append(Image.open(BytesIO(page.screenshot())).convert("RGB"))
 
     with (
-        _served(scene) as (address, entrance),
+        _serve_scene(scene) as (address, entrance),
         studio.driver() as driver,
         studio.browser(driver) as opened,
     ):
@@ -124,18 +124,18 @@ def take(language: str, scene: str, target: Path) -> None:
         studio.speak(page, language)
         if scene != WALL:
             studio.write(page, PROGRAM)
-        SHEETS.get(scene, _single)(page, scene, look)
+        SHEETS.get(scene, _take_single)(page, scene, look)
         pages.close()
     if pages.wrong:
         raise SystemExit(f"the page said {pages.wrong[0]}")
     kept = PngInfo()
-    said = sorted({row.strip() for word in words for row in word.splitlines() if row.strip()})
-    kept.add_text(KEPT, json.dumps([each for each in said if is_said(each)]))
+    text = sorted({row.strip() for word in words for row in word.splitlines() if row.strip()})
+    kept.add_text(KEPT, json.dumps([item for item in text if is_said(item)]))
     _sheet(shots).quantize(COLOURS).save(target, optimize=True, pnginfo=kept)
 
 
 @contextmanager
-def _served(scene: str) -> Iterator[tuple[str, str]]:
+def _serve_scene(scene: str) -> Iterator[tuple[str, str]]:
     """The address of a page, and where it is entered."""
     if scene != WALL:
         with studio.served() as server:
@@ -165,7 +165,7 @@ def _served(scene: str) -> Iterator[tuple[str, str]]:
             pupils.join()
 
 
-def _single(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _take_single(page: Page, scene: str, look: Callable[[], None]) -> None:
     if scene == ".start":
         page.click("#home")
         page.click("#start_write")
@@ -282,7 +282,7 @@ def _wall(page: Page, scene: str, look: Callable[[], None]) -> None:
     look()
 
 
-def _more(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _take_more(page: Page, scene: str, look: Callable[[], None]) -> None:
     """A loose block, a wrong one, a link, a phone on its side twice, a block that keys move."""
     page.click("#view_blocks")
     for text in ("SI|F(1, 80)\n\n/// R(0.5, 60)\n/// B(1, 80)\n", "SI|F(-2, 80)\nR(0.5, 60)\n"):
@@ -313,7 +313,7 @@ def _more(page: Page, scene: str, look: Callable[[], None]) -> None:
 
 # Scenes of several pictures, or beside the program.
 SHEETS = {
-    ".more": _more,
+    ".more": _take_more,
     ".wall": _wall,
     ".drawing": _drawing,
     ".phone": _phone,
@@ -341,7 +341,7 @@ def _sheet(shots: list[Image.Image]) -> Image.Image:
 
 def is_said(words: str) -> bool:
     """Whether the page's sentences have these words."""
-    return any(words in _said(language) for language in languages())
+    return any(words in _shown_words(language) for language in languages())
 
 
 def stale(language: str, scene: str = "") -> str:
@@ -360,7 +360,7 @@ def stale(language: str, scene: str = "") -> str:
 
 
 @cache
-def _said(language: str) -> frozenset[str]:
+def _shown_words(language: str) -> frozenset[str]:
     return frozenset(map(str, page_texts(language).values()))
 
 

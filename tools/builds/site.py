@@ -69,14 +69,14 @@ def build(root: Path, folder: Path, has_studio: bool) -> None:
 
 def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     texts = built()
-    found = documents(root, texts)
-    on = shelf(root, found, texts)
-    halves = halves_of(found)
+    result = documents(root, texts)
+    on = shelf(root, result, texts)
+    halves = halves_of(result)
 
     def make(language: str) -> None:
         half = scratch / language
-        stage(half, found, on, language)
-        render(half, folder / language, found, has_studio)
+        stage(half, result, on, language)
+        render(half, folder / language, result, has_studio)
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
         list(pool.map(make, halves))
@@ -88,7 +88,7 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
                         ignore=shutil.ignore_patterns(studio.STAMP))  # fmt: skip
         link = '<a href="studio/index.html">TiniScript Studio</a>'
     choice = (SITE / "choice.html").read_text(encoding="utf-8")
-    rows = "\n".join(map(_chosen, reversed(halves)))
+    rows = "\n".join(map(_start_page, reversed(halves)))
     choice = choice.replace("STUDIO", link).replace("HALVES", rows)
     (folder / "index.html").write_text(choice, encoding="utf-8")
     (folder / ".nojekyll").touch()  # else some hosts leave out folders that begin with _
@@ -97,29 +97,31 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
         raise CannotMake("\n".join(wrong))
 
 
-def halves_of(found: list[Document]) -> list[str]:
+def halves_of(documents: list[Document]) -> list[str]:
     """Return the languages of the documents, English first."""
-    return [language for language in languages() if any(language in one.sources for one in found)]
+    return [
+        language for language in languages() if any(language in one.sources for one in documents)
+    ]
 
 
-def _chosen(language: str) -> str:
-    said = f"{about(language).name}: {text('documents', 'site/choice', language)}"
-    return f'<a href="{language}/index.html" lang="{language}" hreflang="{language}">{said}</a>'
+def _start_page(language: str) -> str:
+    sentence = f"{about(language).name}: {text('documents', 'site/choice', language)}"
+    return f'<a href="{language}/index.html" lang="{language}" hreflang="{language}">{sentence}</a>'
 
 
-def stage(half: Path, found: list[Document], on: Shelf, language: str) -> None:
+def stage(half: Path, documents: list[Document], on: Shelf, language: str) -> None:
     """Write the sources of one half, as Sphinx reads them. Raises CannotMake.
 
     A language without a front page has the English one.
     """
     pages = {
         document.name: page(document.sources[language], on)
-        for document in found
+        for document in documents
         if language in document.sources
     }
     front = sources(on.root, FRONT)
     front_page = page(front.get(language, FRONT), on, Place(language, "index"))
-    for name, said in {**pages, "index": front_page + contents(found, language)}.items():
+    for name, said in {**pages, "index": front_page + contents(documents, language)}.items():
         target = half / f"{name}.md"
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(said, encoding="utf-8")
@@ -130,11 +132,11 @@ def stage(half: Path, found: list[Document], on: Shelf, language: str) -> None:
     shutil.copy(SITE / "conf.py", half)
 
 
-def render(half: Path, folder: Path, found: list[Document], has_studio: bool) -> None:
+def render(half: Path, folder: Path, documents: list[Document], has_studio: bool) -> None:
     """Make the pages of one half with Sphinx. Raises CannotMake with what it complains about."""
     language = folder.name
-    others = {each: about(each).name for each in halves_of(found) if each != language}
-    told = {"others": others, "pages": {page.name: list(page.sources) for page in found},
+    others = {item: about(item).name for item in halves_of(documents) if item != language}
+    told = {"others": others, "pages": {page.name: list(page.sources) for page in documents},
             "has_studio": has_studio}  # fmt: skip
     (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
     words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going",
@@ -149,13 +151,13 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
         theme.translate(folder, language)
 
 
-def contents(found: list[Document], language: str) -> str:
+def contents(documents: list[Document], language: str) -> str:
     """Return the table of contents of one half, which the page's side shows."""
     rows: list[str] = []
     for part in PARTS:
         names = [
             document.name
-            for document in found
+            for document in documents
             if document.part == part and language in document.sources
         ]
         names = ["self" if name == "index" else name for name in names]

@@ -51,16 +51,16 @@ def make(root: Path, folder: Path) -> None:
     pages = {path: path.read_text(encoding="utf-8")
              for path in (*root.glob("*.md"), *root.glob("docs/**/*.md"))}  # fmt: skip
     pages |= {root / name: made for name, made in built().items() if name.endswith("command.md")}
-    wanted = {(root / name).resolve() for name in sources(root, POSTER).values()}
+    expected = {(root / name).resolve() for name in sources(root, POSTER).values()}
     titles: dict[str, str] = {}
     for source, markdown in pages.items():
         body, title = rendered(markdown)
-        wanted |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
+        expected |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
         body = LINK.sub(partial(_to_page, folder=source.parent, documents=list(pages)), body)
         name = source.relative_to(root).as_posix()
         titles[name] = title
         _write((folder / name).with_suffix(".html"), page(title, body, language_of(name)))
-    for path in sorted(wanted - {path.resolve() for path in pages}):
+    for path in sorted(expected - {path.resolve() for path in pages}):
         target = folder / path.relative_to(root.resolve())
         if path.is_file():
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -123,9 +123,9 @@ def _index(root: Path, folder: Path, language: str, titles: dict[str, str]) -> s
         text("documents", f"stick/{key}", language) for key in keys
     )
     others = " · ".join(
-        f'<a href="{name_in(each, INDEX)}">{about(each).name}</a>'
-        for each in told_in("documents", "stick/title")
-        if each != language
+        f'<a href="{name_in(item, INDEX)}">{about(item).name}</a>'
+        for item in told_in("documents", "stick/title")
+        if item != language
     )
     rows = [f"<h1>{title}</h1>", f"<p>{others}</p>", f"<h2>{guides}</h2>", "<ul>"]
     for guide in GUIDES:

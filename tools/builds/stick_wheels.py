@@ -96,18 +96,18 @@ def without_parts_in_c(wheel: Path, folder: Path) -> Path:
     rows = []
     moment = OLDEST
     with zipfile.ZipFile(wheel) as old, zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as new:
-        record = next(each for each in old.namelist() if each.endswith(".dist-info/RECORD"))
-        for each in old.namelist():
-            if each == record or each.endswith((".so", ".pyd", ".dylib", "/")):
+        record = next(item for item in old.namelist() if item.endswith(".dist-info/RECORD"))
+        for item in old.namelist():
+            if item == record or item.endswith((".so", ".pyd", ".dylib", "/")):
                 continue
-            data = old.read(each)
-            if each.endswith(".dist-info/WHEEL"):
+            data = old.read(item)
+            if item.endswith(".dist-info/WHEEL"):
                 data = re.sub(rb"(?m)^Tag:.*\n", b"", data).rstrip() + f"\nTag: {PURE}\n".encode()
                 data = re.sub(rb"(?m)^Root-Is-Purelib:.*$", b"Root-Is-Purelib: true", data)
-            moment = old.getinfo(each).date_time
-            new.writestr(zipfile.ZipInfo(each, moment), data, zipfile.ZIP_DEFLATED)
+            moment = old.getinfo(item).date_time
+            new.writestr(zipfile.ZipInfo(item, moment), data, zipfile.ZIP_DEFLATED)
             digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
-            rows.append(f"{each},sha256={digest},{len(data)}\n")
+            rows.append(f"{item},sha256={digest},{len(data)}\n")
         whole = "".join([*rows, f"{record},,\n"])
         new.writestr(zipfile.ZipInfo(record, moment), whole, zipfile.ZIP_DEFLATED)
     return target
@@ -136,5 +136,5 @@ def _pip(words: list[str], environment: dict[str, str]) -> None:
     command += [words[0], "--disable-pip-version-check", *words[1:]]
     completed = subprocess.run(command, capture_output=True, text=True)
     if completed.returncode:
-        said = [row for row in completed.stderr.splitlines() if row.startswith("ERROR")]
-        raise CannotMake((said or completed.stderr.splitlines() or ["pip says nothing."])[-1])
+        texts = [row for row in completed.stderr.splitlines() if row.startswith("ERROR")]
+        raise CannotMake((texts or completed.stderr.splitlines() or ["pip says nothing."])[-1])

@@ -85,7 +85,7 @@ def stale(page: Path = PAGE) -> str:
     if not (page / STAMP).is_file():
         return f"the page is not built. Do that with:  {COMMAND}"
     if not building.is_of_sources(page):
-        return f"the page was built of other sources. Build it again:  {COMMAND}"
+        return f"the page is out of date: the sources have changed. Build it again:  {COMMAND}"
     return ""
 
 
@@ -145,8 +145,8 @@ def put_own(page: Path) -> None:
 
 def coming() -> str:
     """Return what the page says before a language is there: in each."""
-    said = [(code, page_texts(code)["page_waits"]) for code in languages()]
-    return "".join(f'<span lang="{code}">{escape(str(text))}</span>' for code, text in said)
+    texts = [(code, page_texts(code)["page_waits"]) for code in languages()]
+    return "".join(f'<span lang="{code}">{escape(str(text))}</span>' for code, text in texts)
 
 
 def said_in(language: str) -> tuple[str, str]:
@@ -307,8 +307,8 @@ def run(call: list[str], *arguments: str) -> str:
         [*call, *arguments], cwd=SOURCES, capture_output=True, text=True, env=variables
     )
     if completed.returncode:
-        said = (completed.stdout + completed.stderr).strip()
-        raise CannotMake(f"{arguments[0]} failed:\n{said}")
+        text = (completed.stdout + completed.stderr).strip()
+        raise CannotMake(f"{arguments[0]} failed:\n{text}")
     return completed.stdout
 
 

@@ -78,8 +78,8 @@ def main(words: Sequence[str] | None = None) -> int:
     add_texts(folder)
     titles = ", ".join(SYSTEMS[system].title for system in systems)
     add_readme(folder, titles, ", ".join(pythons), missing)
-    for each in missing:
-        print(f"missing: {each.said(SOURCE)} ({each.why})", file=sys.stderr)
+    for item in missing:
+        print(f"missing: {item.said(SOURCE)} ({item.why})", file=sys.stderr)
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"{folder}: {size / 1e6:.0f} MB. Copy what is in it to the stick.")
     return 1 if missing else 0
@@ -152,11 +152,11 @@ def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missi
         index = name_in(language, stick_pages.INDEX)
         lacks = text("documents", "stick/lacks", language)
         how = text("documents", "stick/readme", language).format(index=index)
-        rows = [how, *(lacks.format(what=each.said(language)) for each in missing)]
+        rows = [how, *(lacks.format(what=item.said(language)) for item in missing)]
         title = text("documents", "stick/title", language)
         parts.append("\n".join((title, "", *rows, "")))
-    said = "\n".join(parts)
-    (folder / "README.txt").write_text(said, encoding="utf-8-sig", newline="\r\n")
+    sentence = "\n".join(parts)
+    (folder / "README.txt").write_text(sentence, encoding="utf-8-sig", newline="\r\n")
 
 
 def _firmware() -> list[Missing]:

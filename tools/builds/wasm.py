@@ -77,15 +77,15 @@ def main(arguments: list[str] | None = None) -> int:
     code = 0
     for module in MODULES:
         path = ROOT / module.path
-        made = built(ROOT / SOURCES, module)
-        if path.exists() and path.read_bytes() == made:
+        result = built(ROOT / SOURCES, module)
+        if path.exists() and path.read_bytes() == result:
             continue
         if only_check:
             print(f"{module.path} is stale. Run: {COMMAND}", file=sys.stderr)
             code = 1
         else:
-            path.write_bytes(made)
-            print(f"wrote {module.path}: {len(made)} bytes")
+            path.write_bytes(result)
+            print(f"wrote {module.path}: {len(result)} bytes")
     return code
 
 
@@ -94,12 +94,12 @@ def missing() -> str:
     pin = re.search(r'"ziglang==([^"]+)"', (ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert pin, "pyproject.toml pins the compiler"
     try:
-        found = version("ziglang")
+        result = version("ziglang")
     except PackageNotFoundError:
-        found = "none"
-    if found == pin[1]:
+        result = "none"
+    if result == pin[1]:
         return ""
-    return f"ziglang {pin[1]} is needed, here is {found}. Run: pip install ziglang=={pin[1]}"
+    return f"ziglang {pin[1]} is needed, here is {result}. Run: pip install ziglang=={pin[1]}"
 
 
 def built(sources: Path, module: Module) -> bytes:
@@ -113,11 +113,11 @@ def built(sources: Path, module: Module) -> bytes:
         paths = sorted((sources / folder).glob("*.cpp"))
         files += [path for path in paths if path.relative_to(sources).as_posix() not in included]
     with tempfile.TemporaryDirectory() as folder:
-        made = Path(folder) / Path(module.path).name
+        result = Path(folder) / Path(module.path).name
         places = {"ZIG_GLOBAL_CACHE_DIR": folder, "ZIG_LOCAL_CACHE_DIR": folder}
         names = [path.relative_to(sources).as_posix() for path in files]
         completed = subprocess.run(
-            [sys.executable, "-m", "ziglang", "c++", *FLAGS, *module.flags, *names, "-o", made],
+            [sys.executable, "-m", "ziglang", "c++", *FLAGS, *module.flags, *names, "-o", result],
             cwd=sources,
             env={**os.environ, **places},
             capture_output=True,
@@ -126,7 +126,7 @@ def built(sources: Path, module: Module) -> bytes:
         )
         if completed.returncode != 0:
             sys.exit(f"the compiler refuses {module.files[0]}:\n{completed.stderr[:4000]}")
-        return made.read_bytes()
+        return result.read_bytes()
 
 
 def _text(path: Path) -> str:

@@ -38,8 +38,8 @@ Results = dict[str, Result]
 
 
 def read() -> Results:
-    found = json.loads(WRITTEN.read_text(encoding="utf-8"))
-    return {name: Result(**values) for name, values in found.items()}
+    result = json.loads(WRITTEN.read_text(encoding="utf-8"))
+    return {name: Result(**values) for name, values in result.items()}
 
 
 def write(results: Results) -> None:
@@ -60,7 +60,7 @@ def is_same_code(goal: Goal, one: str, other: str = "") -> bool:
 
     A commit with a `+` is like no other, nor is one that nobody knows here.
     """
-    commits = [each for each in (one, other) if each]
+    commits = [item for item in (one, other) if item]
     is_known = "+" not in one + other
     return one == other or (
         is_known and not git("diff", "--quiet", *commits, "--", *goal.code).returncode
@@ -79,8 +79,8 @@ def is_old(goal: Goal, result: Result) -> bool:
 
 def old() -> list[str]:
     """Return the names of the goals whose figures are old."""
-    found = read()
-    return [goal.name for goal in GOALS if goal.name in found and is_old(goal, found[goal.name])]
+    result = read()
+    return [goal.name for goal in GOALS if goal.name in result and is_old(goal, result[goal.name])]
 
 
 def _row(goal: Goal, document: str) -> str:
@@ -107,7 +107,7 @@ def _figure(goal: Goal, result: Result) -> str:
 def rows() -> list[tuple[str, ...]]:
     """Return the table of `docs/en/guarantees.md`."""
     results = read()
-    found: list[tuple[str, ...]] = []
+    outcome: list[tuple[str, ...]] = []
     for goal in GOALS:
         result = results.get(goal.name)
         about = ("", "", "")
@@ -116,5 +116,5 @@ def rows() -> list[tuple[str, ...]]:
             seeds = f"{result.seed}" if last == result.seed else f"{result.seed} to {last}"
             about = ("-" if "{seed}" not in goal.command else seeds, result.date, result.commit)
         row = (f"`{goal.name}`", goal.guarantee, f"{goal.target:,} {goal.unit}")
-        found.append((*row, measured(goal, result), *about))
-    return found
+        outcome.append((*row, measured(goal, result), *about))
+    return outcome

@@ -139,7 +139,7 @@ def role_table() -> str:
 def fault_table() -> str:
     rows = []
     for number, name, what in opcodes.FAULTS:
-        faulting = ", ".join(f"`{each}`" for each in opcodes.FAULTING[name])
+        faulting = ", ".join(f"`{item}`" for item in opcodes.FAULTING[name])
         rows.append((number, f"`{name}`", what, faulting or "none, in verified code"))
     return table(("number", "fault", "when", "instructions"), rows)
 
@@ -184,13 +184,13 @@ def device_table() -> str:
 def robot_header(path: Path) -> str:
     """Return the header of a robot's firmware, for all the boards that its profile fits."""
     text = path.read_text(encoding="utf-8")
-    wired: list[Robot] = []
+    robots: list[Robot] = []
     for board in firmware.BOARDS:
         try:
-            wired.append(read(text, path.stem, board))
+            robots.append(read(text, path.stem, board))
         except ProfileRefused:
             continue  # the board has no such pins
-    return firmware.header(wired, f"{COMMAND} from robots/{path.name}.")
+    return firmware.header(robots, f"{COMMAND} from robots/{path.name}.")
 
 
 SPEC = ROOT / "bytecode_spec.md"

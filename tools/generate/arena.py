@@ -34,8 +34,8 @@ class Way(NamedTuple):
 
 def driven(program: str, robot: str, world: World, lasts_ms: int) -> Way:
     """Drive for so many milliseconds of the robot's clock, and return the way."""
-    made = tiniscript.compile(program, robot=robot)
-    simulation = Simulation(robot, world, made.image)
+    result = tiniscript.compile(program, robot=robot)
+    simulation = Simulation(robot, world, result.image)
     hull = Hull(simulation.robot.profile.body)
     poses = [simulation.robot.pose]
     for _ in range(0, lasts_ms, SAMPLE_MS):
@@ -83,7 +83,7 @@ def arena(world: World, way: Way, left: float, top: float, scale: float) -> list
     return [
         f'<polygon points="{row(corners)}" fill="{FLOOR}" stroke="{WALL}" stroke-width="4"/>',
         *(disc(*lamp.place[:2], lamp.reach_cm / 4, GLOW) for lamp in world.lamps),
-        *(line(each.points, LINE, each.width_cm * scale) for each in world.lines),
+        *(line(item.points, LINE, item.width_cm * scale) for item in world.lines),
         *(f'<polygon points="{row(box)}" fill="{BOX}"/>' for box in world.boxes),
         *(line(wall, WALL, 4) for wall in world.walls),
         *(disc(*lamp.place[:2], 2.5, LAMP) for lamp in world.lamps),

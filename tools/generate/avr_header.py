@@ -68,8 +68,8 @@ def handler(code: int) -> str:
 
 
 def without_tasks() -> str:
-    found = (handler(op.code) for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
-    return "".join(f"#define {each} op_none\n" for each in found)
+    result = (handler(op.code) for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
+    return "".join(f"#define {item} op_none\n" for item in result)
 
 
 def rows() -> Iterator[str]:

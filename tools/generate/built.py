@@ -24,10 +24,12 @@ Made = dict[str, Callable[[], str]]
 
 def kept() -> Made:
     """Return how what is kept of these documents is made, by its name in a clone."""
-    made = wiring_pages(COMMAND, is_kept=True)
-    pages = {name: make for name, make in made.items() if name.startswith(f"docs/{SOURCE}/")}
-    shown = _shown() | {drawing for make in pages.values() for drawing in _drawings(make())}
-    return pages | {name: make for name, make in made.items() if name in shown}
+    result = wiring_pages(COMMAND, is_kept=True)
+    pages = {name: make for name, make in result.items() if name.startswith(f"docs/{SOURCE}/")}
+    shown = _shown_drawings() | {
+        drawing for make in pages.values() for drawing in _drawings(make())
+    }
+    return pages | {name: make for name, make in result.items() if name in shown}
 
 
 def built() -> dict[str, str]:
@@ -39,7 +41,7 @@ def built() -> dict[str, str]:
     return {name: make() for name, make in (made | wiring_pages(COMMAND)).items()}
 
 
-def _shown() -> set[str]:
+def _shown_drawings() -> set[str]:
     """Return the drawings that the documents of a clone show, but for pages of wiring."""
     return {
         drawing
@@ -49,4 +51,4 @@ def _shown() -> set[str]:
 
 
 def _drawings(text: str) -> list[str]:
-    return [f"docs/{each}" for each in re.findall(r"\.\./(pictures/wiring/[\w.]+)\)", text)]
+    return [f"docs/{item}" for item in re.findall(r"\.\./(pictures/wiring/[\w.]+)\)", text)]

@@ -17,7 +17,7 @@ Table = Callable[[Sequence[str], Sequence[Sequence[object]]], str]
 DOCUMENTED = tuple(told_in("documents", "command/title"))
 
 
-def _said(key: str, language: str) -> str:
+def _text(key: str, language: str) -> str:
     return text("documents", f"command/{key}", language)
 
 
@@ -29,22 +29,22 @@ def page(language: str, command: str, table: Table) -> str:
         *_overview(language, table),
     ]
     for verb in VERBS:
-        for each in (verb, *steps_of(verb)):
-            parts += _command(each, language, table)
+        for item in (verb, *steps_of(verb)):
+            parts += _command(item, language, table)
     return "\n\n".join(part.rstrip("\n") for part in parts if part) + "\n"
 
 
 def _overview(language: str, table: Table) -> Iterator[str]:
-    yield f"# {_said('title', language)}"
-    yield _said("introduction", language)
+    yield f"# {_text('title', language)}"
+    yield _text("introduction", language)
     for heading, rows in help.groups(language):
         yield heading
         yield table(
-            [_said(key, language) for key in ("command", "does")],
+            [_text(key, language) for key in ("command", "does")],
             [(f"`{typed}`", does) for typed, does in rows],
         )
     yield from (said(note, language) for note in NOTES)
-    yield _said("each", language)
+    yield _text("each", language)
     yield _options([option for option in shown_of("tsc") if option.verbs == "*"], language, table)
 
 
@@ -64,4 +64,4 @@ def _command(command: str, language: str, table: Table) -> Iterator[str]:
 
 def _options(options: list[Option], language: str, table: Table) -> str:
     rows = [(f"`{help.signature(option, language)}`", option.help(language)) for option in options]
-    return table([_said(key, language) for key in ("option", "does")], rows) if rows else ""
+    return table([_text(key, language) for key in ("option", "does")], rows) if rows else ""

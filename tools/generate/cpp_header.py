@@ -253,11 +253,11 @@ def tables(command: str) -> str:
     rows = forms()
     numbers = {op.code: number for number, same in enumerate(rows.values()) for op in same}
     numbered = [numbers.get(code, 0) for code in range(256)]
-    found = [numbered[code - code % 4 if code >= FIRST_FOUR else code] for code in range(256)]
+    matches = [numbered[code - code % 4 if code >= FIRST_FOUR else code] for code in range(256)]
     for code in range(FIRST_SIX, 256):
-        found[code] = 0 if code % 8 >= 6 else found[code]
-    assert found == numbered
-    entries = [f"0x{each:02x}" for each in numbered[:FIRST_FOUR] + numbered[FIRST_FOUR::4]]
+        matches[code] = 0 if code % 8 >= 6 else matches[code]
+    assert matches == numbered
+    entries = [f"0x{item:02x}" for item in numbered[:FIRST_FOUR] + numbered[FIRST_FOUR::4]]
     for op in TASK_OPS:
         assert op.code < FIRST_FOUR
         entries[op.code] = f"kHasTasks ? {entries[op.code]} : 0"

@@ -17,6 +17,7 @@ from tiniscript.base.words import WORDS
 from tiniscript.lessons.lesson import AREA, KINDS, WHATS, Kind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools import ROOT, measures
+from tools.generate.poster import as_block
 from tools.site.documents import LIST, documents, sources
 
 PACKAGE = ROOT / "compiler" / "tiniscript"
@@ -26,12 +27,12 @@ def architecture_document() -> str:
     """Return `docs/develop/architecture.md` with its picture, and what each folder says."""
     rows = []
     for path in sorted(PACKAGE.glob("*/**/__init__.py")):
-        said = ast.get_docstring(ast.parse(path.read_bytes())) or ""
-        about = " ".join(said.split("\n\n")[0].split())
+        text = ast.get_docstring(ast.parse(path.read_bytes())) or ""
+        about = " ".join(text.split("\n\n")[0].split())
         rows.append((f"`{path.parent.relative_to(PACKAGE).as_posix()}/`", about))
-    made = table(("folder", "content"), rows)
-    made = spliced(_text("docs/develop/architecture.md"), "packages", made)
-    return spliced(made, "modules", _modules())
+    result = table(("folder", "content"), rows)
+    result = spliced(_text("docs/develop/architecture.md"), "packages", result)
+    return spliced(result, "modules", _modules())
 
 
 def _modules() -> str:
@@ -60,8 +61,8 @@ def text_document() -> str:
          level.room, min(CODE_BYTES, level.room))
         for level in LEVELS.values()
     ]  # fmt: skip
-    made = table(("level", "lacks", "room in bytes", "bytes of code, at most"), rows)
-    return spliced(_text("docs/develop/text.md"), "levels", made)
+    result = table(("level", "lacks", "room in bytes", "bytes of code, at most"), rows)
+    return spliced(_text("docs/develop/text.md"), "levels", result)
 
 
 def guarantees_document() -> str:
@@ -91,20 +92,32 @@ def bring_up_document(document: str, language: str) -> str:
 
 
 def language_document(document: str, language: str) -> str:
-    """Return a reference of the language, whose list of words has those with fixed values."""
-    words = [
-        f"`{word.usage.upper()}` = `{word.stands_for}`"
-        for word in WORDS.values()
-        if word.stands_for
-    ]
-    row = f"- {text('documents', 'language/fixed', language)}: {' '.join(words)}\n"
-    return spliced(_text(document), "fixed", row if words else "")
+    """Return a reference of the language, whose list of words is whole.
+
+    It has those with fixed values, and the instructions that no row by hand has.
+    """
+    whole = _text(document)
+    by_hand = set(re.findall(r"`([A-Z_]+)`", whole.partition("<!-- begin generated: fixed")[0]))
+    words = [word for word in WORDS.values() if word.role.is_instruction]
+    rows = {
+        "fixed": [f"`{it.usage.upper()}` = `{it.stands_for}`" for it in words if it.stands_for],
+        "others": [
+            f"`{it.usage.upper()}` {as_block(it, language)}".rstrip()
+            for it in words
+            if not it.stands_for and it.text not in by_hand
+        ],
+    }
+    said = {key: text("documents", f"language/{key}", language) for key in rows}
+    lines = (f"- {said[key]}: {' '.join(found)}\n" for key, found in rows.items() if found)
+    return spliced(whole, "fixed", "".join(lines))
 
 
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: title and first sentence of each, in all languages side by side."""
-    found = [document for document in documents(ROOT) if document.sources.get(SOURCE) != LIST]
-    shown = [language for language in languages() if any(language in one.sources for one in found)]
+    matches = [document for document in documents(ROOT) if document.sources.get(SOURCE) != LIST]
+    shown = [
+        language for language in languages() if any(language in one.sources for one in matches)
+    ]
 
     def said(key: str) -> list[str]:
         return [text("documents", key, language) for language in shown]
@@ -117,7 +130,7 @@ def list_of_documents(command: str) -> str:
     for part in ("teach", "write", "wiring", "trust", "build"):
         rows = [
             [_linked(document.sources.get(language, "")) for language in shown]
-            for document in found
+            for document in matches
             if document.part == part
         ]
         parts.append(table(said(f"part/{part}"), rows))
@@ -128,12 +141,12 @@ def _linked(source: str) -> str:
     """Return the title of a document, with a link to it, and its first sentence, or nothing."""
     if not source:
         return ""
-    title, sentence = _about((ROOT / source).read_text(encoding="utf-8"))
+    title, sentence = _title_and_readers((ROOT / source).read_text(encoding="utf-8"))
     link = f"[{title}]({Path(os.path.relpath(source, 'docs')).as_posix()})"
     return f"{link}<br>{sentence}" if sentence else link
 
 
-def _about(text: str) -> tuple[str, str]:
+def _title_and_readers(text: str) -> tuple[str, str]:
     """Return the title of a document, and the sentence that says who reads it, and for what."""
     _, _, body = f"\n{text}".partition("\n# ")
     title, *paragraphs = body.split("\n\n")
@@ -185,18 +198,18 @@ DOCUMENTS: dict[str, Callable[[], str]] = {
 def criteria() -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return its head and its rows."""
     rows: list[tuple[str, ...]] = [
-        (f"`{name}`", kind.meaning, ", ".join(_takes(kind))) for name, kind in KINDS.items()
+        (f"`{name}`", kind.meaning, ", ".join(_key_list(kind))) for name, kind in KINDS.items()
     ]
     return ("criterion", "met if", "takes"), rows
 
 
-def _takes(kind: Kind) -> list[str]:
+def _key_list(kind: Kind) -> list[str]:
     """Return the keys, with their defaults where these say something."""
-    found = ["`at`"] if kind.places else []
+    result = ["`at`"] if kind.places else []
     if kind.words:
-        found.append("`what`" if kind.words in WHATS else "`words`")
+        result.append("`what`" if kind.words in WHATS else "`words`")
     for number in kind.numbers:
         is_said = number.default is not None and number.default < number.high
-        found.append(f"`{number.key}`" + (f" ({number.default:g})" if is_said else ""))
-    found += [f"`{each}`" for each in (*kind.flags, *(AREA if kind.has_area else ()))]
-    return found
+        result.append(f"`{number.key}`" + (f" ({number.default:g})" if is_said else ""))
+    result += [f"`{item}`" for item in (*kind.flags, *(AREA if kind.has_area else ()))]
+    return result

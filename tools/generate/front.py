@@ -75,8 +75,8 @@ def _row(x: float, y: float, inside: str, size: int = 15) -> str:
 
 def _coloured(row: str) -> str:
     code, slashes, note = row.partition("//")
-    found = [_span(_colour(part), part) for part in WORDS_AND_SIGNS.split(code)]
-    return "".join([*found, _span(DIM, slashes + note)])
+    matches = [_span(_colour(part), part) for part in WORDS_AND_SIGNS.split(code)]
+    return "".join([*matches, _span(DIM, slashes + note)])
 
 
 def _span(colour: str, text: str) -> str:
@@ -95,9 +95,9 @@ def _colour(part: str) -> str:
 def _terminal(language: str) -> list[str]:
     """Return two commands, and what they print."""
     rows = [
-        *_said("check", text("documents", "front/wrong", language), language),
+        *_console_lines("check", text("documents", "front/wrong", language), language),
         "",
-        *_said("run", RIGHT, language),
+        *_console_lines("run", RIGHT, language),
     ]
     top = PAD + 18 + ROW * len(_lines())
     parts = [
@@ -110,7 +110,7 @@ def _terminal(language: str) -> list[str]:
     return parts
 
 
-def _said(verb: str, program: str, language: str) -> list[str]:
+def _console_lines(verb: str, program: str, language: str) -> list[str]:
     """Return a command as it is typed, and what it prints."""
     string_io = StringIO()
     with redirect_stdout(string_io), redirect_stderr(string_io):
@@ -119,7 +119,7 @@ def _said(verb: str, program: str, language: str) -> list[str]:
 
 
 @cache
-def _way() -> Way:
+def _driven_path() -> Way:
     return driven(PROGRAM.read_text(encoding="utf-8"), ROBOT, worlds.load(WORLD), LASTS_MS)
 
 
@@ -129,7 +129,7 @@ def _arena(language: str) -> list[str]:
     scale = (WIDTH - PAD - left) / world.width_cm
     foot = PAD + world.height_cm * scale + 22
     return [
-        *arena(world, _way(), left, PAD, scale),
+        *arena(world, _driven_path(), left, PAD, scale),
         f'<text x="{left:g}" y="{foot:.0f}" font-family="{FONT}" font-size="13" fill="{DIM}">'
         f"{escape(text('documents', 'front/caption', language))}</text>",
     ]

@@ -65,7 +65,7 @@ def drive(command: str, guide: str, begin: str, drives: Drives) -> str:
     fences = re.findall(r"^```tiniscript\n(.*?)^```", _text(guide), re.M | re.S)
     [program] = [fence for fence in fences if fence.startswith(begin)]
     runs = ((world, program.replace("SB|", "SI|"), lasts_ms) for world, lasts_ms in drives)
-    return _ways(command, "tinibot", *runs)
+    return _path_pictures(command, "tinibot", *runs)
 
 
 def lesson(command: str) -> str:
@@ -73,10 +73,10 @@ def lesson(command: str) -> str:
     folder = catalogue.folders()[6]
     found, program = catalogue.load(folder), catalogue.answers(folder)[0][0].program
     runs = ((varied(found, k), program, 8000) for k in (1, 2, 3))
-    return _ways(command, found.robot, *runs)
+    return _path_pictures(command, found.robot, *runs)
 
 
-def _ways(command: str, robot: str, *runs: tuple[World, str, int]) -> str:
+def _path_pictures(command: str, robot: str, *runs: tuple[World, str, int]) -> str:
     """Return the ways in some worlds of one size, side by side: each a program and milliseconds."""
     side, parts = 330 if len(runs) == 1 else 240, []
     scale = side / max(runs[0][0].width_cm, runs[0][0].height_cm)

@@ -117,7 +117,7 @@ def _length_row(request: Message | None) -> str:
 def _length_range(fields: tuple[Field, ...]) -> str:
     """Return the least and the most of a payload; what fills a frame depends on the robot."""
     least, most = messages.sizes(fields)
-    is_filling = any(field.fills for field in fields)
+    is_filling = any(field.fills_frame for field in fields)
     return f"{least}, {'kPayloadBytes' if is_filling else most}"
 
 
@@ -147,8 +147,8 @@ def message_rows() -> Rows:
         (
             message.number,
             f"`{message.name}`",
-            _shown(message.request) if message.number < messages.FIRST_EVENT else "",
-            _shown(message.reply),
+            _fields_text(message.request) if message.number < messages.FIRST_EVENT else "",
+            _fields_text(message.reply),
             message.meaning,
         )
         for message in MESSAGES
@@ -159,10 +159,10 @@ def message_rows() -> Rows:
     return head, rows
 
 
-def _shown(fields: Sequence[Field]) -> str:
+def _fields_text(fields: Sequence[Field]) -> str:
     """Return the fields of a payload as the document names them."""
     words = [
-        f"{field.name}:{field.low}..{'' if field.fills else field.high}"
+        f"{field.name}:{field.low}..{'' if field.fills_frame else field.high}"
         if field.kind == "rest"
         else f"{field.name}:{field.kind}"
         for field in fields
@@ -231,11 +231,11 @@ def payloads(command: str) -> str:
     ]
     for name, shared in types.items():
         of = ", ".join(message.name for message in shared)
-        parts.append(_type(name, f"What is in the reply to {of}.", shared[0].reply))
+        parts.append(_type_definition(name, f"What is in the reply to {of}.", shared[0].reply))
     for event in events:
         tag = f'    name: Literal["{event.name}"] = "{event.name}"\n'
-        parts.append(_type(_event(event), event.meaning, event.reply, tag))
-    inside = "".join(f"    | {each}\n" for each in types)
+        parts.append(_type_definition(_event(event), event.meaning, event.reply, tag))
+    inside = "".join(f"    | {item}\n" for item in types)
     entries = "".join(f'    "{reply.name}": {_reply(reply)},\n' for reply in replies)
     parts.append(
         f"SentReply = (\n{inside.replace('| ', '', 1)})\n"
@@ -254,7 +254,7 @@ def _event(message: Message) -> str:
     return camel(message.name) + "Event"
 
 
-def _type(name: str, meaning: str, fields: Sequence[Field], tag: str = "") -> str:
+def _type_definition(name: str, meaning: str, fields: Sequence[Field], tag: str = "") -> str:
     rows = [f"    {field.name}: {'bytes' if field.kind == 'rest' else 'int'}\n" for field in fields]
     lines = "".join((*rows, tag))
     return f'class {name}(NamedTuple):\n    """{meaning}"""\n' + (f"\n{lines}" if lines else "")

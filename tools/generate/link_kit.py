@@ -93,10 +93,10 @@ def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
     """Return code that is refused in the same way whatever devices there are."""
     for run in runs:
         code = run.image[HEADER_BYTES:]
-        found = {verdict(code, 0), verdict(code, 255), verdict(code, len(TINIBOT.readings))}
-        if len(found) > 1 or "" in found or len(code) > MOST_BYTES:
+        matches = {verdict(code, 0), verdict(code, 255), verdict(code, len(TINIBOT.readings))}
+        if len(matches) > 1 or "" in matches or len(code) > MOST_BYTES:
             continue
-        rule, at = found.pop().split()
+        rule, at = matches.pop().split()
         yield {"name": run.name, "code": code.hex(), "rule": rule, "at": int(at)}
 
 

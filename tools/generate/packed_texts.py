@@ -41,8 +41,8 @@ def packed(texts: Sequence[str]) -> Packed:
     common = _most_common(rows)
     candidates = []
     for _ in range(ROUNDS):
-        pairs, shorter = _paired(rows, common)
-        candidates.append(Packed(common, pairs, _halved(shorter, common)))
+        pairs, shorter = _pair_codes(rows, common)
+        candidates.append(Packed(common, pairs, _split_halves(shorter, common)))
         common = _most_common(shorter)
     return min(candidates, key=lambda each: each.size)
 
@@ -50,7 +50,7 @@ def packed(texts: Sequence[str]) -> Packed:
 def unpacked(data: Packed) -> list[str]:
     """Return what packed texts say."""
     halves = [half for byte in data.texts for half in (byte >> 4, byte & 15)]
-    texts, said, at = [], bytearray(), 0
+    texts, text, at = [], bytearray(), 0
     while at < len(halves):
         if halves[at] >= FIRST_COMMON:
             code, at = data.common[halves[at] - FIRST_COMMON], at + 1
@@ -59,10 +59,10 @@ def unpacked(data: Packed) -> list[str]:
         else:
             break  # the rest of the last byte
         if code == END:
-            texts.append(said.decode("ascii"))
-            said = bytearray()
+            texts.append(text.decode("ascii"))
+            text = bytearray()
         else:
-            said += letters_of(code, data.pairs)
+            text += letters_of(code, data.pairs)
     return texts
 
 
@@ -71,9 +71,9 @@ def letters_of(code: int, pairs: Sequence[Pair]) -> bytes:
     letters = [code]
     while any(letter < FIRST_LETTER for letter in letters):
         letters = [
-            each
+            item
             for letter in letters
-            for each in (pairs[letter - 1] if letter < FIRST_LETTER else (letter,))
+            for item in (pairs[letter - 1] if letter < FIRST_LETTER else (letter,))
         ]
     return bytes(letters)
 
@@ -85,11 +85,11 @@ def _most_common(rows: Sequence[Sequence[int]]) -> tuple[int, ...]:
     return (END, *sorted(most))
 
 
-def _paired(
+def _pair_codes(
     rows: Sequence[Sequence[int]], common: Sequence[int]
 ) -> tuple[list[Pair], list[list[int]]]:
     """Return pairs, and the texts with their codes."""
-    made = [list(row) for row in rows]
+    items = [list(row) for row in rows]
     pairs: list[Pair] = []
     depths: dict[int, int] = {}
 
@@ -97,23 +97,23 @@ def _paired(
         return 1 if code in common else 2
 
     while len(pairs) < FIRST_LETTER - 1:
-        uses = Counter(pair for row in made for pair in _apart(row) if END not in pair)
+        uses = Counter(pair for row in items for pair in _row_pairs(row) if END not in pair)
         possible = [
             (count * (halves(pair[0]) + halves(pair[1]) - 2), pair)
             for pair, count in uses.items()
-            if max(depths.get(each, 0) for each in pair) < DEEPEST
+            if max(depths.get(item, 0) for item in pair) < DEEPEST
         ]
         saved, pair = max(possible, default=(0, (END, END)))
         if saved <= LEAST_SAVED:
             break
         code = 1 + len(pairs)
-        depths[code] = 1 + max(depths.get(each, 0) for each in pair)
+        depths[code] = 1 + max(depths.get(item, 0) for item in pair)
         pairs.append(pair)
-        made = [_replaced(row, pair, code) for row in made]
-    return pairs, made
+        items = [_replace_pair(row, pair, code) for row in items]
+    return pairs, items
 
 
-def _halved(rows: Sequence[Sequence[int]], common: Sequence[int]) -> bytes:
+def _split_halves(rows: Sequence[Sequence[int]], common: Sequence[int]) -> bytes:
     """Return codes as bytes: the high half of each comes first."""
     halves: list[int] = []
     for code in (code for row in rows for code in row):
@@ -123,22 +123,22 @@ def _halved(rows: Sequence[Sequence[int]], common: Sequence[int]) -> bytes:
     return bytes(16 * high + low for high, low in zip(halves[::2], halves[1::2], strict=True))
 
 
-def _apart(row: Sequence[int]) -> list[Pair]:
+def _row_pairs(row: Sequence[int]) -> list[Pair]:
     """Return the pairs of a row; of a letter three times in a row there is one."""
-    found: list[Pair] = []
+    pairs: list[Pair] = []
     is_free = True
     for before, pair in pairwise(((-1, -1), *pairwise(row))):
-        is_free = not (is_free and pair == before and found)
+        is_free = not (is_free and pair == before and pairs)
         if is_free:
-            found.append((pair[0], pair[1]))
-    return found
+            pairs.append((pair[0], pair[1]))
+    return pairs
 
 
-def _replaced(row: Sequence[int], pair: Pair, code: int) -> list[int]:
-    made: list[int] = []
+def _replace_pair(row: Sequence[int], pair: Pair, code: int) -> list[int]:
+    result: list[int] = []
     for letter in row:
-        if made and (made[-1], letter) == pair:
-            made[-1] = code
+        if result and (result[-1], letter) == pair:
+            result[-1] = code
         else:
-            made.append(letter)
-    return made
+            result.append(letter)
+    return result

@@ -113,8 +113,8 @@ def _pdf_row(box: Box | Line, names: list[str]) -> str:
 
 def _pdf_text(text: str) -> str:
     """Return a text in round brackets; what is not ASCII is an octal number."""
-    found = ""
+    result = ""
     for byte in text.encode("cp1252"):
         sign = chr(byte)
-        found += f"\\{sign}" if sign in "()\\" else sign if 32 <= byte < 127 else f"\\{byte:03o}"
-    return f"({found})"
+        result += f"\\{sign}" if sign in "()\\" else sign if 32 <= byte < 127 else f"\\{byte:03o}"
+    return f"({result})"

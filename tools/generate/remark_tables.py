@@ -72,14 +72,14 @@ def rows(language: str, is_small: bool = False) -> list[str]:
     rows = [("problem", problem) for problem in PROBLEMS] + [
         ("remark", remark) for remark in REMARKS
     ]
-    unsaid = _unsaid() if is_small else set()
+    unsaid = _unused_remarks() if is_small else set()
     return [
         *("" if row in unsaid else said(*row, language) for row in rows),
         *("" if ("fault", name) in unsaid else name for name in names),
     ]
 
 
-def _unsaid() -> set[tuple[str, str]]:
+def _unused_remarks() -> set[tuple[str, str]]:
     """Return what a robot of the smallest level never says.
 
     Its own level is the only one, it has no place for words that it does not read, nor for lines of
@@ -103,7 +103,7 @@ def texts(command: str) -> str:
             "",
             "#ifdef tiniscript_has_discs",
             "",
-            *(row for each in answered() for row in (*_tables(each, rows(each)), "")),
+            *(row for item in answered() for row in (*_tables(item, rows(item)), "")),
             "#else",
             "",
             "// An ATmega328P that reads text: what it never says is empty.",
@@ -111,18 +111,18 @@ def texts(command: str) -> str:
             "",
             *(
                 row
-                for each in answered()
-                for row in (*_tables(each, rows(each, is_small=True)), "")
+                for item in answered()
+                for row in (*_tables(item, rows(item, is_small=True)), "")
             ),
             "#endif",
             "",
             "}  // namespace",
             "",
-            *_chosen("packed_texts()", ""),
+            *_table_function("packed_texts()", ""),
             "",
-            *_chosen("packed_codes()", "Codes"),
+            *_table_function("packed_codes()", "Codes"),
             "",
-            *_chosen("pair_of(uint8_t code)", "Pairs", "[code - 1]"),
+            *_table_function("pair_of(uint8_t code)", "Pairs", "[code - 1]"),
         ],
         "../vm/build.h",
         "kit_words.h",
@@ -130,10 +130,10 @@ def texts(command: str) -> str:
     )
 
 
-def _chosen(function: str, table: str, at: str = "") -> list[str]:
+def _table_function(function: str, table: str, at: str = "") -> list[str]:
     """Return a function that has a table of the robot's language."""
-    first, *others = (f"k{each.title()}{table}" for each in answered())
-    numbers = [language_number(each) for each in answered()[1:]]
+    first, *others = (f"k{item.title()}{table}" for item in answered())
+    numbers = [language_number(item) for item in answered()[1:]]
     pairs = zip(numbers, others, strict=True)
     choice = "".join(f"robot_language() == 0x{number:04x} ? {other} : " for number, other in pairs)
     choice += first
@@ -155,7 +155,7 @@ def _tables(language: str, rows: Sequence[str]) -> list[str]:
         "};",
         "",
         f"const uint8_t k{language}Codes[] tini_progmem = {{",
-        f"    {bytes_of_table(data.common)}  // {_shown(data.common)}",
+        f"    {bytes_of_table(data.common)}  // {_c_bytes(data.common)}",
         "};",
         "",
         f"const uint8_t k{language}Pairs[][2] tini_progmem = {{",
@@ -168,5 +168,5 @@ def _tables(language: str, rows: Sequence[str]) -> list[str]:
     ]
 
 
-def _shown(codes: Sequence[int]) -> str:
+def _c_bytes(codes: Sequence[int]) -> str:
     return "the end, " + ", ".join(f"'{chr(code)}'" for code in codes if code != END)

@@ -45,9 +45,9 @@ def role_of(word: Word) -> str:
     role = roles.get(word.role.name, word.role.name)
     if role not in ROLES:
         raise LookupError(
-            f"{word.text} has a role of its own, {role}. A robot's reader of text needs it: a name "
-            "in ROLES of tools/generate/text_tables.py, and what it does in vm_arduino/src/text/; "
-            "or it reads it not: `lacks` of all LEVELS in robots/text_levels.py"
+            f"a robot's reader of text is to know {word.text} (READ in robots/text_levels.py): "
+            f"its role, {role}, needs a name in ROLES of tools/generate/text_tables.py, and what "
+            "it does in vm_arduino/src/text/"
         )
     return role
 
@@ -78,13 +78,13 @@ def words_in_order() -> list[Word]:
 
 def ranges() -> list[tuple[int, int]]:
     """Return the ranges of arguments, each once, in the order of their words."""
-    found: list[tuple[int, int]] = []
+    result: list[tuple[int, int]] = []
     for word in words_in_order():
         for argument in word.arguments if role_of(word) not in ("function", "later") else ():
             pair = (argument.low, argument.high)
-            if pair not in found and pair != (LOWEST, HIGHEST):
-                found.append(pair)
-    return found
+            if pair not in result and pair != (LOWEST, HIGHEST):
+                result.append(pair)
+    return result
 
 
 def _kinds(word: Word) -> int:
@@ -210,7 +210,7 @@ def numbers_of(name: str, keys: Sequence[str]) -> str:
 
 def bytes_of_table(data: Iterable[int]) -> str:
     """Return bytes as a row of a table has them."""
-    return " ".join(f"0x{each:02x}," for each in data)
+    return " ".join(f"0x{item:02x}," for item in data)
 
 
 def file_of(command: str, name: str, about: str, lines: Sequence[str], *includes: str) -> str:

@@ -31,18 +31,20 @@ def wiring_pages(command: str, is_kept: bool = False) -> dict[str, Callable[[], 
 
     A page that is kept there leads to no page that is not, and shows one drawing.
     """
-    found: dict[str, Callable[[], str]] = {}
+    result: dict[str, Callable[[], str]] = {}
     for name, language in product(robots.names(), LANGUAGES):
         picture = f"docs/pictures/wiring/{name}"
-        found[f"docs/{language}/wiring/{name}.md"] = partial(
+        result[f"docs/{language}/wiring/{name}.md"] = partial(
             _page, command, name, language, is_kept
         )
-        found[f"{picture}.{language}.svg"] = partial(_drawn, drawing_of, name, language)
-        found[f"{picture}.finished.{language}.svg"] = partial(_drawn, finished_of, name, language)
-    return found
+        result[f"{picture}.{language}.svg"] = partial(_draw_page, drawing_of, name, language)
+        result[f"{picture}.finished.{language}.svg"] = partial(
+            _draw_page, finished_of, name, language
+        )
+    return result
 
 
-def _drawn(draw: Callable[[Plan], str], name: str, language: str) -> str:
+def _draw_page(draw: Callable[[Plan], str], name: str, language: str) -> str:
     return draw(plan_of(robots.load(name), language))
 
 

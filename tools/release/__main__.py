@@ -77,18 +77,18 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
             return _fail(str(why))
         wrong = list(facts.complaints(clones[0].root))
         wrong += [complaint for complaint in facts.complaints(ROOT) if "not committed" in complaint]
-        for each in wrong:
-            _say(each)
+        for item in wrong:
+            _say(item)
         if wrong and not options.as_is:
             return _fail("Nothing was made. To rehearse all the same:  --as-is")
         try:
-            made = [_make(clone, parts) for clone in clones]
-            for file in (*made[0].get("wheel", ()), *made[0].get("sdist", ())):
+            items = [_make(clone, parts) for clone in clones]
+            for file in (*items[0].get("wheel", ()), *items[0].get("sdist", ())):
                 _say(f"twine check {file.name}")
                 clones[0].python("-m", "twine", "check", "--strict", str(file))
         except CannotMake as why:
             return _fail(str(why))
-        files = [file for paths in made[0].values() for file in paths]
+        files = [file for paths in items[0].values() for file in paths]
         again = clones[1].parts
         failed = [path.name for path in files if sha256(path) != sha256(again / path.name)]
         shutil.copytree(clones[0].parts, folder, dirs_exist_ok=True)
@@ -99,8 +99,8 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
         _say(f"pyproject.toml does not have {options.url}: what is published is made with it there")
     if old := ", ".join(results.old()):
         _say(f"{results.DOCUMENT.relative_to(ROOT)}: figures of older code: {old}")
-    for each in failed:
-        print(f"made twice, it is not the same: {each}", file=sys.stderr)
+    for item in failed:
+        print(f"made twice, it is not the same: {item}", file=sys.stderr)
     if wrong or failed:
         return 1
     if options.tag:
@@ -139,8 +139,8 @@ def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
         words = ["git", "clone", "--quiet", "--no-hardlinks", str(ROOT), str(root)]
         completed = subprocess.run(words, capture_output=True, text=True, umask=0o022)
         if completed.returncode:
-            said = completed.stderr.strip().splitlines() or ["git says nothing"]
-            raise CannotMake(f"This folder is no clone that git can copy: {said[-1]}")
+            sentence = completed.stderr.strip().splitlines() or ["git says nothing"]
+            raise CannotMake(f"This folder is no clone that git can copy: {sentence[-1]}")
         about = root / "pyproject.toml"
         text = about.read_text("utf-8")
         if url and facts.with_address(text, url) != text:
@@ -164,21 +164,21 @@ def _git(root: Path, steps: Sequence[Sequence[str]]) -> None:
     for step in steps:
         completed = subprocess.run([*git, *step], capture_output=True, text=True)
         if completed.returncode:
-            said = (completed.stderr or completed.stdout).strip().splitlines() or [
+            text = (completed.stderr or completed.stdout).strip().splitlines() or [
                 "git says nothing"
             ]
-            raise CannotMake(f"git {step[0]} does not work: {said[-1]}")
+            raise CannotMake(f"git {step[0]} does not work: {text[-1]}")
 
 
 def _make(clone: Clone, parts: Sequence[str]) -> dict[str, list[Path]]:
     """Make parts in a clone; return the files of each."""
-    found = {}
+    result = {}
     for name in parts:
         _say(f"{name}, in {clone.root.name}")
         begun = time.monotonic()
-        found[name] = PARTS[name].make(clone)
+        result[name] = PARTS[name].make(clone)
         _say(f"{name}: {time.monotonic() - begun:.0f} s")
-    return found
+    return result
 
 
 def _say(line: str) -> None:

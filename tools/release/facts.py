@@ -30,12 +30,12 @@ _PEOPLE = {
 def version(root: Path) -> str:
     """Return the version of a clone, `0.2.0`."""
     home = root / "compiler" / "tiniscript" / "base" / "version.py"
-    return _first(home, r'(?m)^__version__ = "(.+)"$')
+    return _first_match(home, r'(?m)^__version__ = "(.+)"$')
 
 
 def address(root: Path) -> str:
     """Return where a clone is published, as `https://…`, or nothing where it does not say so."""
-    return _first(root / "pyproject.toml", r'(?m)^Source = "(https://[^"]+)"$').rstrip("/")
+    return _first_match(root / "pyproject.toml", r'(?m)^Source = "(https://[^"]+)"$').rstrip("/")
 
 
 def with_address(text: str, url: str) -> str:
@@ -61,17 +61,17 @@ def complaints(root: Path) -> Iterator[str]:
         name = changed[0][3:]
         yield f"{len(changed)} files are not committed, {name} among them. Commit them first."
     ours = version(root)
-    yield from _about_tags(root, ours)
-    yield from _about_changes(root, ours)
+    yield from _check_tags(root, ours)
+    yield from _check_changelog(root, ours)
     for name, pattern in _REPEATED.items():
-        found = _first(root / name, pattern)
-        if found != ours:
-            yield f"{name} has version {found or 'none'}; tiniscript/base/version.py has {ours}."
+        result = _first_match(root / name, pattern)
+        if result != ours:
+            yield f"{name} has version {result or 'none'}; tiniscript/base/version.py has {ours}."
     for name, pattern in _PEOPLE.items():
-        found = _first(root / name, pattern)
-        if found != PEOPLE:
-            yield f"{name} names {found or 'nobody'}, not {PEOPLE}."
-    if _first(root / "SECURITY.md", "(?m)^Contact: (.+)$") in ("", NO_CONTACT):
+        result = _first_match(root / name, pattern)
+        if result != PEOPLE:
+            yield f"{name} names {result or 'nobody'}, not {PEOPLE}."
+    if _first_match(root / "SECURITY.md", "(?m)^Contact: (.+)$") in ("", NO_CONTACT):
         yield "SECURITY.md does not say how to reach somebody: write an address after Contact."
     if not address(root):
         yield (
@@ -80,7 +80,7 @@ def complaints(root: Path) -> Iterator[str]:
         )
 
 
-def _about_tags(root: Path, ours: str) -> Iterator[str]:
+def _check_tags(root: Path, ours: str) -> Iterator[str]:
     versions = [name for name in tags(root) if re.fullmatch(r"v\d.*", name)]
     if versions and f"v{ours}" not in versions:
         yield f"The commit has the tag {versions[0]}, and the version {ours}: one of both is wrong."
@@ -88,14 +88,14 @@ def _about_tags(root: Path, ours: str) -> Iterator[str]:
         yield f"The tag v{ours} is that of another commit: give this one a new version."
 
 
-def _about_changes(root: Path, ours: str) -> Iterator[str]:
+def _check_changelog(root: Path, ours: str) -> Iterator[str]:
     text = (root / "CHANGELOG.md").read_text(encoding="utf-8")
     dated = _DATED.search(text)
     if f"\n## {ours}" not in text:
         yield f"CHANGELOG.md has no section for {ours}."
     elif dated is None or dated.group(1) != ours:
         yield f"CHANGELOG.md has no date for {ours}. Write:  ## {ours} (2026-01-31)"
-    elif cited := _first(root / "CITATION.cff", r"(?m)^date-released: (\S+)$"):
+    elif cited := _first_match(root / "CITATION.cff", r"(?m)^date-released: (\S+)$"):
         if cited != dated.group(2):
             yield f"CITATION.cff has the date {cited}; CHANGELOG.md has {dated.group(2)}."
     _, _, rest = text.partition("\n## Unreleased\n")
@@ -105,7 +105,7 @@ def _about_changes(root: Path, ours: str) -> Iterator[str]:
         yield f"CHANGELOG.md has changes under Unreleased, above {ours}: they are not released."
 
 
-def _first(path: Path, pattern: str) -> str:
+def _first_match(path: Path, pattern: str) -> str:
     match = re.search(pattern, path.read_text(encoding="utf-8")) if path.is_file() else None
     return match.group(1) if match else ""
 

@@ -60,9 +60,9 @@ class Clone(NamedTuple):
         completed = subprocess.run(command, cwd=self.root, env=self.environment(), umask=0o022,
                               capture_output=True, text=True, errors="replace")  # fmt: skip
         if completed.returncode not in good:
-            said = (completed.stdout + completed.stderr).strip().splitlines() or ["nothing"]
+            text = (completed.stdout + completed.stderr).strip().splitlines() or ["nothing"]
             name = " ".join(words[:2]).partition("\n")[0]
-            raise CannotMake(f"python {name} said:\n" + "\n".join(said[-12:]))
+            raise CannotMake(f"python {name} said:\n" + "\n".join(text[-12:]))
         return completed.stdout
 
     def named(self, part: str) -> Path:
@@ -164,8 +164,8 @@ PARTS = {
 
 def chosen(names: list[str]) -> list[str]:
     """Return parts with those that they need, in the order in which they are made."""
-    wanted = set(names or PARTS)
+    expected = set(names or PARTS)
     for name in reversed(PARTS):
-        if name in wanted:
-            wanted |= set(PARTS[name].needs)
-    return [name for name in PARTS if name in wanted]
+        if name in expected:
+            expected |= set(PARTS[name].needs)
+    return [name for name in PARTS if name in expected]

@@ -43,7 +43,7 @@ def name_in(language: str, english: str) -> str:
 def language_of(name: str) -> str:
     """Return the language that a document is in, by the name of its file."""
     folder, code = PurePosixPath(name).parts[1:2], name.split(".")[-2:-1]
-    return next((each for each in (*folder, *code) if each in languages()), SOURCE)
+    return next((item for item in (*folder, *code) if item in languages()), SOURCE)
 
 
 def sources(root: Path, english: str) -> dict[str, str]:
@@ -103,7 +103,7 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
 
     `built` are the names of those that are there beside its files.
     """
-    found = [
+    matches = [
         *_guides(root, "teach", "monday", "bring-up", "lessons", "materials", "measure", "modules"),
         *_guides(root, "write", "language", "robots", "studio", "command"),
         *_guides(root, "teach", "class"),
@@ -124,12 +124,12 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
     ]
     there = [
         document
-        for document in found
+        for document in matches
         if document.sources[SOURCE] in built or (root / document.sources[SOURCE]).is_file()
     ]
-    return [document._replace(sources=_with(built, document.sources)) for document in there]
+    return [document._replace(sources=_with_built(built, document.sources)) for document in there]
 
 
-def _with(built: Collection[str], kept: dict[str, str]) -> dict[str, str]:
+def _with_built(built: Collection[str], kept: dict[str, str]) -> dict[str, str]:
     names = {language: name_in(language, kept[SOURCE]) for language in languages()}
     return {value: name for value, name in names.items() if value in kept or name in built}

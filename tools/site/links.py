@@ -45,15 +45,15 @@ def dead(folder: Path) -> list[str]:
 
     @cache  # what is around a page is the same on each
     def wrong(path: Path, address: str, is_fetched: bool) -> str:
-        return _wrong(folder, path, address, is_fetched, pages)
+        return _link_problem(folder, path, address, is_fetched, pages)
 
-    found: list[str] = []
+    result: list[str] = []
     for path, page in pages.items():
         for address, is_fetched in page.links:
             is_here = address.startswith(("#", "?"))
             if why := wrong(path if is_here else path.parent / "*", address, is_fetched):
-                found.append(f"{path.relative_to(folder).as_posix()}: {address}: {why}")
-    return found
+                result.append(f"{path.relative_to(folder).as_posix()}: {address}: {why}")
+    return result
 
 
 def _read(path: Path) -> _Page:
@@ -62,7 +62,7 @@ def _read(path: Path) -> _Page:
     return page
 
 
-def _wrong(
+def _link_problem(
     folder: Path, path: Path, address: str, is_fetched: bool, pages: dict[Path, _Page]
 ) -> str:
     """Return what is wrong with a link of a page in a resolved folder, or nothing."""

@@ -80,7 +80,7 @@ def page(source: str, on: Shelf, place: Place | None = None) -> str:
     `place` is where it is, if not where its source is. Raises CannotMake where a link leads to no
     file.
     """
-    found: list[str] = []
+    matches: list[str] = []
     path = on.root / source
     here = place or on.places[source]
     text = on.text(source)
@@ -88,35 +88,37 @@ def page(source: str, on: Shelf, place: Place | None = None) -> str:
         text = filled(text, source, catalogue.load(path.parent))
     for number, part in enumerate(_FENCED.split(text)):
         is_code = number % 2 == 1
-        found.append(
-            part if is_code else _LINK.sub(lambda link: _led(link, source, here, on), part)
+        matches.append(
+            part
+            if is_code
+            else _LINK.sub(lambda link: _resolved_link(link, source, here, on), part)
         )
-    return "".join(found)
+    return "".join(matches)
 
 
-def _led(link: re.Match[str], source: str, here: Place, on: Shelf) -> str:
+def _resolved_link(link: re.Match[str], source: str, place: Place, on: Shelf) -> str:
     """Return a link of a document as the page has it."""
     mark, text, path, anchor = link.group(1), link.group(2), link.group(3), link.group(4) or ""
     if not path or ":" in path:
         return link.group(0)
     target = Path(os.path.normpath(PurePosixPath(source).parent / path)).as_posix()
     twins = on.twins.get(target, {})
-    is_itself = here in twins.values()  # in another language
-    there = on.places.get(target) if is_itself else twins.get(here.language, on.places.get(target))
-    if there is not None and there.language == here.language:
-        return f"[{text}]({way(here.name, there.name)}.md{anchor})"
+    is_itself = place in twins.values()  # in another language
+    there = on.places.get(target) if is_itself else twins.get(place.language, on.places.get(target))
+    if there is not None and there.language == place.language:
+        return f"[{text}]({way(place.name, there.name)}.md{anchor})"
     if there is not None:
-        return _plain(text, way(here.address, there.address) + anchor)
+        return _outside_link(text, way(place.address, there.address) + anchor)
     if not on.has(target):
         raise CannotMake(f"{source}: {path}")
     if mark:
         on.pictures.add(target)
         return f"![{text}](/{FILES}/{target})"
     on.files.add(target)
-    return _plain(text, way(here.address, f"{FILES}/{target}"))
+    return _outside_link(text, way(place.address, f"{FILES}/{target}"))
 
 
-def _plain(text: str, address: str) -> str:
+def _outside_link(text: str, address: str) -> str:
     """Return a link that Sphinx leaves as it is: it leads out of this half of the site."""
     return f'<a href="{escape(address)}">{text}</a>'
 

@@ -16,8 +16,8 @@ def translate(folder: Path, language: str) -> None:
     """Say in a language what the theme says on the pages in a folder."""
 
     def own(match: re.Match[str]) -> str:
-        told = found("documents", f"theme/{html.unescape(match[2])}", language)
-        return f"{match[1]}{html.escape(told)}{match[3]}" if told else match[0]
+        message = found("documents", f"theme/{html.unescape(match[2])}", language)
+        return f"{match[1]}{html.escape(message)}{match[3]}" if message else match[0]
 
     for path in folder.rglob("*.html"):
         text = path.read_text(encoding="utf-8")

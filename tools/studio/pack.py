@@ -46,7 +46,7 @@ def imports_of(source: bytes, name: str, is_package: bool, everywhere: bool) -> 
     skipped: set[ast.AST] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            skipped |= {each for part in node.body for each in ast.walk(part)}
+            skipped |= {item for part in node.body for item in ast.walk(part)}
         elif not everywhere and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             skipped |= set(ast.walk(node))
     imports: set[str] = set()
@@ -79,13 +79,13 @@ class Packer:
 
     def add(self, name: str) -> None:
         """Add a module and what it needs; a list, as nothing here recurses."""
-        wanted = [name]
-        while wanted:
-            name = wanted.pop()
+        expected = [name]
+        while expected:
+            name = expected.pop()
             for k in range(1, name.count(".") + 2):
-                wanted += self._take(".".join(name.split(".")[:k]))
+                expected += self._pack_module(".".join(name.split(".")[:k]))
 
-    def _take(self, name: str) -> list[str]:
+    def _pack_module(self, name: str) -> list[str]:
         parents = (name.rsplit(".", k)[0] for k in range(name.count(".") + 1))
         if name in self._seen or not NOT_HERE.isdisjoint(parents) or name.startswith(LEFT_OUT):
             return []
@@ -109,21 +109,21 @@ NO_LINES = 0xF8  # of instructions without a place in the source; their number l
 UNITS = 8  # the most of one entry
 
 
-def _stripped(code: CodeType) -> CodeType:
+def _without_lines(code: CodeType) -> CodeType:
     """Return code without the lines of its source, which are a fifth of it and pack badly."""
     entries, rest = divmod(len(code.co_code) // 2, UNITS)
     lines = bytes([NO_LINES + UNITS - 1] * entries + [NO_LINES + rest - 1] * (rest > 0))
-    constants = tuple(_stripped(constant) if isinstance(constant, CodeType) else constant
+    constants = tuple(_without_lines(constant) if isinstance(constant, CodeType) else constant
                       for constant in code.co_consts)  # fmt: skip
     return code.replace(co_linetable=lines, co_consts=constants)
 
 
 def pyc(source: bytes, name: str) -> bytes:
     """Return the bytecode of a module, without docstrings and asserts."""
-    code = _stripped(compile(source, name, "exec", dont_inherit=True, optimize=2))
+    code = _without_lines(compile(source, name, "exec", dont_inherit=True, optimize=2))
     digest = importlib.util.source_hash(source)
-    made = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
-    return bytes(made)
+    result = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
+    return bytes(result)
 
 
 def write(path: str, files: Files) -> None:

@@ -100,7 +100,7 @@ class Uno:
     def close(self) -> None:
         """Let the simulator end; what it has told stays."""
         if not self._has_ended:
-            self._tell("quit")
+            self._print_state("quit")
         try:
             self._process.wait(5)
         except subprocess.TimeoutExpired:
@@ -125,7 +125,7 @@ class Uno:
     def run_to(self, cycle: int) -> None:
         """Run until a cycle, within the instruction that is at work then."""
         mark = len(self.events)
-        self._tell(f"run {cycle} 0")
+        self._print_state(f"run {cycle} 0")
         self._wait_for_pause(mark)
 
     def run_until(self, pin: str, state: str, limit_ms: float) -> PinChange:
@@ -133,14 +133,14 @@ class Uno:
         number = self.pins.number(pin)
         mark = len(self.events)
         end = self.cycle + round(limit_ms * CYCLES_PER_MS)
-        self._tell(f"watch {number} {state}", f"run {end} 0")
+        self._print_state(f"watch {number} {state}", f"run {end} 0")
         why = self._wait_for_pause(mark)["why"]
         assert why == "pin", f"{pin} has not become {state} in {limit_ms} ms"
         return self.pins[pin]
 
     def go(self, speed: float = 1.0) -> None:
         """Run until `pause`; speed 1 is real time, 0 as fast as it goes."""
-        self._tell(f"run forever {speed}")
+        self._print_state(f"run forever {speed}")
 
     @contextmanager
     def aside(self) -> Iterator[None]:
@@ -150,19 +150,19 @@ class Uno:
         """
         assert not self._keeps_eeprom
         mark = len(self.events)
-        self._tell("aside")
+        self._print_state("aside")
         self._wait_for_pause(mark)
         try:
             yield
         finally:
             there = len(self.events)
-            self._tell("back")
+            self._print_state("back")
             self._wait_for_pause(there)
             del self.events[mark:]
 
     def pause(self) -> None:
         mark = len(self.events)
-        self._tell("pause")
+        self._print_state("pause")
         self._wait_for_pause(mark)
 
     def wait_for(
@@ -177,7 +177,7 @@ class Uno:
                     if not self._news.wait(max(0.0, end - time.monotonic())):
                         raise TimeoutError(f"the Uno has not told it in {timeout_s} s")
                 if at >= len(self.events):
-                    raise RuntimeError(f"the Uno has ended: {self._said()}")
+                    raise RuntimeError(f"the Uno has ended: {self._serial_output()}")
                 event = self.events[at]
             at += 1
             if event.what == "mistake":
@@ -190,42 +190,44 @@ class Uno:
     def drive(self, pin: str, level: bool | None, at: int | None = None) -> None:
         """Give a pin a level from outside, or leave it alone; at a cycle, or at once."""
         word = {None: "none", False: "low", True: "high"}[level]
-        self._tell(_at(at) + f"pin {self.pins.number(pin)} {word}")
+        self._print_state(_at_cycle(at) + f"pin {self.pins.number(pin)} {word}")
 
     def press(self, pin: str, ms: float = 50.0, at: int | None = None) -> None:
         """Connect a pin to ground for a while, as a button does; it stays so while time passes."""
         self.drive(pin, False, at)
         length = round(ms * CYCLES_PER_MS)
         begin = f"after {length} " if at is None else f"at {at + length} "
-        self._tell(begin + f"pin {self.pins.number(pin)} none")
+        self._print_state(begin + f"pin {self.pins.number(pin)} none")
 
     def analog(self, pin: str, count: int) -> None:
         """Put as much voltage to an analog pin as is read as `count`, 0 to 1023."""
         assert 0 <= count <= 1023, count
-        self._tell(f"analog {self.pins.number(pin)} {count}")
+        self._print_state(f"analog {self.pins.number(pin)} {count}")
 
     def supply(self, volts: float) -> None:
         """Let the chip have another voltage than 5 V. Only its analog converter knows of that."""
         assert 2 <= volts <= 6, volts
-        self._tell(f"supply {round(volts * 1000)}")
+        self._print_state(f"supply {round(volts * 1000)}")
 
     def sonar(
         self, trigger: str, echo: str, distance_cm: float | None, at: int | None = None
     ) -> None:
         """Put an HC-SR04 at two pins, or move what is in front of it; None: nothing."""
         numbers = f"{self.pins.number(trigger)} {self.pins.number(echo)}"
-        self._tell(_at(at) + f"sonar {numbers} {round((distance_cm or 0) * 10)}")
+        self._print_state(_at_cycle(at) + f"sonar {numbers} {round((distance_cm or 0) * 10)}")
 
     # -- its serial port ----------------------------------------------------------------------
 
     def send(self, data: bytes, at: int | None = None, *, stop_bits_fail: bool = False) -> None:
         """Send bytes to the chip one after the other; the first start bit at a cycle, or now."""
         if data:
-            self._tell(_at(at) + f"send{'_bad' if stop_bits_fail else ''} {data.hex()}")
+            self._print_state(
+                _at_cycle(at) + f"send{'_bad' if stop_bits_fail else ''} {data.hex()}"
+            )
 
     def hold(self, level: bool, bits: int, at: int | None = None) -> None:
         """Hold the wire low (a break) or leave it alone for so many bits, after what is sent."""
-        self._tell(_at(at) + f"hold {'high' if level else 'low'} {bits}")
+        self._print_state(_at_cycle(at) + f"hold {'high' if level else 'low'} {bits}")
 
     @property
     def sent(self) -> list[Byte]:
@@ -246,7 +248,7 @@ class Uno:
 
     def reset(self, cause: str = "external", at: int | None = None) -> None:
         """Reset it: `external` (button, DTR), `power-on` (a cut: RAM is lost), `brown-out`."""
-        self._tell(_at(at) + f"reset {cause}")
+        self._print_state(_at_cycle(at) + f"reset {cause}")
 
     # -- memory -------------------------------------------------------------------------------
 
@@ -256,7 +258,7 @@ class Uno:
         Needs `watches_stack`, which makes it about half as fast.
         """
         mark = len(self.events)
-        self._tell(f"stack {from_address}")
+        self._print_state(f"stack {from_address}")
         return Stack.of(self.wait_for(lambda event: event.what == "stack", since=mark))
 
     # -- interrupts ---------------------------------------------------------------------------
@@ -267,21 +269,21 @@ class Uno:
         Needs `watches_masked`, which makes it about half as fast.
         """
         mark = len(self.events)
-        self._tell("masked")
+        self._print_state("masked")
         self.wait_for(lambda event: event.what == "masked" and "places" in event.rest, since=mark)
         events = [event for event in self.events[mark:] if event.what == "masked"]
         return [Masked.of(event) for event in events if "vector" in event.rest]
 
     # -- inside -------------------------------------------------------------------------------
 
-    def _tell(self, *lines: str) -> None:
+    def _print_state(self, *lines: str) -> None:
         pipe = self._process.stdin
         assert pipe
         try:
             pipe.write("".join(f"{line}\n" for line in lines).encode())
             pipe.flush()
         except BrokenPipeError:
-            raise RuntimeError(f"the Uno has ended: {self._said()}") from None
+            raise RuntimeError(f"the Uno has ended: {self._serial_output()}") from None
 
     def _wait_for_pause(self, since: int) -> Event:
         event = self.wait_for(lambda event: event.what == "paused", since=since)
@@ -300,10 +302,10 @@ class Uno:
             self._has_ended = True
             self._news.notify_all()
 
-    def _said(self) -> str:
+    def _serial_output(self) -> str:
         self._errors.seek(0)
         return self._errors.read().decode(errors="replace")[-2000:]
 
 
-def _at(cycle: int | None) -> str:
+def _at_cycle(cycle: int | None) -> str:
     return "" if cycle is None else f"at {cycle} "

@@ -155,7 +155,7 @@ def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
             table = next(iter(value), table)
         at = end
     if not problems and not again:
-        problems = [(line, f"this is no TOML: {said}") for line, said in _whole(text)]
+        problems = [(line, f"this is no TOML: {said}") for line, said in _toml_problems(text)]
     return sorted([*found.values(), *again], key=lambda row: row.line), above, problems
 
 
@@ -173,8 +173,8 @@ def _end(lines: list[str], at: int) -> int:
         if k > at and not quotes and (_is_head(lines[k]) or lines[k].strip()[:1] in ("", "#")):
             if _is_head(lines[k]) or not _parsed("".join(lines[at:k]))[1]:
                 return k
-        for each in _QUOTES.findall(lines[k]):
-            quotes = "" if quotes == each else quotes or each
+        for item in _QUOTES.findall(lines[k]):
+            quotes = "" if quotes == item else quotes or item
     return len(lines)
 
 
@@ -192,7 +192,7 @@ def _parsed(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
         return {}, (int(at[1]) - 1 if at else 0, _PLACE.sub("", str(error)))
 
 
-def _whole(text: str) -> list[Problem]:
+def _toml_problems(text: str) -> list[Problem]:
     """Return what is no TOML of a file each of whose rows is."""
     _, why = _parsed(text)
     return [(why[0] + 1, why[1])] if why else []
@@ -213,8 +213,8 @@ def load(path: Path) -> Catalogue:
     for row in read:
         notes = [row.table] * (bool(row.table) and not row.key.startswith(row.table))
         entries = []
-        for each in row.value if isinstance(row.value, list) else [row.value]:
-            form = each if isinstance(each, dict) else {"": each}
+        for item in row.value if isinstance(row.value, list) else [row.value]:
+            form = item if isinstance(item, dict) else {"": item}
             entries.append(entry := Entry(row.key, *_text(form), notes=notes, line=row.line))
             entry.is_same = "same" in form or _GAP.fullmatch(entry.english) is not None
             if not entry.is_same and "own" not in form:

@@ -73,7 +73,7 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
     the power goes, or the stick is pulled, the old content is there or the new; that takes time.
     """
     _refuse_foreign_links(path)
-    stat_result = _found(path)
+    stat_result = _stat(path)
     if stat_result is not None and not stat.S_ISREG(stat_result.st_mode):
         with path.open("wb") as device:
             device.write(data)
@@ -243,7 +243,7 @@ def contents(path: Path, limit_bytes: int) -> bytes:
     return data
 
 
-def _found(path: Path) -> os.stat_result | None:
+def _stat(path: Path) -> os.stat_result | None:
     """Return what is at a path, through a link; None where nothing is."""
     try:
         return path.stat()

@@ -132,13 +132,13 @@ class Kit(NamedTuple):
         So one device that is another one is noticed however often the code uses it.
         """
         hashes = self.hashes if uses else ()
-        found = 0
+        result = 0
         for what, number in uses:
-            found <<= 1
-            if found > 0xFFFF:
-                found ^= 0x10000 | DEVICES_POLYNOMIAL
-            found ^= hashes[number + (0 if what == "sensor" else len(self.readings))]
-        return found
+            result <<= 1
+            if result > 0xFFFF:
+                result ^= 0x10000 | DEVICES_POLYNOMIAL
+            result ^= hashes[number + (0 if what == "sensor" else len(self.readings))]
+        return result
 
     def lines(self) -> list[str]:
         """Return what the profile says of each device, as it is hashed."""

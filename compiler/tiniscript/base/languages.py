@@ -50,31 +50,31 @@ class ByLanguage(dict[str, T]):
     in the first language, as the catalogue `names` translates it."""
 
     def __missing__(self, language: str) -> T:
-        return _named(self.get(SOURCE) or next(iter(self.values())), language)
+        return _with_name(self.get(SOURCE) or next(iter(self.values())), language)
 
     def __repr__(self) -> str:
         return f"ByLanguage({super().__repr__()})"
 
 
-def _named(name: T, language: str) -> T:
+def _with_name(name: T, language: str) -> T:
     if isinstance(name, dict):
-        return {key: _named(value, language) for key, value in name.items()}  # type: ignore[return-value]
+        return {key: _with_name(value, language) for key, value in name.items()}  # type: ignore[return-value]
     return found("names", name, language) or name  # type: ignore[arg-type, return-value]
 
 
 @cache
 def languages() -> tuple[str, ...]:
     """Return the codes of all languages, the one that is translated first."""
-    found = (path.name for path in FOLDER.iterdir() if path.is_dir() and path.name[0] != "_")
-    return tuple(sorted(found, key=lambda code: (code != SOURCE, code)))
+    result = (path.name for path in FOLDER.iterdir() if path.is_dir() and path.name[0] != "_")
+    return tuple(sorted(result, key=lambda code: (code != SOURCE, code)))
 
 
 def find(name: str) -> str:
     """Return the language of a locale, `es_PE.UTF-8` or Windows' `Spanish_Peru`, else English."""
     code = name.lower().replace("-", "_").partition(".")[0].partition("@")[0]
-    for each in (code, code.partition("_")[0]):
-        if each in languages():
-            return each
+    for item in (code, code.partition("_")[0]):
+        if item in languages():
+            return item
     team = code.partition("_")[0]
     by_team = (
         {about(language).english_name.lower(): language for language in languages()} if team else {}
@@ -90,33 +90,33 @@ def table(language: str, name: str) -> str:
 
 def about(language: str) -> Language:
     """Return what a language says of itself."""
-    return _about(language if language in languages() else SOURCE)
+    return _load_language(language if language in languages() else SOURCE)
 
 
 @cache
-def _about(language: str) -> Language:
+def _load_language(language: str) -> Language:
     path = FOLDER / language / ITSELF
-    return Language(*_kept(path.with_suffix(KEPT), [path], lambda: _said(language)))
+    return Language(*_cached(path.with_suffix(KEPT), [path], lambda: _catalogue_texts(language)))
 
 
-def _said(language: str) -> tuple[Any, ...]:
+def _catalogue_texts(language: str) -> tuple[Any, ...]:
     from tiniscript.base.translations import read_language
 
-    found = read_language(FOLDER / language / ITSELF)
-    return found.name, found.english_name, found.forms, found.form_of
+    result = read_language(FOLDER / language / ITSELF)
+    return result.name, result.english_name, result.forms, result.form_of
 
 
 def found(name: str, key: str, language: str) -> str | None:
     """Return a text of a catalogue, None where it has no such key, or one that counts."""
-    said = catalogue(name, language).get(key)
-    return said if isinstance(said, str) else None
+    text = catalogue(name, language).get(key)
+    return text if isinstance(text, str) else None
 
 
 def text(name: str, key: str, language: str) -> str:
     """Return a text of a catalogue."""
-    said = found(name, key, language)
-    if said is not None:
-        return said
+    result = found(name, key, language)
+    if result is not None:
+        return result
     raise KeyError(key)
 
 
@@ -139,9 +139,9 @@ def counted(name: str, key: str, count: int, language: str) -> str:
     """Return the form of a text with a plural that goes with a number."""
     forms = catalogue(name, language)[key]
     assert isinstance(forms, dict), key
-    said = about(language)
+    text = about(language)
     number = count if count < 100 else 100 + count % 100
-    return forms.get(said.forms[int(said.form_of[number])]) or forms["other"]
+    return forms.get(text.forms[int(text.form_of[number])]) or forms["other"]
 
 
 @cache
@@ -154,9 +154,9 @@ def catalogue(name: str, language: str) -> Texts:
             return catalogue(name, SOURCE)
         if not is_clone():
             return {}
-    beside = (own.with_name(each) for each in (SEEN, ITSELF))
-    found: Texts = _kept(path, [*files(name, language), *beside], lambda: texts(name, language))
-    return found
+    beside = (own.with_name(item) for item in (SEEN, ITSELF))
+    result: Texts = _cached(path, [*files(name, language), *beside], lambda: texts(name, language))
+    return result
 
 
 def texts(name: str, language: str) -> Texts:
@@ -180,22 +180,22 @@ def entries(name: str, language: str) -> Catalogue:
     return joined(english, name, own, seen, read_language(path.with_name(ITSELF)))
 
 
-def _kept(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
+def _cached(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
     """Return what is kept in a file if no source is newer, else make it, and keep it."""
     if _is_fresh(path, sources):
         with suppress(ValueError, EOFError, TypeError, OSError):  # half a file
             return marshal.loads(path.read_bytes())
     from tiniscript.base.files import replace
 
-    found = make()
+    result = make()
     with suppress(OSError, ValueError):  # a folder that nobody may write to, a full disk
-        replace(path, marshal.dumps(found, KEPT_FORM))
-    return found
+        replace(path, marshal.dumps(result, KEPT_FORM))
+    return result
 
 
 def forget() -> None:
     """Read all languages again when they are next asked for: their folder is another one now."""
-    for lru_cache_wrapper in (languages, catalogue, _about):
+    for lru_cache_wrapper in (languages, catalogue, _load_language):
         lru_cache_wrapper.cache_clear()
 
 
@@ -205,7 +205,7 @@ def kept_files() -> dict[str, bytes]:
     made: dict[str, Any] = {}
     for language in languages():
         made |= {f"{language}/{name}": texts(name, language) for name in names}
-        made[f"{language}/{ITSELF.removesuffix('.toml')}"] = _said(language)
+        made[f"{language}/{ITSELF.removesuffix('.toml')}"] = _catalogue_texts(language)
     return {name + KEPT: marshal.dumps(value, KEPT_FORM) for name, value in made.items()}
 
 

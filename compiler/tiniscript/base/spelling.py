@@ -81,30 +81,30 @@ class Speller:
         self._by_sound: dict[tuple[int, str], str] = {}
         self._by_rest: dict[str, list[str]] = {}
         for word in words:
-            for sound in _sounds_of(word) if len(word) >= _ALIKE else ():
+            for sound in _sound_keys(word) if len(word) >= _ALIKE else ():
                 self._by_sound.setdefault(sound, word)
             if len(word) >= _SWAPPED:
-                for rest in _rests(word):
+                for rest in _deletions(word):
                     self._by_rest.setdefault(rest, []).append(word)
 
     def alike(self, word: str) -> str | None:
         """Return the word that sounds like `word`, or None."""
         if not _ALIKE <= len(word) <= _LONGEST:
             return None
-        return next(filter(None, map(self._by_sound.get, _sounds_of(word))), None)
+        return next(filter(None, map(self._by_sound.get, _sound_keys(word))), None)
 
     def near(self, word: str) -> str | None:
         """Return a word that is one slip of the finger away from `word`, or None."""
         if not _SWAPPED <= len(word) <= _LONGEST or not word.isalpha():
             return None
-        for rest in _rests(word):
+        for rest in _deletions(word):
             for other in self._by_rest.get(rest, ()):
-                if _is_slip(word, other):
+                if _is_one_edit_away(word, other):
                     return other
         return None
 
 
-def _sounds_of(word: str) -> Iterator[tuple[int, str]]:
+def _sound_keys(word: str) -> Iterator[tuple[int, str]]:
     """Give how a word sounds in each language, beside the language's number."""
     for k, rows in enumerate(_sounds()):
         sound = word
@@ -113,14 +113,14 @@ def _sounds_of(word: str) -> Iterator[tuple[int, str]]:
         yield k, sound
 
 
-def _rests(word: str) -> Iterator[str]:
+def _deletions(word: str) -> Iterator[str]:
     """Give the word, and what is left of it without one of its letters."""
     yield word
     for k in range(len(word)):
         yield word[:k] + word[k + 1 :]
 
 
-def _is_slip(one: str, other: str) -> bool:
+def _is_one_edit_away(one: str, other: str) -> bool:
     """Whether one letter is wrong, missing or too much, or two neighbours are exchanged."""
     k = 0
     while k < min(len(one), len(other)) and one[k] == other[k]:

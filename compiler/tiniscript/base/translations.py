@@ -157,7 +157,7 @@ def _forms(value: object) -> Forms | None:
     """Return the forms of a text, none where it is empty; None of what is no text."""
     if isinstance(value, str):
         return {"": value} if value else {}
-    if isinstance(value, dict) and value and all(isinstance(each, str) for each in value.values()):
+    if isinstance(value, dict) and value and all(isinstance(item, str) for item in value.values()):
         return dict(value)
     return None
 
@@ -229,18 +229,18 @@ def misfits(entry: Entry, language: Language) -> list[str]:
     used = {language.forms[int(digit)] for digit in language.form_of}
     wanted, known = (used, {*language.forms, "other"}) if entry.plural else ({""}, {""})
     if not wanted <= entry.said.keys() <= known:
-        has, needs = (", ".join(sorted(each)) or "one text" for each in (entry.said, wanted))
+        has, needs = (", ".join(sorted(item)) or "one text" for item in (entry.said, wanted))
         return [f"it has {has}, and needs {needs}"]
     places = gaps(entry.english) | gaps(entry.plural)
-    found = []
+    matches = []
     for said in entry.said.values():
         try:
             own = gaps(said)
         except ValueError:
             return ["a brace { or } has no other half"]
-        found += [f"{{{gap}}} is missing" for gap in sorted(gaps(entry.english) - own)]
-        found += [f"{{{gap}}} is no gap of the English text" for gap in sorted(own - places)]
-    return list(dict.fromkeys(found))
+        matches += [f"{{{gap}}} is missing" for gap in sorted(gaps(entry.english) - own)]
+        matches += [f"{{{gap}}} is no gap of the English text" for gap in sorted(own - places)]
+    return list(dict.fromkeys(matches))
 
 
 def texts_of(catalogue: Catalogue) -> dict[str, str | Forms]:

@@ -165,14 +165,14 @@ class Said(NamedTuple):
 @cache
 def lexicon() -> dict[str, list[Said]]:
     """What each word means: all that the languages say of it, English last."""
-    found: dict[str, list[Said]] = {}
+    result: dict[str, list[Said]] = {}
     for language in (*languages()[1:], SOURCE):
         for row in table(language, "lexicon.txt").split("\n"):
             if not row.startswith("#"):
                 meaning, _, words = row.partition("|")
                 for word in words.split():
-                    found.setdefault(word, []).append(Said(*meaning.split()))
-    return found
+                    result.setdefault(word, []).append(Said(*meaning.split()))
+    return result
 
 
 @lru_cache(4000)
@@ -199,8 +199,8 @@ def concept_of(word: str) -> str | None:
 
 def names(word: str, argument: Argument) -> bool:
     """Whether a word is what documents and pupils call a value of a call: POTENCIA, VEL, T."""
-    said = said_of(word, "value") or said_of(word, "letter")
-    return said[:1] == (argument.name if argument in (LEFT, RIGHT) else argument.unit,)
+    text = said_of(word, "value") or said_of(word, "letter")
+    return text[:1] == (argument.name if argument in (LEFT, RIGHT) else argument.unit,)
 
 
 def said_instead(word: str) -> dict[str, str]:

@@ -34,18 +34,18 @@ class Row(NamedTuple):
 
 def rows(code: bytes) -> list[Row]:
     """Return the instructions of `code`, verified or not; what is none stands alone."""
-    made = []
+    rows = []
     at = 0
     while at < len(code):
         op = op_at(code, at)
         if op is None or at + op.size > len(code):
             data = code[at : at + 1] if op is None else code[at:]
-            made.append(Row(at, data, None, ()))
+            rows.append(Row(at, data, None, ()))
         else:
             data = code[at : at + op.size]
-            made.append(Row(at, data, op, read_operands(op, code, at)))
+            rows.append(Row(at, data, op, read_operands(op, code, at)))
         at += len(data)
-    return made
+    return rows
 
 
 def disassemble(
@@ -66,7 +66,7 @@ def disassemble(
         text = row.text
         names = [
             named[kind][value]
-            for kind, value in _numbered(row)
+            for kind, value in _operand_values(row)
             if kind in named and value < len(named[kind])
         ]
         remark = "  ".join([*names, *([remarks[row.offset]] if remarks and row.offset in remarks
@@ -78,10 +78,10 @@ def disassemble(
 
 def devices_of(row: Row) -> list[tuple[str, int]]:
     """Return the devices that an instruction names: "sensor" or "actuator", and its number."""
-    return [(kind, value) for kind, value in _numbered(row) if kind in ("sensor", "actuator")]
+    return [(kind, value) for kind, value in _operand_values(row) if kind in ("sensor", "actuator")]
 
 
-def _numbered(row: Row) -> list[tuple[str, int]]:
+def _operand_values(row: Row) -> list[tuple[str, int]]:
     """Return the kind and the value of each operand, with the one that the opcode implies."""
     if row.op is None:
         return []

@@ -156,7 +156,7 @@ def _shorts(code: int, name: str, kind: str, effect: str, role: str, meaning: st
             ._replace(implied=Implied(OPERAND_KINDS[kind], n)) for n in range(SHORTS)]
 
 
-def _comparing(code: int, name: str, operands: str, effect: str, role: str, meaning: str) -> list[Op]:
+def _comparison_ops(code: int, name: str, operands: str, effect: str, role: str, meaning: str) -> list[Op]:
     """Return the six instructions that differ in the comparator, the last three bits of the code."""
     assert code % 8 == 0
     return [_op(code + i, f"{name}_{each}", operands, effect, role, meaning.format(sign))
@@ -281,12 +281,12 @@ OPS = (
     *_shorts(0xA8, "SET",         "actuator", "value --",   "plain", "Set actuator {}, rounded and limited to its range."),
     *(_op(0xB0 + i, f"PUSH_NUM_{n}", "", "-- n", "value", f"Push the whole number {n}.") for i, n in enumerate(PUSHED)),
     # with a constant to compare to
-    *_comparing(0xC8, "UNTIL8",   "n:u8",               "a --", "until", "As UNTIL: `stop` is `a {} n`."),
-    *_comparing(0xD0, "UNTIL16",  "n:i16",              "a --", "until", "As UNTIL: `stop` is `a {} n`."),
-    *_comparing(0xD8, "IF8",      "n:u8 to:fwd8",       "a --", "if",    "Go to `to` unless `a {} n`."),
-    *_comparing(0xE0, "IF16",     "n:i16 to:fwd8",      "a --", "if",    "Go to `to` unless `a {} n`."),
-    *_comparing(0xE8, "IF_VAR8",  "v:variable n:u8 to:fwd8",  "--", "if", "Go to `to` unless variable `v` {} `n`."),
-    *_comparing(0xF0, "IF_VAR16", "v:variable n:i16 to:fwd8", "--", "if", "Go to `to` unless variable `v` {} `n`."),
+    *_comparison_ops(0xC8, "UNTIL8",   "n:u8",               "a --", "until", "As UNTIL: `stop` is `a {} n`."),
+    *_comparison_ops(0xD0, "UNTIL16",  "n:i16",              "a --", "until", "As UNTIL: `stop` is `a {} n`."),
+    *_comparison_ops(0xD8, "IF8",      "n:u8 to:fwd8",       "a --", "if",    "Go to `to` unless `a {} n`."),
+    *_comparison_ops(0xE0, "IF16",     "n:i16 to:fwd8",      "a --", "if",    "Go to `to` unless `a {} n`."),
+    *_comparison_ops(0xE8, "IF_VAR8",  "v:variable n:u8 to:fwd8",  "--", "if", "Go to `to` unless variable `v` {} `n`."),
+    *_comparison_ops(0xF0, "IF_VAR16", "v:variable n:i16 to:fwd8", "--", "if", "Go to `to` unless variable `v` {} `n`."),
 )
 
 FAULTS = (
@@ -367,10 +367,11 @@ def instruction_text(op: Op, operands: tuple[int, ...], next_offset: int) -> str
     return " ".join(words)
 
 
-_LETTERS = {(1, False): "B", (1, True): "b", (2, False): "H", (2, True): "h", (4, True): "i"}
+_FORMAT_CHARS = {(1, False): "B", (1, True): "b", (2, False): "H", (2, True): "h", (4, True): "i"}
 _LAYOUTS = {
     op.code: Struct(
-        "<" + "".join(_LETTERS[operand.kind.size, operand.kind.signed] for operand in op.operands)
+        "<"
+        + "".join(_FORMAT_CHARS[operand.kind.size, operand.kind.signed] for operand in op.operands)
     )
     for op in OPS
 }

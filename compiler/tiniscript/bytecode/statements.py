@@ -8,15 +8,15 @@ from tiniscript.bytecode.disassembly import rows
 def begins(code: bytes) -> list[int]:
     """Return the offsets where a statement begins: the stack is empty there, and no AND_THEN or
     OR_ELSE is open. The check of an UNTIL or a WHEN begins one, too."""
-    found: list[int] = []
+    result: list[int] = []
     depth = joined = 0
     for row in rows(code):
         if row.op is None:
             break
         after = row.offset + len(row.data)
         if depth == 0 and row.offset >= joined:
-            found.append(row.offset)
+            result.append(row.offset)
         depth += row.op.pushes - row.op.pops
         if row.op.control_role == "join":
             joined = max(joined, after + row.operands[-1])
-    return found
+    return result

@@ -47,7 +47,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _main(arguments: list[str]) -> int:
-    _mend_streams()
+    _repair_streams()
     language = language_of(arguments)
     try:
         code = _verb(arguments, language)
@@ -82,7 +82,7 @@ def _is_left_pipe(failure: OSError) -> bool:
         return False
 
 
-def _mend_streams() -> None:
+def _repair_streams() -> None:
     """Replace closed standard streams, and accept any character."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
@@ -134,9 +134,9 @@ def _verb(arguments: list[str], language: str) -> int:
         name = arguments[0]
         if name == "--lang" or name.startswith("--lang="):  # before the verb, too
             skip = 1 if "=" in name else 2
-            found = name[7:] if "=" in name else arguments[1] if len(arguments) > 1 else ""
-            if found not in LANGUAGE.choices:
-                raise bad_choice("--lang", LANGUAGE.choices, found, language)
+            result = name[7:] if "=" in name else arguments[1] if len(arguments) > 1 else ""
+            if result not in LANGUAGE.choices:
+                raise bad_choice("--lang", LANGUAGE.choices, result, language)
             rest = arguments[skip:]
             return _verb([*rest, *arguments[:skip]] if rest else [], language)
         if name not in VERBS:

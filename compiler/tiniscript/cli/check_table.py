@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.program_files import Found, programs
+from tiniscript.cli.program_files import ProgramFile, programs
 from tiniscript.cli.repairing import print_difference, repaired
 from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts import text
@@ -35,7 +35,7 @@ class Row(NamedTuple):
 
     @property
     def mistakes(self) -> int:
-        return sum(each.severity == "mistake" for each in self.messages)
+        return sum(message.severity == "mistake" for message in self.messages)
 
     @property
     def warnings(self) -> int:
@@ -60,11 +60,11 @@ def check(options: Namespace, robot: Robot, language: str) -> int:
     return 1 if any(row.mistakes for row in rows) else 0
 
 
-def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
-    if found.problem is not None:
-        return Row(found.name, [], 0, found.problem.plain(language))
+def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> Row:
+    if file.problem is not None:
+        return Row(file.name, [], 0, file.problem.plain(language))
     repaired = 0
-    given = inputs.Input(found.name, found.data, Path(found.name), options.robot is not None)
+    given = inputs.Input(file.name, file.data, Path(file.name), options.robot is not None)
     if given.has_robot:
         inputs.tell_other(given, robot, language)
     else:
@@ -72,7 +72,7 @@ def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
     if options.fix or options.diff:
         compiled, repaired, problem = _repaired(given, options, robot, language)
         if problem:
-            return Row(found.name, [], 0, problem)
+            return Row(file.name, [], 0, problem)
     else:
         compiled = compiling.compile_input(given, robot, is_strict=False)
     compiled = compiling.for_level(compiled, robot, options.text_level)
@@ -80,7 +80,7 @@ def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
         message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics
     ]
     messages.sort(key=lambda each: each.severity != "mistake")
-    return Row(found.name, messages, repaired, "")
+    return Row(file.name, messages, repaired, "")
 
 
 def _repaired(
@@ -130,12 +130,12 @@ def _table(rows: Sequence[Row], language: str) -> list[str]:
     if has_repairs:
         heads.insert(3, text("repaired_column", language))
     widths = [max(len(each[k]) for each in (heads, *cells)) for k in range(len(heads))]
-    lines = [_laid_out(each, widths) for each in (heads, *cells)]
+    lines = [_formatted_row(each, widths) for each in (heads, *cells)]
     right = sum(not row.mistakes and not row.problem for row in rows)
     return [*lines, text("all_row", language).format(n=len(rows), right=right)]
 
 
-def _laid_out(cells: Sequence[str], widths: Sequence[int]) -> str:
+def _formatted_row(cells: Sequence[str], widths: Sequence[int]) -> str:
     """Return a row: the first and the last column begin on the left, numbers end on the right."""
     last = len(cells) - 1
     row = [

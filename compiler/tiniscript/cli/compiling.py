@@ -20,14 +20,14 @@ def compile_input(
                           is_chosen=given.has_robot)  # fmt: skip
 
 
-def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:
-    """Return `found` with what a robot of the level `name` lacks to read the program as text."""
-    if name is None or found.program is None or not found.is_right:
-        return found
+def for_level(compiled: Compiled, robot: Robot, name: str | None) -> Compiled:
+    """Return `compiled` with what a robot of the level `name` lacks to read the program as text."""
+    if name is None or compiled.program is None or not compiled.is_right:
+        return compiled
     from tiniscript.library.text_fitting import misfits
 
-    lacking = misfits(found.source, found.program, robot.kit, LEVELS[name])
-    return found._replace(diagnostics=in_order([*found.diagnostics, *lacking]))
+    lacking = misfits(compiled.source, compiled.program, robot.kit, LEVELS[name])
+    return compiled._replace(diagnostics=in_order([*compiled.diagnostics, *lacking]))
 
 
 def parsed(given: inputs.Input, kit: Kit) -> Compiled:

@@ -17,10 +17,10 @@ def print_disassembly(ready: images.Ready, robot: Robot, name: str, language: st
     whose = text(key, language).format(robot=robot.name)
     say("head", language, file=name, start=image.start, robot=whose, code=len(image.code),
         image=ready.image_bytes, checksum=f"{image.checksum:08x}")  # fmt: skip
-    found = remarks(ready.places, language)
+    result = remarks(ready.places, language)
     kit = robot.kit if image.devices else None
     variables = ready.places.variables if ready.places is not None else ()
-    print(disassemble(image.code, found, kit, variables), end="")
+    print(disassemble(image.code, result, kit, variables), end="")
 
 
 def print_json(ready: images.Ready, robot: Robot) -> None:

@@ -16,23 +16,25 @@ class CommandError(Exception):
         super().__init__(key)
         self.exit_code = exit_code
         self.key = key
-        self.values = {name: _said(value) for name, value in values.items()}
+        self.values = {name: _printable_value(value) for name, value in values.items()}
 
     def sentence(self, language: str) -> str:
-        said = text(self.key, language).format(**self.values)
+        result = text(self.key, language).format(**self.values)
         if self.values.get("near"):
-            near = text("did_you_mean", language).format(near=self.values["near"])
+            suggestion = text("did_you_mean", language).format(near=self.values["near"])
             try_it = f" {languages.text('messages', 'label/try', language)}  "
-            what, advice, example = said.rpartition(try_it)  # what was typed may have it, too
-            return Said(f"{what} {near}{advice}{example}" if advice else f"{said} {near}")
-        return said
+            what, advice, example = result.rpartition(try_it)  # what was typed may have it, too
+            return Said(
+                f"{what} {suggestion}{advice}{example}" if advice else f"{result} {suggestion}"
+            )
+        return result
 
     def plain(self, language: str) -> str:
         """Return the sentence without the name of the command, for a table or a list."""
         return self.sentence(language).removeprefix("tsc: ")
 
 
-def _said(value: str | Exception) -> str:
+def _printable_value(value: str | Exception) -> str:
     return (value.strerror if isinstance(value, OSError) else None) or str(value)
 
 

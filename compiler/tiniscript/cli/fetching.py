@@ -19,7 +19,7 @@ from typing import NamedTuple
 from tiniscript.base import files
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.terminal.asking import agreed, can_ask
+from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts import text
 from tiniscript.flash import children
@@ -65,14 +65,14 @@ class Growing:
 
 def size_of(folder: Path) -> int:
     """Return the bytes of a folder's files; those that go away meanwhile do not count."""
-    found = 0
+    result = 0
     for where, _, names in os.walk(folder):
         for name in names:
             try:
-                found += os.lstat(os.path.join(where, name)).st_size  # noqa: PTH118, is called often
+                result += os.lstat(os.path.join(where, name)).st_size  # noqa: PTH118, is called often
             except OSError:
                 continue
-    return found
+    return result
 
 
 def agree(
@@ -81,11 +81,13 @@ def agree(
     """Say what is missing and what is fetched, and ask. Raises CommandError without a yes."""
     named = ", ".join(text(part.key, language).format(mb=part.mb) for part in parts)
     values = {"mb": str(sum(part.mb for part in parts)), "parts": named, "minutes": str(minutes)}
-    said = f"{missing} {text('fetch_size' if parts else 'fetch_none', language).format(**values)}"
+    sentence = (
+        f"{missing} {text('fetch_size' if parts else 'fetch_none', language).format(**values)}"
+    )
     if not options.yes and not can_ask():
-        raise CommandError(2, "fetch_unasked", said=said)
-    print(said, file=sys.stderr, flush=True)
-    if not options.yes and not agreed(text("fetch_asks", language)):
+        raise CommandError(2, "fetch_unasked", said=sentence)
+    print(sentence, file=sys.stderr, flush=True)
+    if not options.yes and not confirm(text("fetch_asks", language)):
         raise CommandError(2, "fetch_declined")
 
 

@@ -15,7 +15,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts import say_aside, text
 from tiniscript.flash import building, ready
-from tiniscript.flash.building import LESS_REMOTE, LESS_TASKS, CannotBuild, Seen, Sources
+from tiniscript.flash.building import LESS_REMOTE, LESS_TASKS, CannotBuild, Sources, StepProgress
 from tiniscript.flash.ready import Ready
 from tiniscript.library import install_advice
 from tiniscript.robots.ports import AVRS, ESP32S
@@ -32,22 +32,22 @@ def on_boards(name: str | None, language: str, boards: Sequence[str] = BOARDS) -
 
     It answers text in `language`, if its profile names none.
     """
-    found = []
+    result = []
     for board in boards:
         try:
             robot = robots.load(robots.DEFAULT if name is None else name, board)
-            found.append(robot.speaking(language))
+            result.append(robot.speaking(language))
         except ProfileRefused:
             continue  # the board has no such pins
-    return found
+    return result
 
 
 def firmware(robot: Robot, options: Namespace, language: str) -> Ready:
     """Return the firmware of a robot on its board. Raises CommandError where it cannot be built."""
     sources = building.sources()
-    found = _ready(robot, sources)
-    if found is not None:
-        return found
+    result = _ready(robot, sources)
+    if result is not None:
+        return result
     if sources is None:
         raise CommandError(2, "flash_no_sources")
     with _built(robot, options, language) as look:
@@ -84,7 +84,7 @@ def upload(robot: Robot, port: str | None, options: Namespace, language: str) ->
 @contextmanager
 def _built(
     robot: Robot, options: Namespace, language: str, **more: str
-) -> Iterator[Callable[[Seen], None]]:
+) -> Iterator[Callable[[StepProgress], None]]:
     """Fetch what builds firmware, and show the progress. Raises CommandError for all that can fail
     then."""
     values = {"robot": robot.name, "board": robot.board.chip, **more}
@@ -93,7 +93,7 @@ def _built(
     progress = Progress(language, 100)
     fetched = ""
 
-    def look(seen: Seen) -> None:
+    def look(seen: StepProgress) -> None:
         nonlocal fetched
         if seen.phase in (LESS_TASKS, LESS_REMOTE):
             progress.end()

@@ -38,7 +38,7 @@ def show(page: Callable[[str, int], str], language: str) -> None:
 def listed(commands: Iterable[str], language: str, width: int = WIDTH) -> str:
     """Return what commands do, as a list."""
     rows = [_row(command, language) for command in commands]
-    return "\n".join(_columns(rows, _left(rows, width * 4 // 10), width)) + "\n"
+    return "\n".join(_columns(rows, _left_width(rows, width * 4 // 10), width)) + "\n"
 
 
 def of(command: str, language: str, width: int = WIDTH) -> str:
@@ -75,7 +75,7 @@ def everything(language: str, width: int = WIDTH) -> str:
     """Return what `tsc help all` says: every verb, in groups."""
     parts = [_paragraphs(said("title", language), width)]
     commands = groups(language)
-    left = _left([row for _, rows in commands for row in rows], width * 4 // 10)
+    left = _left_width([row for _, rows in commands for row in rows], width * 4 // 10)
     for heading, rows in commands:
         parts.append(_paragraphs(heading, width))
         parts.append("\n".join(_columns(rows, left, width)))
@@ -108,8 +108,8 @@ def usage(command: str, language: str) -> list[str]:
     for option in shown_of(command):
         if option.is_argument:
             label = option.shown_value(language) + (" ..." if option.repeats else "")
-            is_there = option.kind == PROGRAM  # in whose place -e may stand
-            words.append(label if is_there else f"[{label}]")
+            is_required = option.kind == PROGRAM  # in whose place -e may stand
+            words.append(label if is_required else f"[{label}]")
     return [" ".join([*words, said("usage", language)])]
 
 
@@ -146,7 +146,7 @@ def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str
         else:
             rows[option.virtual and is_apart].append(row)
     together = [*rows[False], *rows[True], *last]
-    left = _left(together, width * 3 // 10)
+    left = _left_width(together, width * 3 // 10)
     yield from _columns(rows[False], left, width)
     if rows[True]:
         yield ""
@@ -156,7 +156,7 @@ def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str
     yield from _columns(last, left, width)
 
 
-def _left(rows: Iterable[Row], most: int) -> int:
+def _left_width(rows: Iterable[Row], most: int) -> int:
     """Return the width of the left column, at most `most`."""
     return max((len(row[0]) for row in rows if len(row[0]) <= most), default=most)
 
@@ -165,7 +165,7 @@ def _columns(rows: Iterable[Row], left: int, width: int) -> Iterator[str]:
     """Yield two columns; what is too long for the first one has a line of its own."""
     indent = " " * (left + 4)
     for command, does in rows:
-        lines = _wrapped(does, width - len(indent))
+        lines = _wrap(does, width - len(indent))
         if len(command) > left:
             yield f"  {command}"
         else:
@@ -175,10 +175,10 @@ def _columns(rows: Iterable[Row], left: int, width: int) -> Iterator[str]:
 
 
 def _paragraphs(text: str, width: int) -> str:
-    return "\n".join(line for each in text.split("\n") for line in _wrapped(each, width))
+    return "\n".join(line for item in text.split("\n") for line in _wrap(item, width))
 
 
-def _wrapped(text: str, width: int) -> list[str]:
+def _wrap(text: str, width: int) -> list[str]:
     """Return the lines of a text. What stands between backticks is not broken, if it fits."""
 
     def kept(match: re.Match[str]) -> str:

@@ -111,11 +111,11 @@ def wired_robot(options: Namespace, language: str) -> Robot:
     """Return the robot of the options. Raises CommandError where no firmware fits its board."""
     from tiniscript.robots.firmware import BOARDS  # with all drivers
 
-    found = robot(options, language)
-    if found.board.chip not in BOARDS:
+    result = robot(options, language)
+    if result.board.chip not in BOARDS:
         known = ", ".join(BOARDS)
-        raise CommandError(2, "no_firmware", chip=found.board.chip, known=known)
-    return found
+        raise CommandError(2, "no_firmware", chip=result.board.chip, known=known)
+    return result
 
 
 def robot_for(given: Input, options: Namespace, language: str) -> Robot:
@@ -126,10 +126,10 @@ def robot_for(given: Input, options: Namespace, language: str) -> Robot:
     named = named_robot.name_in(given.data)
     if options.robot is None:
         options.robot = named
-    found = robot(options, language)
+    result = robot(options, language)
     if given.has_robot:
-        tell_other(given, found, language)
-    return found
+        tell_other(given, result, language)
+    return result
 
 
 def tell_other(given: Input, chosen: Robot, language: str) -> None:

@@ -26,7 +26,7 @@ from tiniscript.base.source import PROGRAM_ENDS, Unreadable, decode, printable
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError, not_installed
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.program_files import Found, in_folder, read
+from tiniscript.cli.program_files import ProgramFile, in_folder, read
 from tiniscript.cli.robot.simulator_options import check_picture, draw_picture
 from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts import say, text
@@ -79,7 +79,7 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
     if _is_folder(options):
         if options.plot is not None:
             raise CommandError(2, "lesson_one_picture", file=inputs.shown(options.program))
-        marks = [marker.of_file(found, name) for name, found in _programs(options)]
+        marks = [marker.mark_file(found, name) for name, found in _programs(options)]
         _name_notes(marks, options, language)
     else:
         if options.plot is not None:
@@ -111,27 +111,27 @@ class _Marker:
         self.seeds = seeds
         self.language = language
 
-    def of_file(self, found: Found, name: str) -> Mark:
+    def mark_file(self, file: ProgramFile, name: str) -> Mark:
         """Mark a file of a folder; one that cannot be read, and notes, get a row, too."""
-        if _is_note(found):
+        if _is_note(file):
             return Mark(name, NO_PROGRAM, 0, ())
-        given = inputs.Input(name, found.data, Path(found.name))
+        given = inputs.Input(name, file.data, Path(file.name))
         try:
-            if found.problem is not None:
-                raise found.problem
+            if file.problem is not None:
+                raise file.problem
             compiled = self.compiled(given)
         except CommandError as failure:
-            said = failure.plain(self.language)
-            said = said.replace(inputs.shown(found.name), inputs.shown(name))
-            return Mark(name, UNREADABLE, 0, (("", said),))
+            text = failure.plain(self.language)
+            text = text.replace(inputs.shown(file.name), inputs.shown(name))
+            return Mark(name, UNREADABLE, 0, (("", text),))
         return self.mark(given, compiled)
 
     def compiled(self, given: inputs.Input) -> Compiled:
         if given.is_image:
             raise CommandError(2, "needs_text", file=inputs.shown(given.name), verb="lesson check")
         robot = robot_of(given.data, self.robot)
-        found = compiling.compile_input(given, robot, is_strict=True, names_robots=False)
-        return for_robot(found, robot)
+        compiled = compiling.compile_input(given, robot, is_strict=True, names_robots=False)
+        return for_robot(compiled, robot)
 
     def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:
         if not compiled.is_right:
@@ -147,19 +147,27 @@ class _Marker:
         except NoWebAssembly as why:
             raise not_installed("virtual_needs_wasmtime", why) from None
         return Mark(
-            given.name, outcome.verdict, outcome.seed, self._said(outcome.findings), outcome.run
+            given.name,
+            outcome.verdict,
+            outcome.seed,
+            self._finding_rows(outcome.findings),
+            outcome.run,
         )
 
-    def _said(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
+    def _finding_rows(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
         return tuple((finding.kind, sentence(finding, self.language)) for finding in findings)
 
     def _mistakes(self, compiled: Compiled) -> Iterable[tuple[str, str]]:
         for diagnostic in compiled.diagnostics:
             if diagnostic.is_mistake:
-                said = message(diagnostic, compiled.source, self.language)
-                values = {"line": said.line, "task": "", "shown": said.message}
+                sentence = message(diagnostic, compiled.source, self.language)
+                values = {"line": sentence.line, "task": "", "shown": sentence.message}
                 line = text("fault_line", self.language).format(**values)
-                fix = text("lesson_try", self.language).format(fix=said.fix) if said.fix else ""
+                fix = (
+                    text("lesson_try", self.language).format(fix=sentence.fix)
+                    if sentence.fix
+                    else ""
+                )
                 yield "", f"{line}   {fix}".strip()
 
 
@@ -170,7 +178,7 @@ def _is_folder(options: Namespace) -> bool:
         return False
 
 
-def _programs(options: Namespace) -> Iterator[tuple[str, Found]]:
+def _programs(options: Namespace) -> Iterator[tuple[str, ProgramFile]]:
     """Yield the files of a folder and those below, each with its name there.
 
     Raises CommandError.
@@ -193,28 +201,28 @@ def _name_notes(marks: Sequence[Mark], options: Namespace, language: str) -> Non
     if len(notes) == len(marks):
         raise CommandError(2, "lesson_empty", file=inputs.shown(options.program))
     if notes:
-        said = text("lesson_notes", language)
+        sentence = text("lesson_notes", language)
         number = inputs.shown(options.number)
-        print(said.format(files=", ".join(notes), number=number), file=sys.stderr)
+        print(sentence.format(files=", ".join(notes), number=number), file=sys.stderr)
 
 
-def _is_note(found: Found) -> bool:
+def _is_note(file: ProgramFile) -> bool:
     """Whether a `.txt` is called like notes, and no line looks like a program.
 
     In doubt it is a program: what a pupil has handed in is marked, however wrong it is.
     """
-    if found.name.lower().endswith(PROGRAM_ENDS) or found.problem is not None:
+    if file.name.lower().endswith(PROGRAM_ENDS) or file.problem is not None:
         return False
-    letters = unicodedata.normalize("NFD", Path(found.name).name)
+    letters = unicodedata.normalize("NFD", Path(file.name).name)
     plain = "".join(letter for letter in letters if not unicodedata.combining(letter))
     if LIKE_NOTES.match(plain) is None:
         return False
 
     try:
-        note = decode(found.data)
+        text = decode(file.data)
     except Unreadable:
         return False
-    return bool(note.strip()) and not any(map(LIKE_A_PROGRAM.match, note.splitlines()))
+    return bool(text.strip()) and not any(map(LIKE_A_PROGRAM.match, text.splitlines()))
 
 
 def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: str) -> None:
@@ -239,7 +247,7 @@ def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: s
 def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> None:
     """Print a row for each program: its name, the verdict, and the first sentence."""
     rows = [
-        (inputs.shown(mark.name), text(f"verdict_{mark.verdict}", language), _first(mark))
+        (inputs.shown(mark.name), text(f"verdict_{mark.verdict}", language), _first_error(mark))
         for mark in marks
     ]
     wide = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
@@ -263,7 +271,7 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
     print(count.format(passed=passed, all=programs, number=number))
 
 
-def _first(mark: Mark) -> str:
+def _first_error(mark: Mark) -> str:
     sentence = printable(mark.said[0][1], 300) if mark.said else ""
     return f"[{mark.seed}] {sentence}" if mark.seed else sentence
 

@@ -47,9 +47,9 @@ class Options(ArgumentParser):
         self.language = language
         self.table = of_verb(command)
         for option in self.table:
-            self._take(option)
+            self._add_option(option)
 
-    def _take(self, option: Option) -> None:
+    def _add_option(self, option: Option) -> None:
         if option.is_argument:
             self.add_argument(option.name, nargs="*" if option.repeats else "?")
         elif option.kind is None:
@@ -79,7 +79,7 @@ class Options(ArgumentParser):
             from tiniscript.cli.windows_names import matching
 
             options.programs = [
-                each for name in options.programs for each in matching(name) or [name]
+                item for name in options.programs for item in matching(name) or [name]
             ]
         paths.check(options, self.language)
         return options
@@ -116,11 +116,11 @@ class Options(ArgumentParser):
         if other and _has(other, unknown):
             raise CommandError(2, "option_of_other", option=unknown, verb=self.verb, other=other)
         self._refuse_of_step(unknown.partition("=")[0])
-        near = self._near(unknown)
+        suggestion = self._suggestion(unknown)
         for key, pattern in _MESSAGES.items():
             if match := re.fullmatch(pattern, message):
                 message = said(f"wrong/{key}", self.language).format(*match.groups())
-        raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=near)
+        raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=suggestion)
 
     def _refuse_of_step(self, unknown: str) -> None:
         """Say with which step of the verb an option goes that is unknown here."""
@@ -134,21 +134,21 @@ class Options(ArgumentParser):
             raise CommandError(2, "one_step", first=self.verb, second=other)
         raise CommandError(2, "option_of_step", option=unknown, verb=self.verb, other=other)
 
-    def _near(self, found: str) -> str:
+    def _suggestion(self, found: str) -> str:
         """Return what somebody may have meant with a word that is unknown here, or nothing."""
         table = [*self.table, *choosers_of(self.command)]
         flags = [flag for option in table if not option.is_argument
                  for flag in option.flags.split()]  # fmt: skip
         if "--robot" in flags and found.lower() in robots.names():
             return f"--robot {found.lower()}"
-        return _near(found, flags) if found.startswith("--") else ""
+        return _suggestion(found, flags) if found.startswith("--") else ""
 
 
 def _has(command: str, flag: str) -> bool:
     return any(flag in option.flags.split() for option in of_verb(command))
 
 
-def _near(found: str, known: Sequence[str]) -> str:
+def _suggestion(found: str, known: Sequence[str]) -> str:
     from tiniscript.base.spelling import nearest
 
     return nearest(found, known) or ""
@@ -158,7 +158,7 @@ def bad_choice(option: str, known: Sequence[str], found: str, language: str) -> 
     """Return the error for a value that is not among an option's choices."""
     allowed = f"{', '.join(known[:-1])} {text('or', language)} {known[-1]}"
     return CommandError(2, "bad_choice", option=option, known=allowed, found=shown(found) or "''",
-                        near=_near(found, known))  # fmt: skip
+                        near=_suggestion(found, known))  # fmt: skip
 
 
 def whole_number(option: str, found: str | None, default: int, low: int, high: int,
@@ -206,15 +206,16 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
     sensors = robot.kit.readings
     names = [device.name for device in sensors]
     lists: dict[int, list[int]] = {}
-    for each in texts:
-        name, equals, values = each.partition("=")
+    for sentence in texts:
+        name, equals, values = sentence.partition("=")
         name = name.strip().upper()
         if not name or name not in names:
             known = ", ".join(sensor.name for sensor in robot.kit.sensors) or text(
                 "no_sensors", language
             )
-            raise CommandError(2, "no_sensor", robot=robot.name, found=name or each, known=known,
-                          near=_near(name, [*filter(None, names)]))  # fmt: skip
+            raise CommandError(2, "no_sensor", robot=robot.name, found=name or sentence,
+                known=known,
+                          near=_suggestion(name, [*filter(None, names)]))  # fmt: skip
         number = names.index(name)
         device = sensors[number]
         if not equals or not values.strip():

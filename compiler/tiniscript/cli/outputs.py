@@ -52,8 +52,8 @@ def print_diagnostics(compiled: Compiled, language: str) -> None:
 
     color = has_colors(sys.stderr)
     for diagnostic in compiled.diagnostics[:SHOWN]:
-        said = message(diagnostic, compiled.source, language)
-        rows = as_text(said, compiled.source, language, color).split("\n")
+        text = message(diagnostic, compiled.source, language)
+        rows = as_text(text, compiled.source, language, color).split("\n")
         frame = rows[: 2 * bool(compiled.source.text)]
         print(*frame, *map(Said, rows[len(frame) :]), "", sep="\n", file=sys.stderr)
     if len(compiled.diagnostics) > SHOWN:

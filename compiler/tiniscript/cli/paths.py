@@ -49,18 +49,18 @@ class Named(NamedTuple):
 
 def check(options: Namespace, language: str) -> None:
     """Refuse impossible outputs before anything is done. Raises CommandError."""
-    outputs = list(_written(options))
+    outputs = list(_output_paths(options))
     if not outputs:
         return
-    found = [_identity(output) for output in outputs]
-    for number, (output, identity) in enumerate(zip(outputs, found, strict=True)):
-        for other, its_own in zip(outputs[:number], found, strict=False):
+    matches = [_identity(output) for output in outputs]
+    for number, (output, identity) in enumerate(zip(outputs, matches, strict=True)):
+        for other, its_own in zip(outputs[:number], matches, strict=False):
             if identity is not None and identity == its_own:
                 raise CommandError(2, "same_outputs", option=other.label, file=other.path,
                               second=output.label, other=output.path)  # fmt: skip
     for read in _read(options, language):
         identity = _identity(read, may_be_device=read.dest in ("port", "ports"))
-        for output, its_own in zip(outputs, found, strict=True):
+        for output, its_own in zip(outputs, matches, strict=True):
             if output.dest == read.dest:
                 continue  # in place
             if read.dest in ("port", "ports"):
@@ -96,15 +96,15 @@ def real_name(program: str) -> str:
     return program
 
 
-def _written(options: Namespace) -> Iterator[Named]:
+def _output_paths(options: Namespace) -> Iterator[Named]:
     values = vars(options)
     for dest, (label, _) in WRITES.items():
         path = values.get(dest)
         if isinstance(path, str) and not (dest == "output" and path == "-"):
             yield Named(dest, path, label)
-    for each in sorted(set(values.get("programs") or ())):
-        if values["fix"] and not values["diff"] and each != "-":
-            yield Named("programs", real_name(each), "tsc check --fix")
+    for item in sorted(set(values.get("programs") or ())):
+        if values["fix"] and not values["diff"] and item != "-":
+            yield Named("programs", real_name(item), "tsc check --fix")
     program = values.get("program")
     if program is not None and program != "-":
         program = real_name(program)
@@ -117,8 +117,8 @@ def _written(options: Namespace) -> Iterator[Named]:
 def _read(options: Namespace, language: str) -> Iterator[Named]:
     values = vars(options)
     for dest, key in READS.items():
-        found = values.get(dest)
-        for path in found if isinstance(found, list) else [found]:
+        result = values.get(dest)
+        for path in result if isinstance(result, list) else [result]:
             if isinstance(path, str) and path != "-" and not _is_shipped(dest, path):
                 name = real_name(path) if dest in ("program", "programs") else path
                 yield Named(dest, name, text(key, language))
@@ -158,13 +158,13 @@ def _identity(named: Named, may_be_device: bool = False) -> tuple[object, ...] |
         folder, name = os.path.split(os.path.realpath(named.path))
         with suppress(OSError):
             stat_result = os.stat(folder)  # noqa: PTH116 - a name that no file can have gets no Path
-            return stat_result.st_dev, stat_result.st_ino, _folded(name)
+            return stat_result.st_dev, stat_result.st_ino, _path_key(name)
     except (OSError, ValueError):  # opening it reports the reason
         pass
     return None
 
 
-def _folded(name: str) -> str:
+def _path_key(name: str) -> str:
     """Return a key that is the same for all names that a file system may treat as one."""
     if name.isascii():
         return name.lower()

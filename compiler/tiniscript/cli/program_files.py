@@ -17,7 +17,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
 
 
-class Found(NamedTuple):
+class ProgramFile(NamedTuple):
     """A program's file, or, where it cannot be read, why."""
 
     name: str
@@ -30,18 +30,18 @@ def are_several(names: Sequence[str]) -> bool:
     return len(names) > 1 or any(_is_folder(name) for name in names)
 
 
-def programs(names: Sequence[str]) -> Iterator[Found]:
+def programs(names: Sequence[str]) -> Iterator[ProgramFile]:
     """Yield the programs that are named, each once. Raises CommandError for an empty folder."""
     seen: set[str] = set()
     for name in names:
-        found = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
-        if not found:
+        result = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
+        if not result:
             raise CommandError(2, "no_programs", file=inputs.shown(name))
-        for each in found:
-            real = os.path.realpath(each)
+        for item in result:
+            real = os.path.realpath(item)
             if real not in seen:
                 seen.add(real)
-                yield read(each)
+                yield read(item)
 
 
 def _is_folder(name: str) -> bool:
@@ -74,15 +74,15 @@ def in_folder(top: str, ends: tuple[str, ...] = PROGRAM_ENDS) -> Iterator[str]:
         ]
 
 
-def read(name: str) -> Found:
+def read(name: str) -> ProgramFile:
     """Return what is in a file, or why it cannot be read. A pipe or a device is not opened."""
     try:
         stat_result = Path(name).stat()
         if not (stat.S_ISREG(stat_result.st_mode) or stat.S_ISDIR(stat_result.st_mode)):
-            return Found(name, b"", CommandError(2, "file_no_file", file=inputs.shown(name)))
+            return ProgramFile(name, b"", CommandError(2, "file_no_file", file=inputs.shown(name)))
     except (OSError, ValueError):
         pass  # reading it says why
     try:
-        return Found(name, inputs.file(name).data)
+        return ProgramFile(name, inputs.file(name).data)
     except CommandError as problem:
-        return Found(name, b"", problem)
+        return ProgramFile(name, b"", problem)

@@ -40,11 +40,11 @@ def repaired(given: Input, robot: Robot) -> Repaired:
     def compiled(data: bytes) -> Compiled:
         return compiling.compile_input(given._replace(data=data), robot, is_strict=False)
 
-    found = fixed(text, lambda changed: compiled(changed.encode()).diagnostics)
-    new = found.text.encode()
+    result = fixed(text, lambda changed: compiled(changed.encode()).diagnostics)
+    new = result.text.encode()
     if given.data.startswith(_BOM):
         new = _BOM + new
-    return Repaired(new, found.repairs, compiled(new))
+    return Repaired(new, result.repairs, compiled(new))
 
 
 def print_difference(old: bytes, new: bytes, name: str) -> None:

@@ -28,11 +28,11 @@ _AFTER_ANY = re.compile(rf"(^|[,;|\"])(\s*){_SIGN}")
 
 def as_csv(table: str, language: str, rows: Iterable[Sequence[object]]) -> bytes:
     """Return a table of TABLES as a file. The first cell of a row is the name of a file."""
-    written = StringIO()
-    writer = csv.writer(written, delimiter=text("rows_separator", language), lineterminator="\n")
+    sentence = StringIO()
+    writer = csv.writer(sentence, delimiter=text("rows_separator", language), lineterminator="\n")
     writer.writerow(text(f"rows_{table}", language).split())
     writer.writerows([_name(row[0]), *map(_cell, row[1:])] for row in rows)
-    return written.getvalue().encode("utf-8-sig", "backslashreplace")
+    return sentence.getvalue().encode("utf-8-sig", "backslashreplace")
 
 
 def beginnings() -> tuple[bytes, ...]:
@@ -41,7 +41,7 @@ def beginnings() -> tuple[bytes, ...]:
     A spreadsheet that has kept such a file may have given it other line ends.
     """
     empty = [as_csv(table, language, ()) for table in TABLES for language in languages()]
-    return (*empty, *(each.replace(b"\n", b"\r\n") for each in empty))
+    return (*empty, *(item.replace(b"\n", b"\r\n") for item in empty))
 
 
 def no_formula(text: str) -> str:

@@ -14,7 +14,6 @@ from __future__ import annotations
 import codecs
 import os
 import re
-import select
 import stat
 import sys
 from time import monotonic
@@ -36,15 +35,15 @@ PLAIN = {**dict(zip(*_SAME_WIDTH, strict=True)), **_WORDS}
 
 def register() -> None:
     """Make the handler known to Python's streams."""
-    codecs.register_error(NAME, _plain)
+    codecs.register_error(NAME, _replacement)
 
 
-def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
+def _replacement(error: UnicodeError) -> tuple[str | bytes, int]:
     if isinstance(error, UnicodeEncodeError):
         end = error.start + 1
-        found = PLAIN.get(error.object[error.start : end])
-        if found is not None:
-            return found, end
+        result = PLAIN.get(error.object[error.start : end])
+        if result is not None:
+            return result, end
         error.end = end
     return codecs.backslashreplace_errors(error)
 
@@ -74,8 +73,8 @@ def are_read(stream: TextIO) -> bool:
         return False
     if mode.value & VIRTUAL_TERMINAL_PROCESSING:
         return True
-    wanted = mode.value | PROCESSED_OUTPUT | VIRTUAL_TERMINAL_PROCESSING
-    return bool(console.SetConsoleMode(handle, wintypes.DWORD(wanted)))
+    expected = mode.value | PROCESSED_OUTPUT | VIRTUAL_TERMINAL_PROCESSING
+    return bool(console.SetConsoleMode(handle, wintypes.DWORD(expected)))
 
 
 def has_colors(stream: TextIO) -> bool:
@@ -115,6 +114,8 @@ def refuse_unread() -> None:
         return
     if not (stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode)):
         return
+    import select  # asked only where nothing may be written for long
+
     end = select.poll()
     end.register(number, 0)
     if end.poll(0):
@@ -125,6 +126,8 @@ def _is_written(stream: TextIO, pipe: int) -> bool:
     """Write what waits for a pipe; return whether all was taken in time."""
     if sys.platform == "win32":
         return False
+    import select  # of an interrupted command
+
     end_s = monotonic() + UNREAD_S
     os.set_blocking(pipe, False)
     try:

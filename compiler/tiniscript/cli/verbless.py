@@ -36,8 +36,8 @@ def refuse(name: str, words: list[str], language: str) -> NoReturn:
 def _now(command: str, words: list[str], language: str) -> str:
     """Return what is typed for a command that was a verb: with the words after it, if they fit."""
     head = STEPS[command].head if command in STEPS else command
-    for begun in (head, typed(command)):
-        verb, *more = [*begun.split(), *words]
+    for item in (head, typed(command)):
+        verb, *more = [*item.split(), *words]
         found, rest = chosen(verb, more)
         if found == command and Options(command, language).fits(rest):
             return shlex.join([verb, *more])
@@ -48,19 +48,23 @@ def _now(command: str, words: list[str], language: str) -> str:
 
 def meant(name: str) -> str:
     """Return the command that somebody means with a word that is no verb, or nothing."""
-    called = (each for each in (*COMMANDS, "--version") if _plain(name) in _elsewhere(each).split())
-    near = next(called, None) or nearest(name, (*VERBS, *WAS)) or ""
-    return typed(WAS.get(near, near))
+    called = (
+        item
+        for item in (*COMMANDS, "--version")
+        if _unaccented(name) in _names_in_languages(item).split()
+    )
+    suggestion = next(called, None) or nearest(name, (*VERBS, *WAS)) or ""
+    return typed(WAS.get(suggestion, suggestion))
 
 
 def is_help(name: str) -> bool:
     """Whether a word is what help is called in a language: `tsc ayuda`."""
-    return _plain(name) in _elsewhere("help").split()
+    return _unaccented(name) in _names_in_languages("help").split()
 
 
-def _elsewhere(verb: str) -> str:
+def _names_in_languages(verb: str) -> str:
     """Return what the same is called elsewhere, in each language."""
-    return " ".join(_plain(said_of(verb, "words", language)) for language in languages())
+    return " ".join(_unaccented(said_of(verb, "words", language)) for language in languages())
 
 
 def refuse_program(name: str) -> None:
@@ -83,8 +87,8 @@ def _is_file(name: str) -> bool:
 
 def _quoted(name: str, always: bool = False) -> str:
     """Return a name as it can be copied into a command."""
-    found = shown(name)
-    return f'"{found}"' if always or " " in found else found
+    result = shown(name)
+    return f'"{result}"' if always or " " in result else result
 
 
 MOST = 5  # verbs in an answer
@@ -105,8 +109,8 @@ def verbs_for(said: str) -> list[str]:
         for command in having:
             scores[command] += texts[command][stem] * log(1 + len(COMMANDS) / len(having))
     best = max(scores.values())
-    found = [command for command in COMMANDS if scores[command] and scores[command] >= best / 2]
-    return sorted(found, key=lambda verb: -scores[verb])[:MOST]
+    matches = [command for command in COMMANDS if scores[command] and scores[command] >= best / 2]
+    return sorted(matches, key=lambda verb: -scores[verb])[:MOST]
 
 
 def _weights(verb: str) -> dict[str, int]:
@@ -121,14 +125,14 @@ def _weights(verb: str) -> dict[str, int]:
     weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | said("ends"), 1)
     weights |= dict.fromkeys(said("says"), 2)
     weights |= dict.fromkeys(said("summary"), 4)
-    weights |= dict.fromkeys(_stems(_elsewhere(verb)), 6)
+    weights |= dict.fromkeys(_stems(_names_in_languages(verb)), 6)
     return weights | dict.fromkeys(_stems(verb), 12)
 
 
 def _stems(text: str) -> set[str]:
-    words = re.findall("[a-z]+", _plain(text))
-    said = (word for word in words if len(word) >= SHORTEST and word not in _idle())
-    return {word.removesuffix("s")[:STEM] for word in said}  # port and ports are one
+    words = re.findall("[a-z]+", _unaccented(text))
+    sentence = (word for word in words if len(word) >= SHORTEST and word not in _idle())
+    return {word.removesuffix("s")[:STEM] for word in sentence}  # port and ports are one
 
 
 @cache
@@ -137,6 +141,6 @@ def _idle() -> frozenset[str]:
     return frozenset(word for language in languages() for word in said("idle", language).split())
 
 
-def _plain(text: str) -> str:
+def _unaccented(text: str) -> str:
     """Return a text in small letters without accents."""
     return re.sub("[\u0300-\u036f]", "", unicodedata.normalize("NFD", text.casefold()))

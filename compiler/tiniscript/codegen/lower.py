@@ -67,7 +67,7 @@ def lower(program: ir.Program, plain: bool = False) -> Lowered:
 
 class _LoopEnd(NamedTuple):
     label: int
-    counts: bool
+    is_counted: bool
 
 
 class _Lowering:
@@ -128,7 +128,7 @@ class _Lowering:
             self.while_(statement)
         elif isinstance(statement, ir.Break):
             loop = self.loops[-1]
-            out.add("BREAK_LOOP" if loop.counts else "BREAK", to=loop.label)
+            out.add("BREAK_LOOP" if loop.is_counted else "BREAK", to=loop.label)
         elif isinstance(statement, ir.Call):
             out.add("CALL", to=self.entries[statement.procedure])
         elif isinstance(statement, ir.Motors):
@@ -274,17 +274,17 @@ class _Lowering:
         self.repeated(loop.body, end, False, loop.span, start)
 
     def repeated(
-        self, body: ir.Body, end: int, counts: bool, span: Span, start: int | None = None
+        self, body: ir.Body, end: int, is_counted: bool, span: Span, start: int | None = None
     ) -> None:
         """Add a loop's body, the jump back to `start` (here if None) and the label `end`."""
         out = self.out
         if start is None:
             start = out.mark_here()
-        self.loops.append(_LoopEnd(end, counts))
+        self.loops.append(_LoopEnd(end, is_counted))
         self.body(body)
         self.loops.pop()
         out.span = span
-        out.add("NEXT" if counts else "AGAIN", to=start)
+        out.add("NEXT" if is_counted else "AGAIN", to=start)
         out.mark(end)
 
     # -- numbers that the text says -----------------------------------------------------------
@@ -323,7 +323,7 @@ def _assembled(out: Emitter) -> Lowered:
         short = {
             k
             for k, item in enumerate(out.items)
-            if item.to is not None and not _reaches(item, starts[k], targets[item.to])
+            if item.to is not None and not _is_in_reach(item, starts[k], targets[item.to])
         }
         if not short or offset > 2 * CODE_BYTES:  # then it is refused, however long it is
             break
@@ -337,7 +337,7 @@ def _assembled(out: Emitter) -> Lowered:
     return Lowered(bytes(code), tuple(places))
 
 
-def _reaches(item: Item, start: int, target: int) -> bool:
+def _is_in_reach(item: Item, start: int, target: int) -> bool:
     distance = abs(target - (start + item.op.size))
     return distance <= item.op.operands[-1].kind.high
 

@@ -18,7 +18,7 @@ NEGATED = {"EQ": "NE", "NE": "EQ", "LT": "GE", "GE": "LT", "LE": "GT", "GT": "LE
 _SWAPPED = {"EQ": "EQ", "NE": "NE", "LT": "GT", "GT": "LT", "LE": "GE", "GE": "LE"}
 _SHORT = ("PUSH_VAR", "PUSH_SENSOR", "PUSH_READ", "READ", "SET_VAR", "SET")
 _LEFTS, _JOINS = ("AND_LEFT", "OR_LEFT"), ("AND", "OR")
-_SHORT_SIDE = 6  # terms up to which evaluating a needless side costs less than a jump
+_MAX_EAGER_TERMS = 6  # terms up to which evaluating a needless side costs less than a jump
 
 
 class Item(NamedTuple):
@@ -41,7 +41,7 @@ class Emitter:
         self._last_mark = -1
 
     def add(self, name: str, *operands: int, to: int | None = None) -> None:
-        op, operands = _shortest(name, *operands)
+        op, operands = _shortest_op(name, *operands)
         self.items.append(Item(op, operands, to, self.span))
 
     def new_label(self) -> int:
@@ -61,7 +61,7 @@ class Emitter:
         if self.plain or not self.items or self._last_mark == len(self.items):
             return False
         last = self.items[-1]
-        if (last.op, last.operands) != _shortest("READ", sensor):
+        if (last.op, last.operands) != _shortest_op("READ", sensor):
             return False
         self.span = last.span
         del self.items[-1]
@@ -79,7 +79,7 @@ class Emitter:
         self.items = items
 
 
-def _shortest(name: str, *operands: int) -> tuple[Op, tuple[int, ...]]:
+def _shortest_op(name: str, *operands: int) -> tuple[Op, tuple[int, ...]]:
     """Return the instruction `name`, or the one of one byte that says the same."""
     if name in _SHORT and operands[0] < SHORTS:
         return BY_NAME[f"{name}_{operands[0]}"], ()
@@ -92,7 +92,7 @@ def _far(item: Item) -> tuple[Item, ...]:
         return (item._replace(op=far),)
     *variable, number = item.operands
     says = [
-        *(_shortest("PUSH_VAR", each) for each in variable),
+        *(_shortest_op("PUSH_VAR", each) for each in variable),
         _push(number * 1000),
         (BY_NAME[item.op.name.rpartition("_")[2]], ()),
     ]
@@ -156,9 +156,9 @@ def add_value(out: Emitter, expression: Expression) -> None:
     joins: list[int | None] = []
     for k, term in enumerate(expression):
         if term.op in _LEFTS:
-            end = _other_half(expression, range(k + 1, len(expression)), _LEFTS, _JOINS)
+            end = _matching_index(expression, range(k + 1, len(expression)), _LEFTS, _JOINS)
             right = expression[k + 1 : end]
-            if not out.plain and is_safe(right) and len(right) <= _SHORT_SIDE:
+            if not out.plain and is_safe(right) and len(right) <= _MAX_EAGER_TERMS:
                 joins.append(None)
             else:
                 joins.append(out.new_label())
@@ -187,7 +187,7 @@ def tests(out: Emitter, condition: Expression, otherwise: int) -> None:
         if operator == "NOT":
             pending.append((start, end - 1, not when))
         elif operator == ("OR" if when else "AND"):
-            split = _other_half(condition, range(end - 2, -1, -1), _JOINS, _LEFTS)
+            split = _matching_index(condition, range(end - 2, -1, -1), _JOINS, _LEFTS)
             pending.append((split + 1, end - 1, when))
             pending.append((start, split, when))
         else:
@@ -196,7 +196,7 @@ def tests(out: Emitter, condition: Expression, otherwise: int) -> None:
 
 def stops(out: Emitter, condition: Expression) -> None:
     """Add instructions that end a watched move where `condition` is TRUE."""
-    compared = None if out.plain else _compared(condition)
+    compared = None if out.plain else _comparison_to_constant(condition)
     if compared is None:
         add_value(out, condition)
         out.add("UNTIL")
@@ -206,7 +206,7 @@ def stops(out: Emitter, condition: Expression) -> None:
 
 
 def _test(out: Emitter, expression: Expression, when: bool, to: int) -> None:
-    compared = _compared(expression)
+    compared = _comparison_to_constant(expression)
     if compared is None:
         add_value(out, expression)
         out.add("IF_NOT" if when else "IF", to=to)
@@ -230,7 +230,7 @@ class _Compared(NamedTuple):
     number: int
 
 
-def _compared(expression: Expression) -> _Compared | None:
+def _comparison_to_constant(expression: Expression) -> _Compared | None:
     """Return the comparison to a whole number that an expression is, if it is one."""
     comparator = expression[-1].op
     if comparator not in NEGATED:
@@ -244,7 +244,7 @@ def _compared(expression: Expression) -> _Compared | None:
     return _Compared(value, 8 if 0 <= number <= 255 else 16, comparator, number)
 
 
-def _other_half(
+def _matching_index(
     expression: Expression, places: range, begins: Sequence[str], ends: Sequence[str]
 ) -> int:
     """Return the first of `places` with one of `ends` that no one of `begins` there belongs to."""

@@ -130,8 +130,8 @@ class LinkKit(NamedTuple):
 
 def link_kit() -> LinkKit:
     """Return what a robot on a port must do. Raises NotMade."""
-    found = _read("link.json")
-    assert (found["form"], found["version"]) == (LINK_FORM, LINK_VERSION)
+    result = _read("link.json")
+    assert (result["form"], result["version"]) == (LINK_FORM, LINK_VERSION)
     return LinkKit(
         tuple(
             LinkProgram(
@@ -142,10 +142,10 @@ def link_kit() -> LinkKit:
                 row["at"],
                 row["takes_ms"] / 1000,
             )
-            for row in found["programs"]
+            for row in result["programs"]
         ),
         tuple(
             LinkRefused(row["name"], bytes.fromhex(row["code"]), row["rule"], row["at"])
-            for row in found["refused"]
+            for row in result["refused"]
         ),
     )

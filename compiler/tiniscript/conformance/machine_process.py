@@ -63,10 +63,10 @@ class MachineProcess:
         most = expected_bytes + SPARE_BYTES
         if self._answers:
             with contextlib.suppress(_Ended):
-                return self._asked(request, most)
+                return self._query(request, most)
             self.close()
         try:
-            return self._asked(request, most)
+            return self._query(request, most)
         except _Ended as ended:
             code = ended.code
         self._fail("crash", str(code), [])
@@ -146,7 +146,7 @@ class MachineProcess:
                 pipe.write(request)
                 pipe.flush()
 
-    def _asked(self, request: str, most: int) -> tuple[str, ...]:
+    def _query(self, request: str, most: int) -> tuple[str, ...]:
         if self._process is None:
             self._process = self._start()
         self._requests.put(request.encode())

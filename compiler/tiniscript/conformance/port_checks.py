@@ -93,7 +93,7 @@ def all_checks(kit: LinkKit) -> list[Check]:
             Check(
                 f"refused: {link_refused.name}",
                 (f"{link_refused.rule} {link_refused.at}",),
-                _refused(link_refused.code),
+                _refusal_check(link_refused.code),
             )
             for link_refused in kit.refused
         ),
@@ -158,12 +158,12 @@ def _program(program: LinkProgram) -> Callable[[WireRobot], tuple[str, ...]]:
             answer = sent(robot, pack("SI", 0, program.code), RUN)
         if answer.status:
             return (said(answer),)
-        return _ended(robot, program.takes_s + EVENT_S)
+        return _run_events(robot, program.takes_s + EVENT_S)
 
     return found
 
 
-def _ended(robot: WireRobot, seconds: float) -> tuple[str, ...]:
+def _run_events(robot: WireRobot, seconds: float) -> tuple[str, ...]:
     """Return what a run tells, up to its end."""
     ends = ("DONE", "FAULT", "STOPPED")
     for _ in range(int(seconds / 0.05)):
@@ -181,7 +181,7 @@ def _ended(robot: WireRobot, seconds: float) -> tuple[str, ...]:
     return tuple(rows)
 
 
-def _refused(code: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
+def _refusal_check(code: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
     def found(robot: WireRobot) -> tuple[str, ...]:
         if len(code) < PAYLOAD_BYTES:
             return (said(patient(robot, "PROGRAM", {"mode": 0, "code": code})),)
@@ -207,7 +207,7 @@ def _hello(robot: WireRobot) -> tuple[str, ...]:
     return (f"link {number('major')}", isa, frames, f"the same nonce again: {again}")
 
 
-def _damaged(robot: WireRobot) -> tuple[str, ...]:
+def _check_damaged_frame(robot: WireRobot) -> tuple[str, ...]:
     before = robot.ask("STATUS").number("damaged")
     frame = bytearray(encoded(Frame(BY_NAME["PING"].number, 200, robot.epoch)))
     frame[-2] ^= 0x55  # of the checksum
@@ -217,7 +217,7 @@ def _damaged(robot: WireRobot) -> tuple[str, ...]:
     return ("no answer" if not replies else "an answer", f"damaged: {count} more")
 
 
-def _twice(robot: WireRobot) -> tuple[str, ...]:
+def _check_repeated_request(robot: WireRobot) -> tuple[str, ...]:
     payload = written(BY_NAME["LIVE"].request, {"mode": RUN, "code": SHOW_7})
     number = BY_NAME["LIVE"].number
     epoch = robot.epoch
@@ -242,22 +242,22 @@ def _stale(robot: WireRobot) -> tuple[str, ...]:
 _WHERE = ("no place before", "1 of what runs", "no place unasked")
 
 
-def _where(robot: WireRobot) -> tuple[str, ...]:
+def _check_place(robot: WireRobot) -> tuple[str, ...]:
     if not met(robot).number("features") & PLACES:
         return _WHERE  # it does not say that it tells places: nobody asks it
     before = robot.ask("PING", {"asks": b"?"})
     program = live(robot, WAIT_20).number("program")
-    place = _rest(robot.ask("PING", {"asks": b"?"}), "place")
-    told = f"{int.from_bytes(place[:2], 'little')} of "
-    told += "what runs" if place[2:] == program.to_bytes(4, "little") else "something else"
+    place = _rest_field(robot.ask("PING", {"asks": b"?"}), "place")
+    message = f"{int.from_bytes(place[:2], 'little')} of "
+    message += "what runs" if place[2:] == program.to_bytes(4, "little") else "something else"
     return (
-        "a place before" if _rest(before, "place") else "no place before",
-        told if len(place) == PLACE_BYTES else f"{len(place)} bytes of a place",
-        "a place unasked" if _rest(robot.ask("PING"), "place") else "no place unasked",
+        "a place before" if _rest_field(before, "place") else "no place before",
+        message if len(place) == PLACE_BYTES else f"{len(place)} bytes of a place",
+        "a place unasked" if _rest_field(robot.ask("PING"), "place") else "no place unasked",
     )
 
 
-def _rest(answer: Answer, name: str) -> bytes:
+def _rest_field(answer: Answer, name: str) -> bytes:
     value = answer.values.get(name)
     return value if isinstance(value, bytes) else b""
 
@@ -266,7 +266,7 @@ LINK_CHECKS = (
     Check("link: HELLO", (f"link {MAJOR}", f"isa {ISA_MAJOR}.{ISA_MINOR}",
                           "frames of 63 bytes", "the same nonce again: the same session"), _hello),
     Check("link: PING", ("OK",), lambda robot: (said(robot.ask("PING")),)),
-    Check("link: where a program is", _WHERE, _where),
+    Check("link: where a program is", _WHERE, _check_place),
     Check("link: a message that nobody knows", ("UNKNOWN_MESSAGE",),
           lambda robot: (said(robot.ask_frame(NO_MESSAGE, b"")),)),
     Check("link: a payload that is too long", ("BAD_LENGTH",),
@@ -274,9 +274,10 @@ LINK_CHECKS = (
     Check("link: a payload that is too short", ("BAD_LENGTH",),
           lambda robot: (said(robot.ask_frame(BY_NAME["COMMIT"].number, b"abc")),)),
     Check("link: a request of another epoch", ("STALE",), _stale),
-    Check("link: a damaged frame", ("no answer", "damaged: 1 more"), _damaged),
+    Check("link: a damaged frame", ("no answer", "damaged: 1 more"), _check_damaged_frame),
     Check("link: a request after noise", ("OK",), _noise),
-    Check("link: a request that comes twice", ("OK", "the same answer", "1 SHOW"), _twice),
+    Check("link: a request that comes twice", ("OK", "the same answer", "1 SHOW"),
+        _check_repeated_request),
 )  # fmt: skip
 
 
@@ -290,7 +291,7 @@ def _changed(at: int, value: int) -> bytes:
     return LONG[:at] + bytes([value]) + LONG[at + 1 :]
 
 
-def _sent(image: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
+def _image_check(image: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
     return lambda robot: (said(sent(robot, image, 0)),)
 
 
@@ -318,10 +319,11 @@ def _incomplete(robot: WireRobot) -> tuple[str, ...]:
 IMAGE_CHECKS = (
     Check("images: FETCH brings back what was sent", ("the same image",), _fetched),
     Check("images: another major version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | ISA_MINOR}",),
-          _sent(_changed(2, ISA_MAJOR + 1))),
+          _image_check(_changed(2, ISA_MAJOR + 1))),
     Check("images: a later minor version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | ISA_MINOR}",),
-          _sent(_changed(3, ISA_MINOR + 1))),
-    Check("images: another checksum", ("DAMAGED",), _sent(_changed(HEADER, LONG[HEADER] ^ 1))),
+          _image_check(_changed(3, ISA_MINOR + 1))),
+    Check("images: another checksum", ("DAMAGED",), _image_check(_changed(HEADER,
+        LONG[HEADER] ^ 1))),
     Check("images: a piece is missing", ("next 20", "INCOMPLETE 20"), _incomplete),
 )  # fmt: skip
 
@@ -348,7 +350,7 @@ def _stopped(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tuple
     return found
 
 
-def _silence(robot: WireRobot) -> tuple[str, ...]:
+def _check_silence(robot: WireRobot) -> tuple[str, ...]:
     live(robot, WAIT_20)
     robot.wait(SILENCE_S, "FAULT", heartbeats=False)
     status = robot.ask("STATUS")
@@ -366,6 +368,6 @@ STOP_CHECKS = (
           _stopped(lambda robot: robot.send(bytes(STOP_BYTES)))),
     Check("stops: STOP", ("STOPPED 2", "STOPPED", "LATCHED", "OK", "OK"),
           _stopped(lambda robot: robot.ask("STOP"))),
-    Check("stops: a second of silence", ("FAULTED", "fault 64"), _silence),
+    Check("stops: a second of silence", ("FAULTED", "fault 64"), _check_silence),
     Check("stops: a run that is attended goes on", ("RUNNING",), _attended),
 )  # fmt: skip

@@ -106,10 +106,12 @@ def offer(text: str, diagnostics: Sequence[Diagnostic], which: int, check: Check
     after = check(applied(text, edits))
     if diagnostic.is_mistake:
         return edits if is_better(after, diagnostics, edits) else []
-    return edits if _lacks(after, diagnostic.code, diagnostics) else []
+    return edits if _removes_warning(after, diagnostic.code, diagnostics) else []
 
 
-def _lacks(after: Sequence[Diagnostic], code: Code, diagnostics: Sequence[Diagnostic]) -> bool:
+def _removes_warning(
+    after: Sequence[Diagnostic], code: Code, diagnostics: Sequence[Diagnostic]
+) -> bool:
     """Whether there is one warning fewer of this kind, and no mistake more."""
     before, left = (
         sum(diagnostic.code is code for diagnostic in every) for every in (diagnostics, after)
@@ -140,12 +142,12 @@ def without_wrong(diagnostics: Sequence[Diagnostic], text: str, check: Check) ->
         ]  # fmt: skip
         lines: dict[tuple[Code, str], bool] = {}  # of those that name no changes: each once
         for k in suspects[:left]:
-            others = _told_as_well(told, offers, k, text)
+            others = _covered_by_offer(told, offers, k, text)
             line = told[k].code, told[k].values.get("fix", "")
             if offers[k] or line not in lines:
                 lines[line] = any(
                     _InPlace(text, edits, check).is_right(told[k], edits, others)
-                    for edits in ([offers[k]] if offers[k] else _shown(told[k], text))
+                    for edits in ([offers[k]] if offers[k] else _shown_edits(told[k], text))
                 )
             if not lines[line]:
                 told[k] = _without_offer(told[k])
@@ -155,7 +157,7 @@ def without_wrong(diagnostics: Sequence[Diagnostic], text: str, check: Check) ->
     return told
 
 
-def _told_as_well(
+def _covered_by_offer(
     diagnostics: Sequence[Diagnostic], offers: Sequence[list[Edit]], k: int, text: str
 ) -> set[str]:
     """Return codes and words of mistakes that may be in what the diagnostic `k` offers."""
@@ -173,7 +175,7 @@ def _told_as_well(
     return others
 
 
-def _shown(diagnostic: Diagnostic, text: str) -> Iterator[list[Edit]]:
+def _shown_edits(diagnostic: Diagnostic, text: str) -> Iterator[list[Edit]]:
     """Yield how a message may mean what it shows, where it names no changes.
 
     In its place, in place of its line, or of all.
@@ -203,17 +205,17 @@ class _InPlace:
             start = edit.span.start + shift
             shown += [Span(start, start + len(edit.text))] if edit in its else []
             shift += len(edit.text) - (edit.span.end - edit.span.start)
-        said = next(filter(None, map(diagnostic.values.get, _WRITTEN)), "")
-        begin = self.text.find(said, max(0, shown[0].start - len(said)))
+        text = next(filter(None, map(diagnostic.values.get, _WRITTEN)), "")
+        begin = self.text.find(text, max(0, shown[0].start - len(text)))
         if begin in range(shown[-1].end):
-            shown.append(Span(begin, begin + len(said)))
+            shown.append(Span(begin, begin + len(text)))
         return all(
-            mistake.code.number in others or self._begins_in(others, mistake.span.start)
+            mistake.code.number in others or self._is_in_words(others, mistake.span.start)
             for mistake in self.mistakes
             if any(start <= mistake.span.start < end for start, end in shown)
         )
 
-    def _begins_in(self, words: Set[str], place: int) -> bool:
+    def _is_in_words(self, words: Set[str], place: int) -> bool:
         """Whether a place of the changed text is in one of these words of the text before."""
         text = self.text.upper()
         return any(0 <= text.find(word, max(0, place - len(word) + 1)) <= place for word in words)
@@ -222,12 +224,12 @@ class _InPlace:
 def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
     """Return a diagnostic without the changes that it asks for, and without the words for them."""
     gaps = ("fix", "right") if diagnostic.repair else _GAPS.get(diagnostic.code, ("fix",))
-    said = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
-    gone = [said, "whole", "lines", "times"]
+    text = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
+    gone = [text, "whole", "lines", "times"]
     gone += ["line"] if diagnostic.code is not codes.WRONG_END else []  # of its header
     gone += ["right"] if diagnostic.code is codes.BRACES else []
     values = {gap: "" if gap in gone else value for gap, value in diagnostic.values.items()}
-    if said == "near":
+    if text == "near":
         values["meant"] = diagnostic.values["near"]  # what is asked may lead further
     return diagnostic._replace(values=values, repair=None)
 

@@ -67,10 +67,10 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     if end > start:
         end_line, last_column = source.position(end - 1)
         end_column = last_column + 1
-    fix = _filled(f"{number}/try", diagnostic.values, lang)
+    fix = _format_text(f"{number}/try", diagnostic.values, lang)
     for gap in _BESIDE:
         if diagnostic.values.get(gap):
-            fix = _filled(f"label/{gap}", {**diagnostic.values, "fix": fix}, lang)
+            fix = _format_text(f"label/{gap}", {**diagnostic.values, "fix": fix}, lang)
     return Message(
         number,
         "mistake" if diagnostic.is_mistake else "warning",
@@ -78,14 +78,14 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
         column,
         end_line,
         end_column,
-        _filled(f"{number}/message", diagnostic.values, lang),
+        _format_text(f"{number}/message", diagnostic.values, lang),
         fix,
     )
 
 
 def as_json(messages: Iterable[Message]) -> list[dict[str, object]]:
     """Return messages as the data that `--json` prints."""
-    return [each._asdict() for each in messages]
+    return [message._asdict() for message in messages]
 
 
 def as_text(message: Message, source: Source, lang: str, color: bool = False) -> str:
@@ -100,13 +100,13 @@ def as_text(message: Message, source: Source, lang: str, color: bool = False) ->
         shown, blanks, carets = _picture(line, message.column - 1, end)
         rows.append((label + shown).rstrip())
         rows.append(" " * (len(label) + blanks) + mark + "^" * carets + plain)
-    said = f"{_label('warns', lang)} {message.message}" if is_warning else message.message
+    text = f"{_label('warns', lang)} {message.message}" if is_warning else message.message
     code = f"   {dim}[{message.code}]{plain}"
     if not message.fix:
-        return "\n".join((*rows, said + code))
+        return "\n".join((*rows, text + code))
     fix = f"{_label('try', lang)}  {message.fix}"
-    fits = len(said) + len(fix) + len(message.code) <= ROW_CHARACTERS
-    rows += [f"{said}   {fix}{code}"] if fits else [said, fix + code]
+    fits = len(text) + len(fix) + len(message.code) <= ROW_CHARACTERS
+    rows += [f"{text}   {fix}{code}"] if fits else [text, fix + code]
     return "\n".join(rows)
 
 
@@ -153,20 +153,20 @@ def _texts(key: str, lang: str) -> Iterator[str]:
     """Yield the texts of which one is taken."""
     yield _text(key, lang)
     for number in count(2):
-        said = languages.found(CATALOGUE, f"{key}/{number}", lang)
-        if said is None:
+        text = languages.found(CATALOGUE, f"{key}/{number}", lang)
+        if text is None:
             return
-        yield said
+        yield text
 
 
 def names_found(diagnostic: Diagnostic) -> bool:
     """Whether a message says what was found, as it stands in the text."""
     key = f"{diagnostic.code.number}/message"
-    chosen = _chosen(key, diagnostic.values, languages.SOURCE)
+    chosen = _first_filled_text(key, diagnostic.values, languages.SOURCE)
     return ("", "found") in _GAP.findall(chosen)
 
 
-def _chosen(key: str, values: Mapping[str, str], lang: str) -> str:
+def _first_filled_text(key: str, values: Mapping[str, str], lang: str) -> str:
     """Return the first text whose gaps all have a value, else the last one."""
     chosen = ""
     for chosen in _texts(key, lang):
@@ -175,8 +175,8 @@ def _chosen(key: str, values: Mapping[str, str], lang: str) -> str:
     return chosen
 
 
-def _filled(key: str, values: Mapping[str, str], lang: str) -> str:
-    chosen = _chosen(key, values, lang)
+def _format_text(key: str, values: Mapping[str, str], lang: str) -> str:
+    chosen = _first_filled_text(key, values, lang)
 
     def gap(match: re.Match[str]) -> str:
         longest = FIX_CHARACTERS if match[2] in ("fix", "right", "whole") else VALUE_CHARACTERS

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from tiniscript.link.ports import Found
+from tiniscript.link.ports import ListedPort
 
 ON, OFF, NONE, UNKNOWN = "on", "off", "none", "unknown"  # Bluetooth
 
@@ -46,7 +46,7 @@ class Computer(NamedTuple):
     """
 
     platform: str
-    ports: tuple[Found, ...]
+    ports: tuple[ListedPort, ...]
     adapters: tuple[Adapter, ...] | None
     bluetooth: str
     paired: tuple[str, ...] | None

@@ -22,13 +22,13 @@ from tiniscript.doctor.computer import (
     looks_wireless,
     without_driver,
 )
-from tiniscript.doctor.examination import Expected, Heard, examined
+from tiniscript.doctor.examination import Expected, Heard, examine
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.line import Line
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
 from tiniscript.link import errors
-from tiniscript.link.connection import LinkConnection
+from tiniscript.link.connection import LinkConnection, stranger
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED
 from tiniscript.link.outcomes import ConnectionLost
@@ -37,11 +37,11 @@ from tiniscript.link.sharing.shared_connection import OtherVersion
 from tiniscript.link.wire import Wire
 
 
-def looked(system: System) -> Computer:
+def inspect_computer(system: System) -> Computer:
     """Look at a computer. Opens no port."""
     if system.platform == "win32":
-        return windows.looked(system)
-    look = macos.looked if system.platform == "darwin" else linux.looked
+        return windows.inspect_windows(system)
+    look = macos.inspect_macos if system.platform == "darwin" else linux.inspect_linux
     return look(system)
 
 
@@ -70,7 +70,7 @@ class Doors(NamedTuple):
     may_open: Callable[[str], bool]
     is_radio: Callable[[str], bool]
     share: Callable[[str], AbstractContextManager[LinkConnection]]
-    tell: Callable[[str], None] = lambda what: None
+    on_step: Callable[[str], None] = lambda what: None
 
 
 class Question(NamedTuple):
@@ -97,10 +97,10 @@ class Diagnosis(NamedTuple):
     is_opened: bool
 
 
-def diagnosed(doors: Doors, question: Question) -> Diagnosis:
-    doors.tell("computer")
-    computer = looked(doors.system)
-    port = question.port or question.last or _only(computer, question.virtual)
+def diagnose(doors: Doors, question: Question) -> Diagnosis:
+    doors.on_step("computer")
+    computer = inspect_computer(doors.system)
+    port = question.port or question.last or _only_port(computer, question.virtual)
     if port is None:
         return Diagnosis(None, _without_port(computer, question.virtual), computer, False)
     question = question._replace(expected=question.expected._replace(port=port))
@@ -115,7 +115,7 @@ def diagnosed(doors: Doors, question: Question) -> Diagnosis:
     finally:
         if client is not None:
             client.close()
-    held = _held(doors.system, computer, port)
+    held = _port_in_use(doors.system, computer, port)
     if held is not None:
         return Diagnosis(port, (held,), computer, False)
     is_radio = doors.is_radio(port) or port.startswith(PSEUDO)
@@ -130,7 +130,9 @@ def _opened(
     try:
         wire = doors.open_wire(port, question.baud)
     except PortError as failure:
-        return Diagnosis(port, (_unopened(failure, computer, port, doors.system),), computer, False)
+        return Diagnosis(
+            port, (_open_failure(failure, computer, port, doors.system),), computer, False
+        )
     is_radio = is_radio and not port.startswith(PSEUDO)
     asked = Line(question.baud, is_radio, question.nonce)
     expected, heard = question.expected, list[Heard]()
@@ -140,7 +142,7 @@ def _opened(
         expected.hear(each)
 
     try:
-        findings = line.looked(wire, asked, expected._replace(hear=hear), doors.tell)
+        findings = line.diagnose_line(wire, asked, expected._replace(hear=hear), doors.on_step)
     except OSError:
         cause = "other_host" if is_address(port) else "port_gone"
         findings = [Finding(cause, not is_address(port))]
@@ -154,7 +156,7 @@ def _opened(
     return Diagnosis(port, tuple(findings), computer, True)
 
 
-def _only(computer: Computer, virtual: tuple[str, ...]) -> str | None:
+def _only_port(computer: Computer, virtual: tuple[str, ...]) -> str | None:
     """Return the only port that may be a robot's: of USB or Bluetooth, else of a virtual one."""
     names = [
         port.port for port in computer.ports
@@ -170,13 +172,13 @@ def _without_port(computer: Computer, virtual: tuple[str, ...]) -> tuple[Finding
     listed = ", ".join([*(port.port for port in computer.ports), *virtual])
     if len(computer.ports) > 1:
         return (sure("which_port", ports=listed),)
-    absent = _absent(computer)
+    absent = _no_port_finding(computer)
     if listed and absent.cause in ("no_port", "charging_cable"):
         return (absent._replace(values={**absent.values, "ports": listed}),)
     return (absent,)
 
 
-def _absent(computer: Computer) -> Finding:
+def _no_port_finding(computer: Computer) -> Finding:
     """Return why an adapter, or any at all, has no port."""
     for adapter in without_driver(computer.adapters or ()):
         if adapter.driver == "usbfs" or "brltty" in computer.programs:
@@ -189,17 +191,20 @@ def _absent(computer: Computer) -> Finding:
 
 def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[Finding, ...]:
     robot = SharedRobot(client)
-    doors.tell("hello")
+    doors.on_step("hello")
     try:
         reply = robot.hello()
         if reply is None:
+            found = stranger(client)
+            if found is not None:
+                return (Finding(found.name, found.is_sure, {"said": found.said}),)
             return (probably("falls_silent"),)
-        return tuple(examined(robot, reply, question.expected, question.watch_ms, doors.tell))
+        return tuple(examine(robot, reply, question.expected, question.watch_ms, doors.on_step))
     except ConnectionLost:
         return (sure("port_gone"),)
 
 
-def _held(system: System, found: Computer, port: str) -> Finding | None:
+def _port_in_use(system: System, computer: Computer, port: str) -> Finding | None:
     """Return why this user cannot have the port now, as far as it is known without opening it."""
     who = access(system, same_for_all(port))
     if not who.may_use and who.is_joined:
@@ -215,17 +220,17 @@ def _held(system: System, found: Computer, port: str) -> Finding | None:
 
 def _is_listed(system: System, computer: Computer, port: str) -> bool:
     return is_address(port) or system.owner(port) is not None or any(
-        each.port.lower() == port.lower() for each in computer.ports
+        item.port.lower() == port.lower() for item in computer.ports
     )  # fmt: skip
 
 
 def unopened(system: System, port: str, failure: PortError) -> Finding:
     """Return why a port that somebody has tried to open did not open."""
-    computer = looked(system)
-    return _held(system, computer, port) or _unopened(failure, computer, port, system)
+    computer = inspect_computer(system)
+    return _port_in_use(system, computer, port) or _open_failure(failure, computer, port, system)
 
 
-def _unopened(failure: PortError, computer: Computer, port: str, system: System) -> Finding:
+def _open_failure(failure: PortError, computer: Computer, port: str, system: System) -> Finding:
     """Return why a port did not open."""
     if failure.reason == errors.MISSING:
         return _missing(computer, port, system)
@@ -260,5 +265,5 @@ def _missing(computer: Computer, port: str, system: System) -> Finding:
         if computer.platform == "linux" and "rfcomm" in port:
             return Finding("no_rfcomm", bool(computer.has_module), {"number": port[-1:]})
     if without_driver(computer.adapters or ()) or not computer.ports:
-        return _absent(computer)
+        return _no_port_finding(computer)
     return sure("port_missing", ports=", ".join(port.port for port in computer.ports))

@@ -79,13 +79,14 @@ class Restart(NamedTuple):
     cause: str
 
 
-def examined(
+def examine(
     robot: Robot, first: Reply[SentReply], expected: Expected, watch_ms: int = 0,
-    tell: Callable[[str], None] = lambda what: None,
+    on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
     """Return what is wrong with a robot whose answer to HELLO is `first`.
 
-    Where nothing is, the only finding that is no note is `fine`. `tell` gets `pings` and `watch`.
+    Where nothing is, the only finding that is no note is `fine`. `on_step` gets `pings` and
+    `watch`.
     """
     hello = values_of(first)
     if first.status == OTHER_ROBOT:  # the tsc that has the port does not believe it
@@ -99,16 +100,16 @@ def examined(
     findings = [*_versions(hello), *_kit(hello, expected), *_owner(robot, hello, expected)]
     if hello.features & WIFI_RESTS:
         findings.append(sure("wifi_rests"))
-    expected.note(_about(hello, expected))
+    expected.note(_report_fields(hello, expected))
     before = robot.status()
     restarts: list[Restart] = []
     if before is not None:
-        findings += _told(before)
-        lost, trips_ms = _hearing(robot, before, expected, tell)
+        findings += _status_findings(before)
+        lost, trips_ms = _link_findings(robot, before, expected, on_step)
         findings += lost
         expected.hear(Heard(hello, before, _trim(robot, hello), trips_ms))
-        tell("watch")
-        restarts = _watched(robot, hello, watch_ms)
+        on_step("watch")
+        restarts = _watch_restarts(robot, hello, watch_ms)
     after = robot.status() if before is not None else None
     if restarts:
         findings += _restarts(restarts)
@@ -131,7 +132,7 @@ def examined(
     return findings
 
 
-def _about(hello: HelloReply, expected: Expected) -> dict[str, str]:
+def _report_fields(hello: HelloReply, expected: Expected) -> dict[str, str]:
     """Return what a report tells of a robot: not whose it is."""
     features = [name for bit, name, _ in FEATURES if hello.features & bit]
     return {
@@ -165,11 +166,11 @@ def _versions(hello: HelloReply) -> list[Finding]:
 
 
 def _kit(hello: HelloReply, expected: Expected) -> list[Finding]:
-    found = expected.names(hello.kit)
+    result = expected.names(hello.kit)
     kit = f"{hello.kit:04x}"
     if expected.kit is not None and hello.kit != expected.kit:
-        return [sure("wrong_kit", kit=kit, robot=found or kit, expected=expected.name)]
-    if expected.kit is None and found is None:
+        return [sure("wrong_kit", kit=kit, robot=result or kit, expected=expected.name)]
+    if expected.kit is None and result is None:
         return [sure("unknown_kit", kit=kit)]
     return []
 
@@ -181,7 +182,7 @@ def _owner(robot: Robot, hello: HelloReply, expected: Expected) -> list[Finding]
     return [sure("of_another_owner")] if is_others else []
 
 
-def _told(status: StatusReply) -> list[Finding]:
+def _status_findings(status: StatusReply) -> list[Finding]:
     """Return what the robot says of its supply, its latch and its program."""
     findings = []
     if status.saved == SAVED_LOW_SUPPLY:
@@ -195,22 +196,22 @@ def _told(status: StatusReply) -> list[Finding]:
     return findings
 
 
-def _hearing(
-    robot: Robot, before: StatusReply, expected: Expected, tell: Callable[[str], None]
+def _link_findings(
+    robot: Robot, before: StatusReply, expected: Expected, on_step: Callable[[str], None]
 ) -> tuple[list[Finding], tuple[float, ...]]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
-    tell("pings")
+    on_step("pings")
     trips_ms = trips_of(robot, expected.pings, lambda: robot.pause(PAUSE_MS))
     missed = expected.pings - len(trips_ms)
     after = robot.status()
-    damaged = 0
+    damaged_count = 0
     if after is not None:
-        pairs = zip(_four(before), _four(after), strict=True)
-        damaged = sum((now - then) & 0xFF for then, now in pairs)
-    values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged)}
+        pairs = zip(_error_counts(before), _error_counts(after), strict=True)
+        damaged_count = sum((now - then) & 0xFF for then, now in pairs)
+    values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged_count)}
     expected.note({"good": str(len(trips_ms)), **values})
     lost = []
-    if max(missed, damaged) * PINGS >= LOSSY * expected.pings:
+    if max(missed, damaged_count) * PINGS >= LOSSY * expected.pings:
         lost = [sure("lossy", **values)] if after is not None else []
     elif after is not None and lost_packets(before) >= 10 * LOSSY:
         lost = [probably("lossy", **{**values, "damaged": str(lost_packets(before))})]
@@ -240,11 +241,11 @@ def _trim(robot: Robot, hello: HelloReply) -> TrimReply | None:
     return values if isinstance(values, TrimReply) else None
 
 
-def _four(status: StatusReply) -> tuple[int, int, int, int]:
+def _error_counts(status: StatusReply) -> tuple[int, int, int, int]:
     return status.damaged, status.dropped, status.framing, status.overrun
 
 
-def _watched(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Restart]:
+def _watch_restarts(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Restart]:
     """Look for a while whether the robot restarts: then its nonce is another one."""
     restarts = []
     nonce, is_running = hello.nonce, hello.state == STATE_RUNNING

@@ -1,6 +1,7 @@
 """What doctor, self-test, a module's set-up and trim can find: one table of causes.
 
-Knows no sentence: those of a cause, a short name that stays, are in `languages/en/command.toml`.
+Knows no sentence: those of a cause, a short name that stays, are in `languages/en/command.toml`,
+and of a board that is not ours in `languages/en/foreign.toml`.
 """
 
 from __future__ import annotations
@@ -8,10 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from tiniscript.link import foreign
+
 OK, OPEN, WRONG = "ok", "open", "wrong"  # OPEN: nothing is wrong for sure, and a person may look
 
 
-class Cause(NamedTuple):
+class FindingKind(NamedTuple):
     """What a finding means. `part`: what of a robot it is about, where one is looked at whole.
 
     `then` names the sentence with the next step, if that is not of this cause alone.
@@ -22,60 +25,69 @@ class Cause(NamedTuple):
     then: str = ""
 
 
-def _all(verdict: str, part: str, causes: str, then: str = "") -> Iterable[tuple[str, Cause]]:
-    return ((word, Cause(verdict, part, then)) for word in causes.split())
+def _finding_kinds(
+    verdict: str, part: str, causes: str, then: str = ""
+) -> Iterable[tuple[str, FindingKind]]:
+    return ((word, FindingKind(verdict, part, then)) for word in causes.split())
 
 
 CAUSES = dict((
     # the computer
-    *_all(WRONG, "", "no_port charging_cable port_missing which_port driver_missing brltty"),
-    *_all(WRONG, "", "no_bluetooth bluetooth_off not_paired no_rfcomm"),
+    *_finding_kinds(WRONG, "",
+        "no_port charging_cable port_missing which_port driver_missing brltty"),
+    *_finding_kinds(WRONG, "", "no_bluetooth bluetooth_off not_paired no_rfcomm"),
     # the port
-    *_all(WRONG, "", "no_permission login_again busy modem_manager other_tsc out_of_reach"),
-    *_all(WRONG, "", "other_host slow_port no_serial_port port_broken port_gone not_opened"),
+    *_finding_kinds(WRONG, "",
+        "no_permission login_again busy modem_manager other_tsc out_of_reach"),
+    *_finding_kinds(WRONG, "",
+        "other_host slow_port no_serial_port port_broken port_gone not_opened"),
     # what answers there
-    *_all(WRONG, "", "echo module_set_up module_alone wrong_baud module_baud crossed other_sketch"),
-    *_all(WRONG, "", "bootloader_only garbled silent"),
+    *_finding_kinds(WRONG, "",
+        "echo module_set_up module_alone wrong_baud module_baud crossed one_way"),
+    *_finding_kinds(WRONG, "", " ".join(foreign.NAMES)),
+    *_finding_kinds(WRONG, "", "bootloader_only garbled silent"),
     # the robot, by what it says
-    *_all(WRONG, "", "other_robot unproven"),
-    *_all(OPEN, "", "of_another_owner stopped"),
-    *_all(WRONG, "kit", "wrong_kit unknown_kit"),
-    *_all(WRONG, "firmware", "firmware_older firmware_newer"),
-    *_all(WRONG, "line", "lossy falls_silent"),
-    *_all(WRONG, "supply", "low_supply brown_out hung restarts motors_restart wifi_rests"),
-    *_all(OPEN, "store", "not_saved_yet other_program"),
-    *_all(OK, "", "fine"),
+    *_finding_kinds(WRONG, "", "other_robot unproven"),
+    *_finding_kinds(OPEN, "", "of_another_owner stopped"),
+    *_finding_kinds(WRONG, "kit", "wrong_kit unknown_kit"),
+    *_finding_kinds(WRONG, "firmware", "firmware_older firmware_newer"),
+    *_finding_kinds(WRONG, "line", "lossy falls_silent"),
+    *_finding_kinds(WRONG, "supply",
+        "low_supply brown_out hung restarts motors_restart wifi_rests"),
+    *_finding_kinds(OPEN, "store", "not_saved_yet other_program"),
+    *_finding_kinds(OK, "", "fine"),
     # each part, where it is looked at whole
-    *_all(OK, "answers", "is_there"),
-    *_all(WRONG, "answers", "plain", then="doctor"),  # or of another part: what the robot told
-    *_all(OK, "kit", "kit_is"),
-    *_all(OK, "firmware", "firmware_is"),
-    *_all(OK, "line", "line_is"),
-    *_all(OK, "supply", "supply_is"),
-    *_all(OK, "store", "saved empty"),
-    *_all(OPEN, "store", "unsaved", then="upload"),
-    *_all(OK, "trim", "trim_is"),
-    *_all(OK, "discs", "discs_rest"),
-    *_all(WRONG, "discs", "discs_noise", then="discs"),
-    *_all(OK, "sensor", "reads changes"),
-    *_all(OPEN, "sensor", "stuck as_bright", then="hand"),
-    *_all(WRONG, "sensor", "same no_reading", then="wires"),
-    *_all(OK, "motor", "turns"),
-    *_all(WRONG, "motor", "other_turn", then="trim"),
-    *_all(WRONG, "motor", "still", then="wires"),
-    *_all(WRONG, "motor", "ended", then="batteries"),  # of the buzzer, too
-    *_all(OPEN, "motor", "unasked", then="person"),
-    *_all(WRONG, "motors", "same_wheel", then="pins"),
-    *_all(WRONG, "motors", "too_weak", then="wheels"),
-    *_all(WRONG, "motors", "too_uneven", then="brake"),
-    *_all(OK, "buzzer", "heard"),
-    *_all(WRONG, "buzzer", "unheard", then="wires"),
+    *_finding_kinds(OK, "answers", "is_there"),
+    *_finding_kinds(WRONG, "answers", "plain", then="doctor"),
+     # or of another part: what the robot told
+    *_finding_kinds(OK, "kit", "kit_is"),
+    *_finding_kinds(OK, "firmware", "firmware_is"),
+    *_finding_kinds(OK, "line", "line_is"),
+    *_finding_kinds(OK, "supply", "supply_is"),
+    *_finding_kinds(OK, "store", "saved empty"),
+    *_finding_kinds(OPEN, "store", "unsaved", then="upload"),
+    *_finding_kinds(OK, "trim", "trim_is"),
+    *_finding_kinds(OK, "discs", "discs_rest"),
+    *_finding_kinds(WRONG, "discs", "discs_noise", then="discs"),
+    *_finding_kinds(OK, "sensor", "reads changes"),
+    *_finding_kinds(OPEN, "sensor", "stuck as_bright", then="hand"),
+    *_finding_kinds(WRONG, "sensor", "same no_reading", then="wires"),
+    *_finding_kinds(OK, "motor", "turns"),
+    *_finding_kinds(WRONG, "motor", "other_turn", then="trim"),
+    *_finding_kinds(WRONG, "motor", "still", then="wires"),
+    *_finding_kinds(WRONG, "motor", "ended", then="batteries"),  # of the buzzer, too
+    *_finding_kinds(OPEN, "motor", "unasked", then="person"),
+    *_finding_kinds(WRONG, "motors", "same_wheel", then="pins"),
+    *_finding_kinds(WRONG, "motors", "too_weak", then="wheels"),
+    *_finding_kinds(WRONG, "motors", "too_uneven", then="brake"),
+    *_finding_kinds(OK, "buzzer", "heard"),
+    *_finding_kinds(WRONG, "buzzer", "unheard", then="wires"),
     # a module that is set up, and each of its settings
-    *_all(WRONG, "module", "module_silent"),
-    *_all(OK, "setting", "module_done module_done_baud module_done_later"),
-    *_all(OPEN, "setting", "module_unseen"),
-    *_all(WRONG, "setting", "module_refused module_lost_midway module_differs"),
-    *_all(WRONG, "setting", "module_elsewhere module_lost"),
+    *_finding_kinds(WRONG, "module", "module_silent"),
+    *_finding_kinds(OK, "setting", "module_done module_done_baud module_done_later"),
+    *_finding_kinds(OPEN, "setting", "module_unseen"),
+    *_finding_kinds(WRONG, "setting", "module_refused module_lost_midway module_differs"),
+    *_finding_kinds(WRONG, "setting", "module_elsewhere module_lost"),
 ))  # fmt: skip
 
 

@@ -1,18 +1,22 @@
-"""Finds out what is at the other end of a port: a robot, an echo, a module, another sketch, nobody.
+"""Finds out what is at the other end of a port: a robot, an echo, a module, another board, nobody.
 
-First it listens, then it says HELLO. Only on a cable, where the user has said yes, it asks at
-other speeds, too: a radio carries bytes, whatever speed its port has.
+First it listens, then it says HELLO, then it asks the harmless questions of `link.foreign`. Only on
+a cable, where the user has said yes, it asks at other speeds, too: a radio carries bytes, whatever
+speed its port has. Bytes that are text at a speed are of something that has this speed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
-from tiniscript.doctor.examination import Expected, examined
+from tiniscript.doctor.examination import Expected, examine
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
 from tiniscript.flash.bootloaders import MEGA, NANO_OLD, UNO, Bootloader
+from tiniscript.link import foreign
+from tiniscript.link.foreign import ECHO, Foreign
 from tiniscript.link.modules import dialects, talk
 from tiniscript.link.wire import Wire
 
@@ -28,18 +32,26 @@ ANSWER_MS = 200
 OVER_MS = 5000  # a bootloader that has heard nothing for so long has gone on to what is behind it
 
 
-def answers(wire: Wire) -> tuple[Bootloader, bool] | None:
+def answers(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool] | None:
     """Restart the board and return the bootloader that answers, or None.
 
-    The second value: it answers later on, too; then there is nothing behind it.
+    The second value: it answers later on, too; then there is nothing behind it. `hear` gets what
+    the board says after each restart.
     """
     for line, greeting, answer in GREETINGS:
         wire.set_baud(line.baud)
         wire.restart()
-        wire.heard(BLINK_MS, BLINK_MS)
-        if _greeted(wire, greeting, answer):
+        said = wire.heard(BLINK_MS, BLINK_MS)
+        is_there = False
+        for _ in range(TRIES):
+            wire.send(greeting)
+            said += wire.heard(ANSWER_MS)
+            if is_there := answer in said:
+                break
+        if is_there:
             wire.heard(OVER_MS, OVER_MS)
             return line, _greeted(wire, greeting, answer)
+        hear(said)
     return None
 
 
@@ -55,8 +67,8 @@ BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants
 HELLOS = 5  # an old Nano's bootloader takes longer
 BAUDS = (9600, 115200, 57600, 38400, 19200)
 LISTEN_MS = 400  # at a speed, to what a sketch prints
-FEW, MOST_TEXT = 4, 60  # bytes that are looked at, characters that are told
-READABLE = 0.9  # the share of printable characters in text
+PROBE_MS, RADIO_PROBE_MS = 200, 500  # for an answer of a board that is not ours
+FEW = 4  # bytes: fewer say nothing
 
 
 class Line(NamedTuple):
@@ -67,26 +79,28 @@ class Line(NamedTuple):
     nonce: int
 
 
-def looked(
+def diagnose_line(
     wire: Wire, line: Line, expected: Expected,
-    tell: Callable[[str], None] = lambda what: None,
+    on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
-    """Return what is at the other end. `tell` gets what is done next, a short name."""
-    tell("listen")
+    """Return what is at the other end. `on_step` gets what is done next, a short name."""
+    on_step("listen")
     before = wire.heard(LISTEN_MS if line.is_radio else BOOT_MS)
     robot = _robot(wire, line, expected)
-    tell("hello")
+    on_step("hello")
     reply = robot.hello(HELLOS)
     if reply is not None:
-        return examined(robot, reply, expected, tell=tell)
+        return examine(robot, reply, expected, on_step=on_step)
     heard = before + robot.heard
-    if _is_echo(heard, robot.spoken):
-        return [sure("echo")]
     if _is_error(heard):
         return [sure("module_set_up", baud=str(line.baud))]
+    others = _Others(wire, RADIO_PROBE_MS if line.is_radio else PROBE_MS)
+    found = others.find(heard, robot.spoken, partial(_echo, wire, line, expected))
+    if found is not None:
+        return [found]
     if line.is_radio:
-        return [_by_radio(heard)]
-    return _by_cable(wire, line, expected, heard, tell)
+        return [others.best() or _by_radio(heard)]
+    return _by_cable(wire, line, expected, heard, others, on_step)
 
 
 def _robot(wire: Wire, line: Line, expected: Expected) -> WireRobot:
@@ -105,56 +119,153 @@ def _is_error(heard: bytes) -> bool:
     return b"ERROR:(" in heard or b"ERROR=" in heard
 
 
-def readable(heard: bytes) -> str:
-    """Return bytes as text, if they are some; else an empty text."""
-    text = heard.decode("ascii", "replace")
-    good = sum((letter.isprintable() and letter != "�") or letter in "\r\n\t" for letter in text)
-    if len(heard) < FEW or good < READABLE * len(text):
-        return ""
-    rows = [row.strip() for row in text.splitlines() if row.strip()]
-    return rows[len(rows) // 2][:MOST_TEXT] if rows else ""
+class _Others:
+    """Looks for boards that are not ours in what is heard. What is sure is told at once; of the
+    rest the best is kept until nothing else is found."""
+
+    def __init__(self, wire: Wire, wait_ms: int) -> None:
+        self._wire, self._wait_ms = wire, wait_ms
+        self._kept: list[Finding] = []
+
+    def find(self, heard: bytes, spoken: bytes, echo: Callable[[], Finding]) -> Finding | None:
+        """Return what is surely there. `echo` returns what it is that sends back what is sent, and
+        says nothing else."""
+        found = self.look(heard)
+        is_echo = _is_echo(heard, spoken)
+        if found is None and not (is_echo and self.best() is None):
+            found = self.ask(heard, not is_echo)
+        if found is None and is_echo:
+            said = _beside(heard, spoken)
+            found = sure(ECHO, said=said) if said else echo()
+        return found
+
+    def look(self, heard: bytes) -> Finding | None:
+        """Return what has surely sent these bytes, by its row or as a robot that does not hear."""
+        if foreign.is_robot(heard):
+            return probably("one_way")
+        found = foreign.recognised(heard)
+        return None if found is not None and found.name in foreign.GENERAL else self._judged(found)
+
+    def ask(self, heard: bytes, may_be_text: bool) -> Finding | None:
+        """Send the probes, and return what surely answers, or is surely text without them.
+
+        Each answer is looked at by itself: one who says again what it gets must not be taken for a
+        board that answers the last probe with the next one.
+        """
+        for row in foreign.ROWS:
+            if row.probe:
+                self._wire.send(row.probe)
+                found = self._judged(foreign.recognised(heard + self._wire.heard(self._wait_ms)))
+                if found is not None:
+                    return found
+        if (best := self.best()) is not None and best.cause == "at_firmware":
+            self._wire.send(foreign.ASKS_AT)
+            found = self._judged(foreign.recognised(heard + self._wire.heard(dialects.ANSWER_MS)))
+            if found is not None:
+                return found
+        return self._judged(foreign.stranger(heard)) if may_be_text else None
+
+    def settle(self, heard: bytes) -> Finding | None:
+        """Return what has sent these bytes, where no question would help."""
+        found = foreign.recognised(heard)
+        return None if found is None else self._judged(found)
+
+    def best(self) -> Finding | None:
+        """Return what is probably there."""
+        return self._kept[0] if self._kept else None
+
+    def _judged(self, found: Foreign | None) -> Finding | None:
+        if found is None:
+            return None
+        finding = Finding(found.name, found.is_sure, {"said": found.said})
+        if found.is_sure:
+            return finding
+        self._kept.append(finding)
+        return None
+
+
+def _echo(wire: Wire, line: Line, expected: Expected) -> Finding:
+    """Return what sends back: a sketch has one speed, a wire has every one."""
+    if line.is_radio:
+        return probably("echo")
+    wire.set_baud(next(baud for baud in BAUDS if baud != line.baud))
+    robot = _robot(wire, line, expected)
+    robot.hello(1)
+    if _is_echo(robot.heard, robot.spoken):
+        return sure("echo")
+    return _echo_of_one_speed(wire, line.baud)
+
+
+def _echo_of_one_speed(wire: Wire, baud: int) -> Finding:
+    """Return what sends back at this speed only: what takes commands may do so, too."""
+    return _module(wire, (baud,)) or sure(ECHO, said="")
+
+
+def _beside(heard: bytes, spoken: bytes) -> str:
+    """Return the text that came with what was sent and came back, if any did."""
+    for frame in spoken.split(b"\0"):
+        heard = heard.replace(frame, b"") if frame else heard
+    return foreign.readable(heard.replace(b"\0", b""))
+
+
+def _module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
+    """Return the module that answers commands, or the board that does as one does."""
+    module = talk.find_module(wire, bauds, wakes=False)
+    if module is None:
+        return None
+    if not module.version:  # no module has told which one it is
+        wire.send(foreign.ASKS_AT)
+        found = foreign.recognised(wire.heard(dialects.ANSWER_MS))
+        if found is not None:
+            return Finding(found.name, found.is_sure, {"said": found.said})
+    cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
+    return sure(cause, baud=str(module.baud), module=module.dialect.name)
 
 
 def _by_radio(heard: bytes) -> Finding:
     """The module has answered, for its port is open: what is behind it?"""
-    if readable(heard):
-        return probably("other_sketch", said=readable(heard))
     if len(heard) >= FEW:
         return probably("module_baud", n=str(len(heard)))
     return probably("crossed")
 
 
 def _by_cable(
-    wire: Wire, line: Line, expected: Expected, heard: bytes,
-    tell: Callable[[str], None],
+    wire: Wire, line: Line, expected: Expected, heard: bytes, others: _Others,
+    on_step: Callable[[str], None],
 ) -> list[Finding]:  # fmt: skip
-    if readable(heard):
-        return [sure("other_sketch", said=readable(heard))]
     garbage = len(heard)
     for baud in BAUDS:
         if baud == line.baud:
             continue
-        tell("bauds")
+        on_step("bauds")
         wire.set_baud(baud)
         more = wire.heard(LISTEN_MS)
         robot = _robot(wire, line, expected)
         reply = robot.hello(1)
         if reply is not None:
             finding = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
-            rest = examined(robot, reply, expected, tell=tell)
+            rest = examine(robot, reply, expected, on_step=on_step)
             return [finding, *(finding for finding in rest if finding.cause != "fine")]
-        if readable(more):
-            return [sure("other_sketch", said=readable(more))]
+        more += robot.heard
+        alone = partial(_echo_of_one_speed, wire, baud)
+        found = others.find(more, robot.spoken, alone)
+        if found is not None:
+            return [found]
         garbage = max(garbage, len(more))
-    tell("module")
-    module = talk.found(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))), wakes=False)
-    if module is not None:
-        cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
-        return [sure(cause, baud=str(module.baud), module=module.dialect.name)]
-    tell("bootloader")
-    found_bootloader = answers(wire)
+    on_step("module")
+    found = _module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))))
+    if found is not None:
+        return [found]
+    on_step("bootloader")
+    booted: list[bytes] = []
+    found_bootloader = answers(wire, booted.append)
+    for said in booted:
+        found = others.look(said) or others.settle(said)
+        if found is not None:
+            return [found]
     if found_bootloader is not None:
         board, is_alone = found_bootloader
         return [sure("bootloader_only", board=board.name) if is_alone
-                else probably("other_sketch", said="")]  # fmt: skip
-    return [probably("garbled", n=str(garbage)) if garbage >= FEW else probably("silent")]
+                else others.best() or probably("other_sketch", said="")]  # fmt: skip
+    kept = others.best()
+    return [kept or (probably("garbled", n=str(garbage)) if garbage >= FEW else probably("silent"))]

@@ -10,14 +10,14 @@ LOCKS = "/run/lock", "/var/lock"
 OF_INTEREST = {"brltty", "ModemManager"}
 
 
-def looked(system: System) -> Computer:
+def inspect_linux(system: System) -> Computer:
     bluetooth = _bluetooth(system)
     return Computer(
         system.platform,
         tuple(system.ports()),
         tuple(_adapters(system)) if system.names(USB) else None,
         bluetooth,
-        _paired(system) if bluetooth == ON else (),
+        _paired_devices(system) if bluetooth == ON else (),
         frozenset(OF_INTEREST & set(_programs(system).values())),
     )
 
@@ -46,18 +46,18 @@ def _bluetooth(system: System) -> str:
         return NONE
     for name in system.names(SWITCHES):
         folder = f"{SWITCHES}/{name}"
-        blocks = (system.text(f"{folder}/{each}") for each in ("soft", "hard"))
+        blocks = (system.text(f"{folder}/{item}") for item in ("soft", "hard"))
         if system.text(f"{folder}/type") == "bluetooth" and "1" in blocks:
             return OFF
     return ON
 
 
-def _paired(system: System) -> tuple[str, ...] | None:
+def _paired_devices(system: System) -> tuple[str, ...] | None:
     """Return the names of paired devices; newer and older bluetoothctl are asked differently."""
     for words in (("devices", "Paired"), ("paired-devices",)):
-        said = system.output("bluetoothctl", *words)
-        if said is not None:
-            rows = [row.split(None, 2) for row in said.splitlines()]
+        text = system.output("bluetoothctl", *words)
+        if text is not None:
+            rows = [row.split(None, 2) for row in text.splitlines()]
             return tuple(row[2] for row in rows if len(row) == 3 and row[0] == "Device")
     return None
 
@@ -87,14 +87,14 @@ def _users(system: System, port: str) -> list[str]:
 
     Those of other users are known by their lock files alone.
     """
-    found = []
+    matches = []
     programs = _programs(system)
     for number, name in programs.items():
         folder = f"/proc/{number}/fd"
         if any(system.target(f"{folder}/{name}") == port for name in system.names(folder)):
-            found.append(name)
+            matches.append(name)
     for folder in LOCKS:
         number = (system.text(f"{folder}/LCK..{port.rpartition('/')[2]}") or "").strip()
         if number in programs:
-            found.append(programs[number])
-    return list(dict.fromkeys(name for name in found if name))
+            matches.append(programs[number])
+    return list(dict.fromkeys(name for name in matches if name))

@@ -10,22 +10,22 @@ from tiniscript.doctor.computer import NONE, OFF, ON, UNKNOWN, Access, Adapter, 
 from tiniscript.doctor.system import Owner, System
 
 
-def looked(system: System) -> Computer:
+def inspect_macos(system: System) -> Computer:
     ports = system.ports()
-    usb = _asked(system, "SPUSBDataType")
+    usb = _query(system, "SPUSBDataType")
     has_port = any("usb" in port.port.lower() for port in ports)
     adapters = None if usb is None else tuple(_adapters(usb, has_port))
-    bluetooth, paired = _bluetooth(_asked(system, "SPBluetoothDataType"))
+    bluetooth, paired = _bluetooth(_query(system, "SPBluetoothDataType"))
     return Computer(system.platform, tuple(ports), adapters, bluetooth, paired)
 
 
-def _asked(system: System, what: str) -> list[dict[str, Any]] | None:
-    said = system.output("system_profiler", what, "-json")
+def _query(system: System, what: str) -> list[dict[str, Any]] | None:
+    text = system.output("system_profiler", what, "-json")
     try:
-        found = json.loads(said or "")[what]
+        result = json.loads(text or "")[what]
     except (ValueError, KeyError, TypeError, RecursionError):
         return None
-    return [each for each in found if isinstance(each, dict)] if isinstance(found, list) else None
+    return [item for item in result if isinstance(item, dict)] if isinstance(result, list) else None
 
 
 def _adapters(devices: list[dict[str, Any]], has_port: bool) -> Iterator[Adapter]:
@@ -35,7 +35,7 @@ def _adapters(devices: list[dict[str, Any]], has_port: bool) -> Iterator[Adapter
         device = waiting.pop()
         inside = device.get("_items")
         if isinstance(inside, list):
-            waiting += [each for each in inside if isinstance(each, dict)]
+            waiting += [item for item in inside if isinstance(item, dict)]
         vendor, product = (
             str(device.get(key, "")).split(" ")[0].lower().removeprefix("0x")
             for key in ("vendor_id", "product_id")
@@ -64,6 +64,6 @@ def _bluetooth(found: list[dict[str, Any]] | None) -> tuple[str, tuple[str, ...]
 
 
 def access(system: System, port: str, owner: Owner) -> Access:
-    said = system.output("lsof", "-F", "c", port) or ""
-    names = [row[1:] for row in said.splitlines() if row.startswith("c") and row[1:]]
+    text = system.output("lsof", "-F", "c", port) or ""
+    names = [row[1:] for row in text.splitlines() if row.startswith("c") and row[1:]]
     return Access(owner.may_use, "", False, tuple(dict.fromkeys(names)))

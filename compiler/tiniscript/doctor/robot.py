@@ -84,14 +84,14 @@ class WireRobot(Robot):
         return None
 
     def _answer(self, name: str, number: int) -> Reply[SentReply] | None:
-        found = b""
+        result = b""
         for _ in range(READS):
             more = self.wire.heard(self.answer_ms)
             if not more:
                 break
-            found += more
+            result += more
             self.heard += more
-            for packet in found.split(b"\0"):
+            for packet in result.split(b"\0"):
                 frame = decoded(packet) if packet else None
                 if frame and frame.is_reply and (frame.number, frame.seq) == (number, self._seq):
                     reply = reply_of(name, frame.payload)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tiniscript.base.files import contents
 from tiniscript.link import ports
-from tiniscript.link.ports import Found
+from tiniscript.link.ports import ListedPort
 
 FILE_BYTES = 65_536
 OUTPUT_S = 8.0  # timeout of a program
@@ -39,7 +39,7 @@ class System:
     def _path(self, path: str) -> Path:
         return self.root / path.lstrip("/")
 
-    def ports(self) -> list[Found]:
+    def ports(self) -> list[ListedPort]:
         return ports.listed()
 
     def names(self, folder: str) -> list[str]:

@@ -15,10 +15,10 @@ _PAIRED = re.compile(r"BTHENUM\\DEV_[0-9A-F]{12}", re.I)
 _NAME = re.compile(r":\s*(.+?)\s*$")
 
 
-def looked(system: System) -> Computer:
+def inspect_windows(system: System) -> Computer:
     ports = system.ports()
-    connected = _asked(system)
-    problems = _asked(system, "/problem")
+    connected = _query(system)
+    problems = _query(system, "/problem")
     adapters = None
     if connected is not None:
         broken = _chips(problems or "")
@@ -26,7 +26,7 @@ def looked(system: System) -> Computer:
             Adapter(chip, "", "", chip not in broken)
             for chip in _chips(connected + (problems or ""))
         )
-    radio = _asked(system, "/class", "Bluetooth")
+    radio = _query(system, "/class", "Bluetooth")
     bluetooth, paired = UNKNOWN, None
     if radio is not None:
         has_adapter = re.search(r"(?:USB\\VID|PCI\\VEN|ACPI\\)", radio, re.I) is not None
@@ -35,13 +35,13 @@ def looked(system: System) -> Computer:
     return Computer(system.platform, tuple(ports), adapters, bluetooth, paired)
 
 
-def _asked(system: System, *words: str) -> str | None:
+def _query(system: System, *words: str) -> str | None:
     return system.output("pnputil", "/enum-devices", "/connected", *words)
 
 
 def _chips(said: str) -> list[str]:
-    found = (chip_of(vendor.lower(), product.lower()) for vendor, product in _USB.findall(said))
-    return list(dict.fromkeys(chip[0] for chip in found if chip is not None))
+    result = (chip_of(vendor.lower(), product.lower()) for vendor, product in _USB.findall(said))
+    return list(dict.fromkeys(chip[0] for chip in result if chip is not None))
 
 
 def _names(said: str) -> list[str]:

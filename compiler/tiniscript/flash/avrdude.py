@@ -50,14 +50,14 @@ class Ended(NamedTuple):
     said: str = ""
 
 
-class Seen(NamedTuple):
+class StepProgress(NamedTuple):
     """The current step, and its progress in percent."""
 
     phase: str
     percent: int
 
 
-def found() -> list[str] | None:
+def find_avrdude() -> list[str] | None:
     """Return the command that runs avrdude: from PATH, or where other programs have put it."""
     on_path = shutil.which("avrdude")
     if on_path:
@@ -69,14 +69,14 @@ def found() -> list[str] | None:
             pass
         else:
             return [str(get_avrdude_path())]
-    for program in _elsewhere(Path.home()):
+    for program in _bundled_avrdudes(Path.home()):
         for settings in (program.parent.parent / "etc", program.parent):
             if (settings / "avrdude.conf").is_file():
                 return [str(program), "-C", str(settings / "avrdude.conf")]
     return None
 
 
-def _elsewhere(home: Path) -> list[Path]:
+def _bundled_avrdudes(home: Path) -> list[Path]:
     """Return the avrdudes of the Arduino IDE and of PlatformIO, the newest first."""
     name = "avrdude.exe" if sys.platform == "win32" else "avrdude"
     folders = [home / ".arduino15", home / "Library" / "Arduino15"]
@@ -95,7 +95,7 @@ def write(
     to: Bootloader,
     port: str,
     firmware: Path,
-    look: Callable[[Seen | None], None],
+    look: Callable[[StepProgress | None], None],
 ) -> Ended:
     """Write a firmware, read it back, and compare. `look` is called periodically."""
     words = [*command, "-c", to.programmer, "-p", to.part, "-P", port, "-b", str(to.baud), "-D"]
@@ -122,7 +122,7 @@ class _Over(Exception):
 class _Watch:
     """Looks at its whole output again and again. Raises _Over."""
 
-    def __init__(self, look: Callable[[Seen | None], None]) -> None:
+    def __init__(self, look: Callable[[StepProgress | None], None]) -> None:
         self._look = look
         self._said = ""
         self._began_s = self._heard_s = monotonic()
@@ -146,7 +146,7 @@ def _attempt(said: str) -> int:
     return max(map(int, _ATTEMPT.findall(said)), default=0)
 
 
-def seen(said: str) -> Seen | None:
+def seen(said: str) -> StepProgress | None:
     """Return the progress, from its whole output."""
     bars = _BAR.findall(said)
     names = [name for name, _ in bars]
@@ -154,7 +154,7 @@ def seen(said: str) -> Seen | None:
         return None  # the bar before that is for the signature
     name, marks = bars[-1]
     phase = READING if name == "Reading" else WRITING
-    return Seen(phase, min(100, 100 * len(marks) // MARKS))
+    return StepProgress(phase, min(100, 100 * len(marks) // MARKS))
 
 
 def outcome(code: int, said: str) -> Ended:

@@ -61,7 +61,7 @@ _PERCENT = re.compile(r"(\d+)%")
 _TOO_LARGE = re.compile(r"size \((\d+) bytes\) is greater than maximum allowed \((\d+) bytes")
 
 
-class Seen(NamedTuple):
+class StepProgress(NamedTuple):
     """The current step, its progress in percent, and the name of what it downloads."""
 
     phase: str
@@ -117,9 +117,9 @@ def platformio() -> list[str] | None:
         return [sys.executable, "-m", "platformio"]
     home = Path.home() / ".platformio" / "penv"
     for name in ("pio", "platformio", str(home / "bin" / "pio"), str(home / "Scripts" / "pio.exe")):
-        found = shutil.which(name)
-        if found:
-            return [found]
+        result = shutil.which(name)
+        if result:
+            return [result]
     return None
 
 
@@ -158,7 +158,7 @@ class _Project:
     def made(self) -> Path:
         return self.folder / ".pio" / "build" / self.environment / "firmware.hex"
 
-    def run(self, look: Callable[[Seen], None], *words: str) -> tuple[int, str]:
+    def run(self, look: Callable[[StepProgress], None], *words: str) -> tuple[int, str]:
         """Run PlatformIO; return its exit code, and what it has said.
 
         It runs in the folder: Python finds modules where it begins, and not in a pupil's.
@@ -171,7 +171,7 @@ class _Project:
         command = [*self.command, self.environment, *words]
         return children.run(command, self.folder, look_at, _environment())
 
-    def build(self, look: Callable[[Seen], None], is_hex: bool) -> None:
+    def build(self, look: Callable[[StepProgress], None], is_hex: bool) -> None:
         code, log = self.run(look)
         if too_large := _TOO_LARGE.search(log):
             raise CannotBuild(CannotBuild.TOO_LARGE, "{} > {}".format(*too_large.groups()), log)
@@ -181,7 +181,7 @@ class _Project:
             raise CannotBuild(why, children.reason(log) or f"exit code {code}", log)
 
 
-def build(made_from: Sources, robot: Robot, look: Callable[[Seen], None]) -> bytes:
+def build(made_from: Sources, robot: Robot, look: Callable[[StepProgress], None]) -> bytes:
     """Return the firmware of a robot for its board, an Intel HEX file. `look` is called often.
 
     Raises CannotBuild, and OSError where there is no room to build.
@@ -194,13 +194,13 @@ def build(made_from: Sources, robot: Robot, look: Callable[[Seen], None]) -> byt
             if why.why != CannotBuild.TOO_LARGE or project.environment not in SMALLER:
                 raise
             project.environment, less = SMALLER[project.environment]
-            look(Seen(less, 0))
+            look(StepProgress(less, 0))
             project.build(look, is_hex=True)
         return project.made.read_bytes()
 
 
 def upload(
-    made_from: Sources, robot: Robot, port: str | None, look: Callable[[Seen], None]
+    made_from: Sources, robot: Robot, port: str | None, look: Callable[[StepProgress], None]
 ) -> None:
     """Build the firmware of a robot with an ESP32, and write it to the board on a port, if any.
 
@@ -228,16 +228,17 @@ def _environment() -> dict[str, str]:
     return {**own, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
 
 
-def seen(said: str, files: int) -> Seen | None:
+def seen(said: str, files: int) -> StepProgress | None:
     """Return the progress, from its whole output; `files` is the total number of files."""
-    written = _WRITING.findall(said)
-    if written:
-        return Seen(WRITING, min(100, int(written[-1])))
+    text = _WRITING.findall(said)
+    if text:
+        return StepProgress(WRITING, min(100, int(text[-1])))
     compiled = len(_COMPILING.findall(said))
     if compiled:
-        return Seen(COMPILING, min(99, 100 * compiled // files))
+        return StepProgress(COMPILING, min(99, 100 * compiled // files))
     installing = list(_INSTALLING.finditer(said))
     if installing:
         percents = _PERCENT.findall(said, installing[-1].end())
-        return Seen(FETCHING, min(100, int(percents[-1])) if percents else 0, installing[-1][1])
+        percent = min(100, int(percents[-1])) if percents else 0
+        return StepProgress(FETCHING, percent, installing[-1][1])
     return None

@@ -58,23 +58,23 @@ def name_of(title: str, board: str, digest: str) -> str:
 
 def files(folder: Path = FOLDER) -> list[Ready]:
     """Return the files of a folder, by title and board. An incomplete file is left out."""
-    found = []
+    result = []
     for path in sorted(folder.glob("*-*-*.hex")):
         if is_whole(path):
             title, board, digest = path.stem.rsplit("-", 2)
-            found.append(Ready(title, board, digest, path))
-    return found
+            result.append(Ready(title, board, digest, path))
+    return result
 
 
 def images(folder: Path = FOLDER) -> list[Ready]:
     """Return what ESP32s get: whole firmware from address 0 on, as `esptool merge_bin` makes it."""
-    found = []
+    result = []
     for path in sorted(folder.glob("*-*-*.bin")):
         title, board, digest = path.stem.rsplit("-", 2)
         head = IMAGES.get(board, 0)
         if board in IMAGES and path.read_bytes()[head : head + 1] == MAGIC:
-            found.append(Ready(title, board, digest, path))
-    return found
+            result.append(Ready(title, board, digest, path))
+    return result
 
 
 def find(title: str, board: str, digest: str) -> Ready | None:

@@ -97,7 +97,7 @@ def page(folder: Path, who: str, language: str) -> str:
 
 def whole_page(folder: Path, who: str, language: str) -> str:
     """Return a page of a lesson with its numbers and its marks. Raises LessonRefused."""
-    paths = [folder / f"{who}.{each}.md" for each in (language, SOURCE)]
+    paths = [folder / f"{who}.{item}.md" for item in (language, SOURCE)]
     path = next((path for path in paths if path.is_file()), None)
     if path is None:
         raise LessonRefused(("no_page", {"file": shown(paths[0].name)}))

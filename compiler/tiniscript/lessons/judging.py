@@ -50,7 +50,7 @@ def judged(run: Run, lesson: Lesson) -> list[Finding]:
     if run.ending == BUSY and (stood_ms < STOOD_MS or _is_still(run)):
         return busy
     findings: list[Finding] = []
-    if run.ending == LIMIT and kinds & AT_END and "ends" not in kinds and not _rests(run):
+    if run.ending == LIMIT and kinds & AT_END and "ends" not in kinds and not _ends_at_rest(run):
         findings.append(Finding("", "long", {"seconds": in_seconds(run.end_ms)}))
     task = Task(run, is_mirrored(lesson, run.seed))
     for criterion in lesson.criteria:
@@ -102,7 +102,7 @@ def _had_power(run: Run) -> bool:
     return any(any(powers) for _, *powers in run.motors)
 
 
-def _rests(run: Run) -> bool:
+def _ends_at_rest(run: Run) -> bool:
     """Whether its motors were off at the end, and had been for RESTED_MS."""
     driven = [k for k, (_, *powers) in enumerate(run.motors) if any(powers)]
     off = run.motors[driven[-1] + 1 :] if driven else ()
@@ -126,7 +126,7 @@ def _never_touches(criterion: Criterion, task: Task) -> Finding | None:
     return Finding("never_touches", f"touches/{first.what}", seconds, ms=first.ms)
 
 
-def _follows(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
     run, within_cm = task.run, criterion.numbers["within_cm"]
     eyes = [place for place in run.robot.profile.body.places.values() if place.sees == "line"]
     ahead_cm = sum(eye.x_cm for eye in eyes) / len(eyes) if eyes else 0.0
@@ -158,11 +158,11 @@ def _follows(criterion: Criterion, task: Task) -> Finding | None:
     if followed_cm >= least_cm:
         return None
     values["seconds"] = in_seconds(run.end_ms)
-    goes_on = run.ending == LIMIT and not _rests(run)
+    goes_on = run.ending == LIMIT and not _ends_at_rest(run)
     return Finding("follows", f"follows/{'slow' if goes_on else 'short'}", values)
 
 
-def _drives(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_distance(criterion: Criterion, task: Task) -> Finding | None:
     low, high = criterion.numbers["at_least_cm"], criterion.numbers["at_most_cm"]
     driven_cm = task.run.driven_cm
     if low <= driven_cm <= high:
@@ -176,24 +176,24 @@ def _drives(criterion: Criterion, task: Task) -> Finding | None:
 # -- times ----------------------------------------------------------------------------------------
 
 
-def _stands(run: Run) -> list[tuple[int, int]]:
+def _standstills(run: Run) -> list[tuple[int, int]]:
     """Return when the robot stood between two moves: from and to."""
-    found: list[tuple[int, int]] = []
+    result: list[tuple[int, int]] = []
     stopped_ms: int | None = None
     for ms, left, right in run.motors:
         if left or right:
             if stopped_ms is not None and ms > stopped_ms:
-                found.append((stopped_ms, ms))
+                result.append((stopped_ms, ms))
             stopped_ms = None
         elif stopped_ms is None:
             stopped_ms = ms
-    return found
+    return result
 
 
 def _pauses(criterion: Criterion, task: Task) -> Finding | None:
     least_s, times = criterion.numbers["at_least_seconds"], int(criterion.numbers["times"])
-    stands = _stands(task.run)
-    long = [each for each in stands if each[1] - each[0] >= least_s * 1000 - 1]
+    stands = _standstills(task.run)
+    long = [item for item in stands if item[1] - item[0] >= least_s * 1000 - 1]
     if len(long) >= times:
         return _paused_at(criterion, task, long)
     values = {"least": f"{least_s:g}", "times": str(times), "found": str(len(long))}
@@ -210,12 +210,12 @@ def _paused_at(criterion: Criterion, task: Task, long: list[tuple[int, int]]) ->
     track = task.run.track
     poses = [next((pose for ms, pose in track if ms >= end), track[-1].pose) for _, end in long]
     seconds = [in_seconds(end_ms - begin_ms) for begin_ms, end_ms in long]
-    return _nowhere(
+    return _first_missed_place(
         criterion, task, poses, {"least": f"{criterion.numbers['at_least_seconds']:g}"}, seconds
     )
 
 
-def _nowhere(
+def _first_missed_place(
     criterion: Criterion,
     task: Task,
     poses: list[Pose],
@@ -249,34 +249,34 @@ def _order(criterion: Criterion, task: Task) -> Finding | None:
     return None
 
 
-def _ends(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_end(criterion: Criterion, task: Task) -> Finding | None:
     over = {"seconds": in_seconds(task.run.end_ms)}
     return None if task.run.ending == DONE else Finding("ends", "ends", over)
 
 
-def _obeys(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_keys(criterion: Criterion, task: Task) -> Finding | None:
     """Compare what the robot does with each key that is held, and with none, in their order."""
     rested_ms = 0.0
     for press in task.run.presses:
         at_ms, end_ms = press.at_seconds * 1000, press.end_seconds * 1000 + LATE_MS
-        if not _stood(task.run, rested_ms, at_ms):
-            return _unrest(rested_ms, at_ms)
+        if not _stood_still(task.run, rested_ms, at_ms):
+            return _motion_finding(rested_ms, at_ms)
         rested_ms = end_ms
-        what, is_done = _obeyed(press.key, task.run, at_ms, end_ms)
+        what, is_done = _key_effect(press.key, task.run, at_ms, end_ms)
         if not is_done:
             values = {"seconds": in_seconds(at_ms), "word": press.key}
             return Finding("obeys", f"obeys/{what}", values, ms=round(end_ms))
-    is_still = _stood(task.run, rested_ms, task.run.end_ms)
-    return None if is_still else _unrest(rested_ms, task.run.end_ms)
+    is_still = _stood_still(task.run, rested_ms, task.run.end_ms)
+    return None if is_still else _motion_finding(rested_ms, task.run.end_ms)
 
 
-def _unrest(from_ms: float, to_ms: float) -> Finding:
+def _motion_finding(from_ms: float, to_ms: float) -> Finding:
     return Finding("obeys", "obeys/rest", {"seconds": in_seconds(from_ms)}, ms=round(to_ms))
 
 
-def _obeyed(key: str, run: Run, from_ms: float, to_ms: float) -> tuple[str, bool]:
+def _key_effect(key: str, run: Run, from_ms: float, to_ms: float) -> tuple[str, bool]:
     """Return what a key is for, and whether the robot did it."""
-    ahead_cm, degrees = _moved(run, from_ms, to_ms)
+    ahead_cm, degrees = _displacement(run, from_ms, to_ms)
     found = {
         "KEY_UP": ("forward", ahead_cm > OBEYED_CM),
         "KEY_DOWN": ("back", ahead_cm < -OBEYED_CM),
@@ -286,12 +286,12 @@ def _obeyed(key: str, run: Run, from_ms: float, to_ms: float) -> tuple[str, bool
     return found.get(key) or ("beep", any(from_ms <= beep.ms <= to_ms for beep in run.beeps))
 
 
-def _stood(run: Run, from_ms: float, to_ms: float) -> bool:
-    ahead_cm, degrees = _moved(run, from_ms, to_ms)
+def _stood_still(run: Run, from_ms: float, to_ms: float) -> bool:
+    ahead_cm, degrees = _displacement(run, from_ms, to_ms)
     return abs(ahead_cm) < STILL_CM and abs(degrees) < STILL_DEGREES
 
 
-def _moved(run: Run, from_ms: float, to_ms: float) -> tuple[float, float]:
+def _displacement(run: Run, from_ms: float, to_ms: float) -> tuple[float, float]:
     """Return how far a robot went ahead in a time, and how far it turned to the left."""
     ahead_cm = degrees = 0.0
     for before, after in pairwise(run.track):
@@ -308,7 +308,7 @@ def _moved(run: Run, from_ms: float, to_ms: float) -> tuple[float, float]:
 # -- what it says ---------------------------------------------------------------------------------
 
 
-def _shows(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
     run, times = task.run, int(criterion.numbers["times"])
     what = criterion.words[0] if criterion.words else ""
     wanted, slack = criterion.numbers["value"], criterion.numbers["tolerance"] * ONE
@@ -316,9 +316,9 @@ def _shows(criterion: Criterion, task: Task) -> Finding | None:
     if not run.shown:
         return Finding("shows", "shows/nothing", values)
     right = 0
-    for each in run.shown:
-        should = _should_show(each, what, wanted, run)
-        right += should is None or abs(each.value - should) <= slack
+    for item in run.shown:
+        should = _should_show(item, what, wanted, run)
+        right += should is None or abs(item.value - should) <= slack
     if right >= times:
         return None
     last = run.shown[-1]
@@ -363,13 +363,13 @@ def _beeps(criterion: Criterion, task: Task) -> Finding | None:
     if different < pitches:
         return Finding("beeps", "beeps/pitches", values)
     seconds = [in_seconds(beep.ms) for beep in beeps]
-    return _nowhere(criterion, task, [beep.pose for beep in beeps], values, seconds)
+    return _first_missed_place(criterion, task, [beep.pose for beep in beeps], values, seconds)
 
 
 def _blinks(criterion: Criterion, task: Task) -> Finding | None:
     run, (what,), times = task.run, criterion.words, int(criterion.numbers["times"])
     names = [device.name for device in run.robot.profile.kit.actuators]
-    switches = [each for each in run.switched if names[each.actuator] == what]
+    switches = [item for item in run.switched if names[item.actuator] == what]
     moving = sum(switch.is_moving for switch in switches)
     values = {"what": what, "times": str(times), "found": str(moving)}
     if moving >= times:
@@ -380,13 +380,13 @@ def _blinks(criterion: Criterion, task: Task) -> Finding | None:
 JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
     **place_judging.JUDGES,
     "never_touches": _never_touches,
-    "follows": _follows,
-    "drives": _drives,
+    "follows": _judge_line,
+    "drives": _judge_distance,
     "pauses": _pauses,
-    "shows": _shows,
+    "shows": _judge_shown,
     "beeps": _beeps,
     "blinks": _blinks,
-    "obeys": _obeys,
+    "obeys": _judge_keys,
     "order": _order,
-    "ends": _ends,
+    "ends": _judge_end,
 }

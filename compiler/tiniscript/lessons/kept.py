@@ -155,18 +155,18 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
         return None
     if ending == DONE:
         questions = [each for each in questions if not each.is_ever or each.word == "IF"]
-        questions = [_from_start(each) for each in questions]
+        questions = [_at_start(each) for each in questions]
     # A WHILE with moves that the robot was in when its time was over has let it in.
     questions.sort(key=lambda each: (ending != DONE and not each.is_ever and each.word == "WHILE",
                                  each.start))  # fmt: skip
     return questions[0] if questions else None
 
 
-def _from_start(asked: Question) -> Question:
+def _at_start(question: Question) -> Question:
     """Return a question that was to give something, with what it gave."""
-    if not asked.is_ever:
-        return asked
-    return asked._replace(is_ever=False, truth="FALSE" if asked.truth == "TRUE" else "TRUE")
+    if not question.is_ever:
+        return question
+    return question._replace(is_ever=False, truth="FALSE" if question.truth == "TRUE" else "TRUE")
 
 
 def _words(tokens: Sequence[Token], at: int) -> list[str]:

@@ -66,12 +66,12 @@ def plan(lesson: Lesson, title: str) -> str:
 
 def _grid(width: float, height: float) -> str:
     """Return lines every 20 cm, so that a pupil can measure."""
-    found = []
+    matches = []
     for x in range(GRID_CM, math.ceil(width), GRID_CM):
-        found.append(f"M{x} 0V{height:g}")
+        matches.append(f"M{x} 0V{height:g}")
     for y in range(GRID_CM, math.ceil(height), GRID_CM):
-        found.append(f"M0 {height - y:g}H{width:g}")
-    return f'<path d="{"".join(found)}" stroke="#ddd" stroke-width="0.6"/>'
+        matches.append(f"M0 {height - y:g}H{width:g}")
+    return f'<path d="{"".join(matches)}" stroke="#ddd" stroke-width="0.6"/>'
 
 
 def _goals(lesson: Lesson) -> list[str]:

@@ -36,14 +36,14 @@ class Block(NamedTuple):
 
 def blocks(text: str) -> list[Block]:
     """Return the blocks of a page."""
-    found: list[Block] = []
+    blocks: list[Block] = []
     lines = text.split("\n")
     k = 0
     while k < len(lines):
         line = lines[k]
         if line.startswith("```"):
             end = next((n for n in range(k + 1, len(lines)) if lines[n] == "```"), len(lines))
-            found.append(Block("program", tuple((line,) for line in lines[k + 1 : end])))
+            blocks.append(Block("program", tuple((line,) for line in lines[k + 1 : end])))
             k = end + 1
             continue
         start = k
@@ -52,12 +52,12 @@ def blocks(text: str) -> list[Block]:
             continue
         if line.startswith("#"):
             kind = "title" if line.startswith("# ") else "heading"
-            found.append(Block(kind, ((line.lstrip("# "),),)))
+            blocks.append(Block(kind, ((line.lstrip("# "),),)))
             continue
         while k < len(lines) and lines[k].strip() and not lines[k].startswith(("#", "```")):
             k += 1
-        found += _paragraph(lines[start:k])
-    return found
+        blocks += _paragraph(lines[start:k])
+    return blocks
 
 
 def _paragraph(lines: list[str]) -> list[Block]:
@@ -67,40 +67,40 @@ def _paragraph(lines: list[str]) -> list[Block]:
         rows = [tuple(cell.strip() for cell in row.split("|")) for row in inside]
         kept = tuple(row for row in rows if set("".join(row)) - set("-: "))
         return [Block("table", kept)] if kept else []
-    found: list[tuple[str, list[str]]] = []
+    matches: list[tuple[str, list[str]]] = []
     for line in lines:
         item = ITEM.match(line)
         kind = KINDS.get(item[1], "steps") if item else "paragraph"
-        if item is None and found:
-            found[-1][1][-1] += " " + line.strip()
-        elif found and found[-1][0] == kind:
-            found[-1][1].append(item[2] if item else line)
+        if item is None and matches:
+            matches[-1][1][-1] += " " + line.strip()
+        elif matches and matches[-1][0] == kind:
+            matches[-1][1].append(item[2] if item else line)
         else:
-            found.append((kind, [item[2] if item else line]))
+            matches.append((kind, [item[2] if item else line]))
     number = re.match(r"[0-9]+", lines[0])
-    first = int(number[0]) if number and found[0][0] == "steps" else 1
-    return [Block(kind, tuple((row,) for row in rows), first) for kind, rows in found]
+    first = int(number[0]) if number and matches[0][0] == "steps" else 1
+    return [Block(kind, tuple((row,) for row in rows), first) for kind, rows in matches]
 
 
 def printed(page: str) -> str:
     """Return what is printed of a page."""
-    return _of(page, {"print": ""})
+    return _section(page, {"print": ""})
 
 
 def beside_simulator(page: str) -> str:
     """Return what is read of a page in the studio; a hint is a paragraph that begins with HINT."""
-    return _of(page, {"page": "", "hint": HINT})
+    return _section(page, {"page": "", "hint": HINT})
 
 
-def _of(page: str, kept: dict[str, str]) -> str:
-    found = []
+def _section(page: str, kept: dict[str, str]) -> str:
+    matches = []
     for line in page.split("\n"):
         mark = MARK.match(line)
         if mark is None:
-            found.append(line)
+            matches.append(line)
         elif mark[2] in kept:
-            found.append((mark[1] or "") + kept[mark[2]] + line[mark.end() :])
-    return "\n".join(found)
+            matches.append((mark[1] or "") + kept[mark[2]] + line[mark.end() :])
+    return "\n".join(matches)
 
 
 def as_text(page: str) -> str:

@@ -89,13 +89,13 @@ class Marking:
         run = self._trial.go(most_ms)
         if run is None:
             return None
-        found = judged(run, self._lesson)
-        if found and self._without:
+        result = judged(run, self._lesson)
+        if result and self._without:
             return self._next(run)
-        findings = explained(found, self._text, self._lesson, run.ending)
+        findings = explained(result, self._text, self._lesson, run.ending)
         if findings:
-            said = {finding.key for finding in findings}
-            of_text = [finding for finding in self._of_text if finding.key not in said]
+            texts = {finding.key for finding in findings}
+            of_text = [finding for finding in self._of_text if finding.key not in texts]
             return Outcome(FAILED, self.seed, (*findings, *of_text), run)
         if len(self._seeds) > 1:
             del self._seeds[0]

@@ -33,7 +33,7 @@ def _is_outside(criterion: Criterion, task: Task, points: Iterable[Point]) -> bo
     return not all(left <= point.x - x <= right and low <= point.y - y <= high for point in points)
 
 
-def _ends_in(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_final_place(criterion: Criterion, task: Task) -> Finding | None:
     place, run = task.point(criterion), task.run
     within_cm = criterion.numbers["within_cm"]
     start, end = run.world.start, _end(run)
@@ -56,22 +56,22 @@ def _ends_in(criterion: Criterion, task: Task) -> Finding | None:
             key = "short" if along_cm < way_cm else "far"
         if key in ("short", "away") and min(gaps_cm) <= within_cm:
             key = "left"
-    elif away_cm > max(gaps_cm) - BACK_CM and not _was_back(gaps_cm, within_cm):
+    elif away_cm > max(gaps_cm) - BACK_CM and not _came_back(gaps_cm, within_cm):
         key = "gone"
     return Finding("ends_in", f"ends_in/{key}", {"cm": in_cm(away_cm)}, criterion.labels)
 
 
-def _was_back(gaps_cm: list[float], within_cm: float) -> bool:
+def _came_back(gaps_cm: list[float], within_cm: float) -> bool:
     """Whether it had left a place, and came by there again."""
     left = next((k for k, gap in enumerate(gaps_cm) if gap > within_cm), len(gaps_cm))
     return any(gap <= within_cm for gap in gaps_cm[left:])
 
 
-def _reaches(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_places(criterion: Criterion, task: Task) -> Finding | None:
     order = range(len(criterion.places))
-    reached, finding = _reached(criterion, task, order)
+    reached, finding = _count_reached(criterion, task, order)
     if finding is not None and criterion.numbers["either_way"]:
-        backwards, other = _reached(criterion, task, order[::-1])
+        backwards, other = _count_reached(criterion, task, order[::-1])
         finding = other if backwards > reached else finding
     return finding
 
@@ -88,7 +88,9 @@ def _gap(criterion: Criterion, task: Task, number: int, at: On) -> float:
     return min(distance(segment, x, y) for segment in shape)
 
 
-def _reached(criterion: Criterion, task: Task, order: Sequence[int]) -> tuple[int, Finding | None]:
+def _count_reached(
+    criterion: Criterion, task: Task, order: Sequence[int]
+) -> tuple[int, Finding | None]:
     """Return how many of its places the robot has reached in this order, and what is missing."""
     within_cm = criterion.numbers["within_cm"]
     way = between(task.run.track)
@@ -109,9 +111,9 @@ def _reached(criterion: Criterion, task: Task, order: Sequence[int]) -> tuple[in
             values |= {"within": f"{within_cm:g}", "seconds": in_seconds(task.run.end_ms)}
             if nearest is not None:
                 values["cm"] = in_cm(nearest_cm, within_cm)
-            key = _missed(criterion, task, way, since, place, nearest)
+            key = _missed_sentence(criterion, task, way, since, place, nearest)
             if count and key in ("several", "time"):
-                past_cm = _past(criterion, task, order[count - 1], since, way)
+                past_cm = _overshoot_cm(criterion, task, order[count - 1], since, way)
                 if past_cm > within_cm:
                     key = "past"
                     values |= {"number": str(order[count - 1] + 1), "cm": in_cm(past_cm)}
@@ -119,7 +121,7 @@ def _reached(criterion: Criterion, task: Task, order: Sequence[int]) -> tuple[in
     return len(order), _too_long(criterion, at)
 
 
-def _past(criterion: Criterion, task: Task, number: int, since: On, way: list[On]) -> float:
+def _overshoot_cm(criterion: Criterion, task: Task, number: int, since: On, way: list[On]) -> float:
     """Return how far from a place that it had reached the robot stood for the first time."""
     for before, at in pairwise(way[way.index(since) :]):
         if at.way_cm == before.way_cm:
@@ -138,7 +140,7 @@ def _too_long(criterion: Criterion, at: On) -> Finding | None:
     return None
 
 
-def _missed(
+def _missed_sentence(
     criterion: Criterion, task: Task, way: list[On], since: On, place: Point, nearest: On | None
 ) -> str:
     """Return the sentence for a place that the robot has missed.
@@ -154,7 +156,7 @@ def _missed(
             return "ended"
         was_coming = nearest is None or run.track[-1].ms - nearest.ms <= STEP_MS
         return "time" if run.ending == LIMIT and was_coming else "several"
-    if run.ending == DONE and _is_on_its_way(way, place):
+    if run.ending == DONE and _is_approaching(way, place):
         return "over"
     if nearest is None:
         return "one"
@@ -167,7 +169,7 @@ def _missed(
     return "short" if is_straight and 0 < dx * ux + dy * uy < way_cm else "one"
 
 
-def _is_on_its_way(way: list[On], place: Point) -> bool:
+def _is_approaching(way: list[On], place: Point) -> bool:
     """Whether the last STRETCH_CM led to a place, and never before it was nearer."""
     gaps_cm = [math.dist(place, (at.x_cm, at.y_cm)) for at in way]
     began = next(k for k, at in enumerate(way) if at.way_cm >= way[-1].way_cm - STRETCH_CM)
@@ -175,7 +177,7 @@ def _is_on_its_way(way: list[On], place: Point) -> bool:
     return gained_cm > STRETCH_CM * TOWARDS and gaps_cm[-1] < min(gaps_cm) + STILL_CM
 
 
-def _stays_in(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_area(criterion: Criterion, task: Task) -> Finding | None:
     place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
     for ms, pose in task.run.track:
         is_out = math.dist(place, pose[:2]) > within_cm
@@ -197,7 +199,7 @@ def _wheels(run: Run, pose: Pose) -> list[Point]:
     ]
 
 
-def _stands_before(criterion: Criterion, task: Task) -> Finding | None:
+def _judge_distance_to_obstacle(criterion: Criterion, task: Task) -> Finding | None:
     """Compare with the nearest thing that an echo from the middle of its front would tell."""
     run, pose = task.run, _end(task.run)
     hull = run.robot.driving.hull
@@ -223,10 +225,10 @@ def _stands_before(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _faces(criterion: Criterion, task: Task) -> Finding | None:
-    wanted = criterion.numbers["heading"]
+    expected = criterion.numbers["heading"]
     if task.mirrored:
-        wanted = -wanted
-    off = (_end(task.run).heading - wanted + 180) % 360 - 180
+        expected = -expected
+    off = (_end(task.run).heading - expected + 180) % 360 - 180
     if abs(off) <= criterion.numbers["within_degrees"]:
         return None
     key = "left" if off > 0 else "right"  # it looks too far to the left
@@ -236,9 +238,9 @@ def _faces(criterion: Criterion, task: Task) -> Finding | None:
 
 
 JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
-    "ends_in": _ends_in,
-    "reaches": _reaches,
-    "stays_in": _stays_in,
-    "stands_before": _stands_before,
+    "ends_in": _judge_final_place,
+    "reaches": _judge_places,
+    "stays_in": _judge_area,
+    "stands_before": _judge_distance_to_obstacle,
     "faces": _faces,
 }

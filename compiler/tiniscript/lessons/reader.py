@@ -61,7 +61,7 @@ def read(text: str, world: World, name: str) -> Lesson:
         titles = _labels(title)
         title.finish()
         robot = root.choice("robot", robots.names())
-        known = _known(robots.load(robot or robots.names()[0]))
+        known = _known_words(robots.load(robot or robots.names()[0]))
         lesson = Lesson(
             shown(name),
             robot,
@@ -102,18 +102,18 @@ def _answer(table: Table, is_wrong: bool) -> Answer:
     if len(program) > PROGRAM_CHARACTERS:
         table.complain("label_bad", "program", most=str(PROGRAM_CHARACTERS))
     labels = _labels(table)
-    said = _said(table.table("says", 'says = { key = "still" }')) if is_wrong else {}
+    text = _sentences(table.table("says", 'says = { key = "still" }')) if is_wrong else {}
     table.finish()
-    return Answer(program, labels, said)
+    return Answer(program, labels, text)
 
 
-def _said(says: Table) -> dict[str, str]:
+def _sentences(says: Table) -> dict[str, str]:
     """Return in each language the sentence of a finding: its key, its values, and its place.
 
     That one is `place`, or a text in each language.
     """
     key = says.text("key", 'key = "still"') or "still"
-    texts = (text_of("lessons", f"said/{each}", SOURCE) for each in (key, key.partition("/")[0]))
+    texts = (text_of("lessons", f"said/{item}", SOURCE) for item in (key, key.partition("/")[0]))
     gaps = GAP.findall(next(filter(None, texts), ""))
     names = dict.fromkeys([*gaps, "place", *languages(), *OF_SENTENCES])
     values = {name: says.text(name) or "" for name in names if says.has(name)}
@@ -143,7 +143,7 @@ def _variation(table: Table, world: World) -> Variation:
     text = table.text("part", 'part = "walls[1]"')
     place = Place("start", 0) if text is None else _part(table, "part", text, world)
     spans = [
-        _span(table, *each) for each in (("x_cm", MOST_CM), ("y_cm", MOST_CM), ("heading", 360))
+        _span(table, *item) for item in (("x_cm", MOST_CM), ("y_cm", MOST_CM), ("heading", 360))
     ]
     if place.part == "lamps" and table.has("heading"):
         table.complain("lamp_has_no_heading", "heading")
@@ -176,7 +176,7 @@ def _span(table: Table, key: str, most: int) -> tuple[float, float]:
     return low / ONE, high / ONE
 
 
-def _known(robot: Robot) -> dict[str, tuple[str, ...]]:
+def _known_words(robot: Robot) -> dict[str, tuple[str, ...]]:
     """Return what a criterion may name, by `Kind.words`."""
     sensors = tuple(device.name for device in robot.kit.sensors)
     return {
@@ -195,9 +195,13 @@ def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]])
     kind = KINDS.get(name or "")
     if name is None or kind is None:
         if name is not None:
-            near = nearest(name, list(KINDS)) or ""
+            suggestion = nearest(name, list(KINDS)) or ""
             table.complain(
-                "unknown_criterion", "kind", found=shown(name), near=near, known=", ".join(KINDS)
+                "unknown_criterion",
+                "kind",
+                found=shown(name),
+                near=suggestion,
+                known=", ".join(KINDS),
             )
         return Criterion("", {}, (), (), NO_LABELS)
     has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
@@ -218,41 +222,41 @@ def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]])
     words: tuple[str, ...] = ()
     if kind.words in WHATS:
         if kind.words == "switch" or table.has("what"):
-            words = _what(table, known[kind.words])
+            words = _asked_device(table, known[kind.words])
     elif kind.words:
         words = _words(table, known[kind.words])
     table.finish()
     return Criterion(name, numbers, words, places, labels, area)
 
 
-def _number(table: Table, what: Number) -> float:
-    if what.default is not None and not table.has(what.key):
-        return what.default
-    low, high = round(what.low * ONE), round(what.high * ONE)
-    return table.number(what.key, low, high, f"{what.key} = {what.low:g}") / ONE
+def _number(table: Table, number: Number) -> float:
+    if number.default is not None and not table.has(number.key):
+        return number.default
+    low, high = round(number.low * ONE), round(number.high * ONE)
+    return table.number(number.key, low, high, f"{number.key} = {number.low:g}") / ONE
 
 
-def _what(table: Table, names: tuple[str, ...]) -> tuple[str, ...]:
+def _asked_device(table: Table, names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the device that a criterion asks for."""
-    found = table.text("what", 'what = "LED"')
-    if found is None or found in names:
-        return () if found is None else (found,)
-    table.complain("not_one_of", "what", found=shown(found), choices=", ".join(names) or "-")
+    result = table.text("what", 'what = "LED"')
+    if result is None or result in names:
+        return () if result is None else (result,)
+    table.complain("not_one_of", "what", found=shown(result), choices=", ".join(names) or "-")
     return ()
 
 
 def _words(table: Table, known: tuple[str, ...]) -> tuple[str, ...]:
-    found = table.get("words", f'words = ["{known[0]}"]')
-    if found is None:
+    result = table.get("words", f'words = ["{known[0]}"]')
+    if result is None:
         return ()
-    if not isinstance(found, list) or not all(type(each) is str for each in found) or not found:
+    if not isinstance(result, list) or not all(type(item) is str for item in result) or not result:
         table.complain("words_form", "words", example=f'["{known[0]}"]')
         return ()
-    for each in found:
-        if each not in known:
-            near = nearest(each, known) or ""
-            table.complain("unknown_word", "words", found=shown(each), near=near)
-    return tuple(found)
+    for item in result:
+        if item not in known:
+            suggestion = nearest(item, known) or ""
+            table.complain("unknown_word", "words", found=shown(item), near=suggestion)
+    return tuple(result)
 
 
 def _places(table: Table, world: World, least: int) -> tuple[Place, ...]:
@@ -263,11 +267,11 @@ def _places(table: Table, world: World, least: int) -> tuple[Place, ...]:
     is_point = isinstance(value, list) and len(value) == 2 and not isinstance(value[0], list | str)
     several = value if isinstance(value, list) and not is_point else [value]
     places = []
-    for each in several:
-        if isinstance(each, str):
-            places.append(_part(table, "at", each, world))
-        elif isinstance(each, list) and len(each) == 2:
-            pairs = Table({"at": [each]}, table.path, table.reasons)
+    for item in several:
+        if isinstance(item, str):
+            places.append(_part(table, "at", item, world))
+        elif isinstance(item, list) and len(item) == 2:
+            pairs = Table({"at": [item]}, table.path, table.reasons)
             points = pairs.pairs("at", -MOST_CM * ONE, MOST_CM * ONE, "")
             for x_cm, y_cm in points or ():
                 places.append(Place("", 0, x_cm / ONE, y_cm / ONE))

@@ -100,9 +100,9 @@ def run(image: Image, profile: Robot, lesson: Lesson, seed: int) -> Run:
 
     Raises WorldRefused where the robot does not fit into that world.
     """
-    found = Trial(image, profile, lesson, seed).go()
-    assert found is not None, "it goes on to the end"
-    return found
+    run = Trial(image, profile, lesson, seed).go()
+    assert run is not None, "it goes on to the end"
+    return run
 
 
 class Trial:
@@ -118,14 +118,14 @@ class Trial:
         self._asks = image.start == "PING"
         if self._asks:
             return
-        self._computer = _bring(robot, image)
+        self._computer = _upload(robot, image)
         self._witness.look()
         end_ms = robot.now_ms + BRINGING_MS
-        while self._witness.began_ms is None and robot.now_ms < end_ms:
+        while self._witness.started_ms is None and robot.now_ms < end_ms:
             robot.step(robot.now_ms + 1)
             self._witness.look()
-        assert self._witness.began_ms is not None, "the program does not begin"
-        self._limit_ms = self._witness.began_ms + round(lesson.seconds * 1000)
+        assert self._witness.started_ms is not None, "the program does not begin"
+        self._limit_ms = self._witness.started_ms + round(lesson.seconds * 1000)
 
     def go(self, most_ms: int | None = None) -> Run | None:
         """Let the robot's time go on, at most by `most_ms`; return what it did, once it is over."""
@@ -152,8 +152,8 @@ class Trial:
         if not self._presses:
             robot.step(until_ms)
             return
-        assert self._witness.began_ms is not None
-        seconds = (robot.now_ms - self._witness.began_ms) / 1000
+        assert self._witness.started_ms is not None
+        seconds = (robot.now_ms - self._witness.started_ms) / 1000
         keys = (
             press.key for press in self._presses if press.at_seconds <= seconds < press.end_seconds
         )
@@ -162,7 +162,7 @@ class Trial:
         self._computer.wait(until_ms - robot.now_ms)
 
 
-def _bring(robot: VirtualRobot, image: Image) -> Computer:
+def _upload(robot: VirtualRobot, image: Image) -> Computer:
     """Bring a program to the robot and start it, by its button where it begins with SB."""
     computer = Computer(robot, robot.settings.seed)
     session = computer.session
@@ -185,7 +185,7 @@ class _Witness:
         self.robot = robot
         self.seed = seed
         self._presses = presses
-        self.began_ms: int | None = None
+        self.started_ms: int | None = None
         self.events = 0
         self._bumps = 0
         self._track: list[Sample] = []
@@ -204,21 +204,21 @@ class _Witness:
         pose = robot.pose
         for event in robot.take_events():
             self.events += 1
-            if event.what == "START" and self.began_ms is None:
-                self.began_ms = event.time_ms
+            if event.what == "START" and self.started_ms is None:
+                self.started_ms = event.time_ms
                 self._track.append(Sample(0, robot.world.start))
-            elif self.began_ms is not None:
-                self._take(event, event.time_ms - self.began_ms, pose)
-        if self.began_ms is None:
+            elif self.started_ms is not None:
+                self._record_event(event, event.time_ms - self.started_ms, pose)
+        if self.started_ms is None:
             return
-        ms = robot.now_ms - self.began_ms
+        ms = robot.now_ms - self.started_ms
         if pose != self._track[-1].pose:
             self._track.append(Sample(ms, pose))
         if robot.driving.bumps != self._bumps:
             self._bumps = robot.driving.bumps
-            self._touches.append(Touch(ms, self._touched(pose)))
+            self._touches.append(Touch(ms, self._nearest_obstacle(pose)))
 
-    def _take(self, event: Event, ms: int, pose: Pose) -> None:
+    def _record_event(self, event: Event, ms: int, pose: Pose) -> None:
         if event.what == "MOTORS":
             before = self._motors[-1][1:] if self._motors else (0, 0)
             self._motors.append((ms, event.values[0], event.values[1]))
@@ -249,7 +249,7 @@ class _Witness:
             at_once += 1
         self._happened.insert(len(self._happened) - at_once, "stops")
 
-    def _touched(self, pose: Pose) -> str:
+    def _nearest_obstacle(self, pose: Pose) -> str:
         """Return what the robot is nearest to."""
         world, hull = self.robot.world, self.robot.driving.hull
         kinds = {
@@ -267,9 +267,9 @@ class _Witness:
     def run(self, ending: str) -> Run:
         robot = self.robot
         end_ms = 0
-        if self.began_ms is not None:
+        if self.started_ms is not None:
             ended_ms = robot.now_ms if robot.ended_ms is None else robot.ended_ms
-            end_ms = ended_ms - self.began_ms
+            end_ms = ended_ms - self.started_ms
         if self._is_moving:
             self._stops(end_ms)
         return Run(

@@ -39,11 +39,11 @@ def sentence(finding: Finding, language: str) -> str:
         "before": _event(finding, 1, language),
         "then": _event(finding, 2, language),
     }
-    said = text("lessons", f"said/{key}", language).format(**values)
+    result = text("lessons", f"said/{key}", language).format(**values)
     for pair in text("lessons", "contractions", language).split(", "):
         two, _, one = pair.partition("=")
-        said = said.replace(f" {two} ", f" {one} ")
-    return said
+        result = result.replace(f" {two} ", f" {one} ")
+    return result
 
 
 def _event(finding: Finding, number: int, language: str) -> str:

@@ -47,24 +47,24 @@ ul.checks li::before { content: "\\2610"; display: inline-block; width: 1.33em; 
 BLANKS = ("names", "robot", "date")
 
 
-def _said(language: str, key: str) -> str:
+def _sheet_text(language: str, key: str) -> str:
     return languages.text("lessons", f"sheet/{key}", language)
 
 
 def sheet(page: str, lesson: Lesson, is_teachers: bool, language: str) -> str:
     """Return the page of pupils or of teachers. `page` is its Markdown."""
-    said = partial(_said, language)
-    found = blocks(page)
+    text = partial(_sheet_text, language)
+    result = blocks(page)
     title = lesson.titles[language]
-    parts = [_html(block) for block in found]
-    caption = [said("plan")]
+    parts = [_html(block) for block in result]
+    caption = [text("plan")]
     if lesson.variations:
-        caption.append(said("moves"))
+        caption.append(text("moves"))
     if lesson.is_mirrored:
-        caption.append(said("mirrored"))
+        caption.append(text("mirrored"))
     drawing = f"{plan(lesson, title)}\n<p>{escape(' '.join(caption))}</p>"
     if not is_teachers:
-        names = "".join(f"<span>{escape(name)}</span>" for name in map(said, BLANKS))
+        names = "".join(f"<span>{escape(name)}</span>" for name in map(text, BLANKS))
         parts.insert(1, f'<p class="names">{names}</p>\n{drawing}')
     else:
         parts.insert(1, drawing)

@@ -57,7 +57,7 @@ def explained(findings: Sequence[Finding], text: str, lesson: Lesson, ending: st
         if name:
             uncalled = [Finding("uses", "uses/uncalled", {"name": _call_of(name, tokens)})]
         elif word == "move":
-            explained.append(_asked(finding, tokens, words, lesson, ending))
+            explained.append(_with_condition(finding, tokens, words, lesson, ending))
         elif word not in words:
             explained.append(finding)
         elif not is_endless:
@@ -68,7 +68,7 @@ def explained(findings: Sequence[Finding], text: str, lesson: Lesson, ending: st
 def _name_of_uncalled(word: str, tokens: Sequence[Token], words: Sequence[str]) -> str:
     """Return a word of DEF that nothing calls, and that has what is missing."""
     for name in _uncalled(words):
-        inside = [token for own, token in _owned(tokens) if own == name]
+        inside = [token for own, token in _tokens_with_def(tokens) if own == name]
         if kept.moving(inside) if word == "move" else word in [token.text for token in inside]:
             return name
     return ""
@@ -83,7 +83,7 @@ def _call_of(name: str, tokens: Sequence[Token]) -> str:
     return f"{name}{''.join(takewhile(lambda text: text != ')', texts[at:]))})".replace(",", ", ")
 
 
-def _owned(tokens: Sequence[Token]) -> list[tuple[str, Token]]:
+def _tokens_with_def(tokens: Sequence[Token]) -> list[tuple[str, Token]]:
     """Return each token with the word of the DEF that it belongs to, or ""."""
     found, name = [], ""
     for k, token in enumerate(tokens):
@@ -95,12 +95,12 @@ def _owned(tokens: Sequence[Token]) -> list[tuple[str, Token]]:
     return found
 
 
-def _asked(
+def _with_condition(
     finding: Finding, tokens: Sequence[Token], words: Sequence[str], lesson: Lesson, ending: str
 ) -> Finding:
     """Return a finding of a robot that stays where it is; with a question that kept it, that."""
     uncalled = _uncalled(words)
-    called = [token for name, token in _owned(tokens) if name not in uncalled]
+    called = [token for name, token in _tokens_with_def(tokens) if name not in uncalled]
     is_turned = finding.key.endswith("/turned")
     if finding.key == "still/brief":  # it had power, so no IF kept it
         does = {token.text for token in called}
@@ -127,7 +127,7 @@ def _question(robot: str) -> str:
     return yes_no[0] if yes_no else "DISTANCE < 15"
 
 
-def _uses(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
+def _judge_words(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     words = _words(tokens)
     times, counted = int(criterion.numbers.get("times", 1)), Counter(words)
     if "UNTIL" in criterion.words and counted["UNTIL"] - kept.unasked(tokens) < times:
@@ -143,7 +143,7 @@ def _uses(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     if "DEF" in criterion.words and len(own) - len(uncalled) < times and uncalled:
         return Finding("uses", "uses/uncalled", {"name": _call_of(uncalled[0], tokens)})
     if "LOOP" in criterion.words and not any(
-        ACTS.union(own).intersection(inside) for inside in _repeated(words)
+        ACTS.union(own).intersection(inside) for inside in _loop_bodies(words)
     ):
         return Finding("uses", "uses/idle")
     return None
@@ -170,34 +170,34 @@ def _uncalled(words: Sequence[str]) -> list[str]:
         else:
             (bodies[name] if name else inside).add(word)
     called: set[str] = set()
-    found = inside & bodies.keys()
-    while found:
-        called |= found
-        found = set().union(*(bodies[each] for each in found)) & bodies.keys() - called
+    result = inside & bodies.keys()
+    while result:
+        called |= result
+        result = set().union(*(bodies[item] for item in result)) & bodies.keys() - called
     return [body for body in bodies if body not in called]
 
 
-def _repeated(words: Sequence[str]) -> list[list[str]]:
+def _loop_bodies(words: Sequence[str]) -> list[list[str]]:
     """Return what is inside of each LOOP that repeats: LOOP(1) and LOOP(0) do not."""
-    found: list[list[str]] = []
+    result: list[list[str]] = []
     open_loops: list[list[str]] = []
     for word in words:
         if ALIASES.get(word, word) == BLOCK_ENDS["LOOP"] and open_loops:
             inside = open_loops.pop()
             if inside[:1] not in (["0"], ["1"]):
-                found.append(inside)
+                result.append(inside)
         for inside in open_loops:
             inside.append(word)
         if word == "LOOP":
             open_loops.append([])
-    return found
+    return result
 
 
 def _moves(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     most, is_ahead = int(criterion.numbers["at_most"]), bool(criterion.numbers["ahead"])
-    found = kept.ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
-    values = {"found": str(found), "most": str(most)}
-    return Finding("moves", f"moves{'/ahead' * is_ahead}", values) if found > most else None
+    result = kept.ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
+    values = {"found": str(result), "most": str(most)}
+    return Finding("moves", f"moves{'/ahead' * is_ahead}", values) if result > most else None
 
 
 def without(word: str, text: str) -> str:
@@ -232,7 +232,7 @@ def idle(word: str, text: str) -> Finding:
 
 
 JUDGES: dict[str, Callable[[Criterion, Sequence[Token]], Finding | None]] = {
-    "uses": _uses,
-    "needs": _uses,
+    "uses": _judge_words,
+    "needs": _judge_words,
     "moves": _moves,
 }

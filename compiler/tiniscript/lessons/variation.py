@@ -26,7 +26,7 @@ def varied(lesson: Lesson, seed: int) -> World:
         dx, dy, turn = (
             chance.uniform(*span) for span in (variation.x_cm, variation.y_cm, variation.heading)
         )
-        world = _moved(world, variation, dx, dy, turn)
+        world = _with_part_moved(world, variation, dx, dy, turn)
     return _mirrored(world) if is_mirrored(lesson, seed) else world
 
 
@@ -57,8 +57,8 @@ def point_of(place: Place, world: World, mirrored: bool) -> Point:
     if place.part == "lamps":
         return world.lamps[k].place
     if place.part == "lines":
-        return _middle(world.lines[k].points)
-    return _middle(world.walls[k] if place.part == "walls" else world.boxes[k])
+        return _center(world.lines[k].points)
+    return _center(world.walls[k] if place.part == "walls" else world.boxes[k])
 
 
 def shape_of(place: Place, world: World, mirrored: bool) -> list[Segment]:
@@ -74,11 +74,13 @@ def shape_of(place: Place, world: World, mirrored: bool) -> list[Segment]:
     return [Segment(point, point)]
 
 
-def _moved(world: World, what: Variation, dx: float, dy: float, turn: float) -> World:
-    part, k = what.place.part, what.place.number - 1
+def _with_part_moved(
+    world: World, variation: Variation, dx: float, dy: float, turn: float
+) -> World:
+    part, k = variation.place.part, variation.place.number - 1
 
     def shifted(points: tuple[Point, ...]) -> tuple[Point, ...]:
-        middle = _middle(points)
+        middle = _center(points)
         cos, sin = math.cos(math.radians(turn)), math.sin(math.radians(turn))
         return tuple(
             Point(
@@ -122,5 +124,5 @@ def _mirrored(world: World) -> World:
     )
 
 
-def _middle(points: tuple[Point, ...]) -> Point:
+def _center(points: tuple[Point, ...]) -> Point:
     return Point(sum(p.x for p in points) / len(points), sum(p.y for p in points) / len(points))

@@ -16,7 +16,14 @@ from tiniscript.library import opening
 from tiniscript.library.errors import ProgramError, RobotError
 from tiniscript.library.refusing import refusal
 from tiniscript.link import errors
-from tiniscript.link.connection import DEADLINE_MS, PendingRequest, Requester, reason_of
+from tiniscript.link.connection import (
+    DEADLINE_MS,
+    FOREIGN,
+    PendingRequest,
+    Requester,
+    reason_of,
+    stranger,
+)
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply
@@ -213,11 +220,11 @@ class Client:
         began_ms = self.line.stop()
         try:
             while monotonic() < end_s:
-                found = self.line.event()
-                if found is None or found[0] < began_ms:
+                result = self.line.event()
+                if result is None or result[0] < began_ms:
                     continue
-                if found[1].name in ("STOPPED", "LOST"):
-                    return found[1].name == "STOPPED"
+                if result[1].name in ("STOPPED", "LOST"):
+                    return result[1].name == "STOPPED"
         except (ConnectionLost, KeyboardInterrupt):
             pass
         return False
@@ -240,27 +247,37 @@ class Client:
         values = {"port": opening.shown(self.port), "verb": self.line.held_by}
         return RobotError(reason, self.language, values)
 
-    def _reason_of_end(self, gone: ConnectionLost) -> str:
-        if gone.is_server:
+    def _reason_of_end(self, loss: ConnectionLost) -> str:
+        if loss.is_server:
             return "holder_ended"
         if is_bluetooth(self.port):
             return "radio_gone"
         if is_at_broker(self.port):
-            return "port_taken" if str(gone) == errors.TAKEN else "broker_gone"
+            return "port_taken" if str(loss) == errors.TAKEN else "broker_gone"
         if self.line.heard and self.line.robot is None:  # it reported busy, and closed
             return "port_busy"
         return "port_gone"
+
+    def foreign(self) -> tuple[str, str]:
+        """Return the sentences on the board that answers instead of a robot."""
+        from tiniscript.link.foreign import told
+
+        found = stranger(self.line)
+        assert found is not None
+        return told(found, self.language)
 
     def failure(self, reply: Reply[object]) -> Exception:
         """Return the error for a reply that is not OK."""
         reason = reason_of(self.line, reply)
         if reason != "status":
             values = {"port": opening.shown(self.port), "id": f"{reply.detail:08x}"}
+            if reason == FOREIGN:
+                values["what"], values["then"] = self.foreign()
             return RobotError(reason, self.language, values)
-        said = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
+        text = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
         name = name_of(reply.status)
         kind = ProgramError if name == "TOO_LARGE" else RobotError
-        return kind(name, self.language, said=said)
+        return kind(name, self.language, said=text)
 
 
 class Saving:

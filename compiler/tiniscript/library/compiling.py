@@ -24,7 +24,6 @@ from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
 from tiniscript.semantics.lint import lint
 from tiniscript.semantics.optimizer import optimized
-from tiniscript.syntax.later_words import given_way, in_program
 from tiniscript.syntax.parser import parse
 
 
@@ -32,8 +31,8 @@ class Compiled(NamedTuple):
     """What became of a text. Where a diagnostic is a mistake, `image` is empty.
 
     `program` is the checked program, as written, and `lowered` what the code was made of; `places`
-    says where in the text each
-    instruction comes from, `yes_no` which of its variables are a yes/no.
+    says where in the text each instruction comes from, `yes_no` which of its variables are a
+    yes/no.
     """
 
     source: Source
@@ -58,17 +57,17 @@ class Compiled(NamedTuple):
 
 def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
-    found = analyzed(text, kit, name)
-    return found if found.is_right else _with_findings(found, kit)
+    compiled = analyzed(text, kit, name)
+    return compiled if compiled.is_right else _with_findings(compiled, kit)
 
 
-def _with_findings(found: Compiled, kit: Kit) -> Compiled:
+def _with_findings(compiled: Compiled, kit: Kit) -> Compiled:
     """Return a wrong program with what is told of it."""
     from tiniscript.recovery.told import told_of
 
     read = cache(lambda text: analyzed(text, kit).diagnostics)  # a repair is asked for again
-    its = _kit_in(found.source.text, kit)
-    return found._replace(diagnostics=told_of(found.source, found.diagnostics, read, its))
+    its = _kit_in(compiled.source.text, kit)
+    return compiled._replace(diagnostics=told_of(compiled.source, compiled.diagnostics, read, its))
 
 
 def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
@@ -81,15 +80,19 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     if not any(diagnostic.is_mistake for diagnostic in diagnostics):
         diagnostics += lint(checked.program, kit, source, parsed.scan)
         if kit.given:
+            from tiniscript.syntax.later_words import given_way
+
             diagnostics += given_way(parsed.scan.tokens, kit, source)
     return Compiled(source, codes.in_order(diagnostics), checked.program)
 
 
 def _kit_in(text: str, kit: Kit) -> Kit:
     """Return the kit as a program has it: without the words that have given way there."""
-    written = text.upper()
-    if not any(word in written for word in KIT_WORDS_SINCE):
+    sentence = text.upper()
+    if not any(word in sentence for word in KIT_WORDS_SINCE):
         return kit
+    from tiniscript.syntax.later_words import in_program
+
     return in_program(text, kit)
 
 
@@ -129,7 +132,7 @@ def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
         if span is not None and lacks(need, robot)
     ]
     if asks_remote and not has_remote(robot):
-        lacking.append(_no_remote(compiled, robot))
+        lacking.append(_remote_missing(compiled, robot))
     if not lacking:
         return compiled
     return compiled._replace(
@@ -137,7 +140,7 @@ def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
     )
 
 
-def _no_remote(compiled: Compiled, robot: Robot) -> codes.Diagnostic:
+def _remote_missing(compiled: Compiled, robot: Robot) -> codes.Diagnostic:
     """Return the mistake of a program that asks a remote control which the robot does not have."""
     from tiniscript.bytecode.disassembly import devices_of, rows
 
@@ -206,10 +209,10 @@ def compile_source(
     unknown = None if is_chosen else unknown_robot(text)
     if unknown is not None:  # which words there are nobody knows
         return Compiled(Source(text, name), [unknown])
-    found = compile_text(text, robot.kit, name, optimize)
-    if not found.is_right:
-        return naming(found, robot, is_chosen) if names_robots else found
-    return fitting(found, robot, is_strict)
+    result = compile_text(text, robot.kit, name, optimize)
+    if not result.is_right:
+        return naming(result, robot, is_chosen) if names_robots else result
+    return fitting(result, robot, is_strict)
 
 
 def naming(compiled: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
@@ -242,8 +245,8 @@ def maker(robot: Robot) -> Callable[[str], Image | None]:
     """Return what makes the image of a text for a robot, or None where the text has mistakes."""
 
     def made(text: str) -> Image | None:
-        found = compile_source(text.encode(), robot, "", is_strict=True)
-        return image_of(found, robot) if found.is_right else None
+        result = compile_source(text.encode(), robot, "", is_strict=True)
+        return image_of(result, robot) if result.is_right else None
 
     return made
 

@@ -128,7 +128,7 @@ class RobotConnection:
         if reply.status:
             raise self._client.failure(reply)
         self._saving = Saving(reply.values) if save else None
-        return self._begun(reply.values, run and ready.start == "SI", detached)
+        return self._begin_run(reply.values, run and ready.start == "SI", detached)
 
     def live(self, line: str) -> Receipt:
         """Run a line once, at most 55 bytes of code, or 42 for a robot that seals; the stored
@@ -149,13 +149,13 @@ class RobotConnection:
         reply = self._client.ask(
             lambda session: session.live(image.code, kit if image.devices else 0)
         )
-        return self._begun(reply.values, True, False)
+        return self._begin_run(reply.values, True, False)
 
     def start(self, *, detached: bool = False) -> Receipt:
         """Start the program that the robot holds."""
         self._check_open()
         reply = self._client.ask(lambda session: session.start(detached))
-        return self._begun(reply.values, True, detached)
+        return self._begin_run(reply.values, True, detached)
 
     def undo(self) -> Receipt:
         """Bring back the program that the robot held before the last saved one; a second call
@@ -167,7 +167,7 @@ class RobotConnection:
         self._check_open()
         reply = self._client.ask(lambda session: session.undo())
         self._saving = Saving(reply.values)
-        receipt = self._begun(reply.values, False, False)
+        receipt = self._begin_run(reply.values, False, False)
         self._follower = None
         return receipt
 
@@ -184,24 +184,24 @@ class RobotConnection:
         while self._follower is None or self._ending is None:
             follower = self._follower or anything
             left_s = LOOK_S if end_s is None else min(LOOK_S, end_s - monotonic())
-            found = self._client.event(max(left_s, 0.0))
+            result = self._client.event(max(left_s, 0.0))
             robot_event = None
-            if found is not None and self._is_about(follower, found[1]):
-                robot_event = self._reader.told(*found)
+            if result is not None and self._concerns_us(follower, result[1]):
+                robot_event = self._reader.told(*result)
                 if (
                     robot_event is not None
-                    and follower.end(found[1]) is not None
+                    and follower.end(result[1]) is not None
                     and self._follower
                 ):
                     self._ending = ending_of(robot_event)
             if robot_event is not None:
                 yield robot_event
             # an event that arrived before the timeout is still reported
-            last_s = monotonic() if found is None else found[0] / 1000
+            last_s = monotonic() if result is None else result[0] / 1000
             if end_s is not None and last_s >= end_s:
                 return
 
-    def _is_about(self, follower: Follower, event: Event) -> bool:
+    def _concerns_us(self, follower: Follower, event: Event) -> bool:
         """The same for sentences of this connection, which knows from then on what has happened."""
         try:
             return follower.is_about(event, opening.shown(self.port), self.language)
@@ -293,8 +293,8 @@ class RobotConnection:
         if not holds or not self._client.holds_for_others:
             self._client.close()
             return
-        said = languages.text("library", "holds_for_others", self.language)
-        warnings.warn(said.format(port=opening.shown(self.port)), RuntimeWarning, stacklevel=4)
+        text = languages.text("library", "holds_for_others", self.language)
+        warnings.warn(text.format(port=opening.shown(self.port)), RuntimeWarning, stacklevel=4)
         Thread(target=self._hold, name="holder").start()
 
     def _hold(self) -> None:
@@ -341,7 +341,7 @@ class RobotConnection:
             self._reader.maps[ready.checksum] = ready._map
         return ready
 
-    def _begun(self, receipt: ReceiptReply, is_running: bool, is_detached: bool) -> Receipt:
+    def _begin_run(self, receipt: ReceiptReply, is_running: bool, is_detached: bool) -> Receipt:
         # a program that waits for the button has no run number yet
         if is_running:
             self._reader.begin(receipt.run, receipt.program)
@@ -381,7 +381,7 @@ def _usual_port(language: Language) -> str:
     running = directory.for_all()
     if len(running) == 1:
         return running[0].address
-    listed = [each.port for each in ports.listed()]
+    listed = [item.port for item in ports.listed()]
     values = {"known": opening.shown(", ".join(listed)) or "-",
               "example": listed[0] if listed else "/dev/ttyUSB0"}  # fmt: skip
     if last is not None:

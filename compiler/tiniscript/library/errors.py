@@ -23,8 +23,8 @@ def sentence(reason: str, language: str, values: Mapping[str, str]) -> str:
     """
     if languages.found("library", reason, languages.SOURCE) is not None:
         return languages.text("library", reason, language).format(**values)
-    said = languages.text("command", reason, language).removeprefix("tsc: ")
-    return f"{said[:1].upper()}{said[1:]}".format(**values)
+    text = languages.text("command", reason, language).removeprefix("tsc: ")
+    return f"{text[:1].upper()}{text[1:]}".format(**values)
 
 
 _SAME = {

@@ -81,10 +81,10 @@ class Reader:
     def _fault(self, event: FaultEvent) -> dict[str, Value]:
         places = self._shows.map_of(event.run, event.program)
         fault = fault_of(fault_name(event.fault), event.at, places)
-        found: dict[str, Value] = {"fault": fault.name, "offset": event.at}
+        result: dict[str, Value] = {"fault": fault.name, "offset": event.at}
         if fault.line is not None and fault.column is not None:
-            found |= {"line": fault.line, "column": fault.column}
-        return found
+            result |= {"line": fault.line, "column": fault.column}
+        return result
 
 
 def ending_of(event: RobotEvent) -> Ending:

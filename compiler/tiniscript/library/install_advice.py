@@ -26,13 +26,13 @@ LOCKS = {STUDIO: CLONE / "tools" / "studio" / "requirements.txt"}
 
 def command(extra: str) -> str:
     """Return the command to type."""
-    wanted = " ".join(map(quoted, requirements(extra)))
-    if is_pipx() and wanted:
-        return f"pipx inject tiniscript {wanted}"
+    expected = " ".join(map(quoted, requirements(extra)))
+    if is_pipx() and expected:
+        return f"pipx inject tiniscript {expected}"
     if is_clone(CLONE):
         place = quoted(f"{CLONE}[{extra}]")
         return f"pipx install {place}" if is_managed() else f"{_pip()} install -e {place}"
-    return f"{_pip()} install {wanted or quoted(f'tiniscript[{extra}]')}"
+    return f"{_pip()} install {expected or quoted(f'tiniscript[{extra}]')}"
 
 
 def installing(extra: str) -> list[str] | None:
@@ -40,11 +40,13 @@ def installing(extra: str) -> list[str] | None:
 
     None where that is not its business: it has no pip, or pipx or the system manages it.
     """
-    wanted = requirements(extra)
-    if not wanted or is_pipx() or is_managed() or find_spec("pip") is None:
+    expected = requirements(extra)
+    if not expected or is_pipx() or is_managed() or find_spec("pip") is None:
         return None
     lock = LOCKS.get(extra)
-    named = ["--require-hashes", "-r", str(lock)] if lock is not None and lock.is_file() else wanted
+    named = (
+        ["--require-hashes", "-r", str(lock)] if lock is not None and lock.is_file() else expected
+    )
     return [sys.executable, "-m", "pip", "install", "--no-input", *named]
 
 

@@ -51,7 +51,7 @@ def fitting(image: Image, first: Robot) -> Robot | None:
         return first
     shipped = (robots.load(name) for name in robots.names())
     others = (robot for _, robot in given.profiles())
-    return next((robot for each in (shipped, others) for robot in each if fits(image, robot)), None)
+    return next((robot for item in (shipped, others) for robot in item if fits(image, robot)), None)
 
 
 def fits(image: Image, robot: Robot) -> bool:

@@ -41,8 +41,8 @@ def named_robot(text: str) -> Named | None:
 
 def renamed(text: str, name: str) -> str:
     """Return a program that names a robot with another name; any other stays as it is."""
-    found = named_robot(text)
-    return text if found is None else applied(text, [Edit(found.span, name)])
+    result = named_robot(text)
+    return text if result is None else applied(text, [Edit(result.span, name)])
 
 
 def robot_of(data: bytes, usual: Robot) -> Robot:
@@ -53,27 +53,27 @@ def robot_of(data: bytes, usual: Robot) -> Robot:
 
 def name_in(data: bytes) -> str | None:
     """Return the name of the shipped robot that a program's text names, or None."""
-    found = (named(data) or "").lower()
-    return found if found in robots.names() else None
+    result = (named(data) or "").lower()
+    return result if result in robots.names() else None
 
 
 def named(data: bytes) -> str | None:
     """Return how a program's text names its robot, or None; an image names none."""
     try:
-        found = named_robot(decode(data))
+        result = named_robot(decode(data))
     except Unreadable:
         return None
-    return found.name if found else None
+    return result.name if result else None
 
 
 def unknown_robot(text: str) -> Diagnostic | None:
     """Return the mistake of a program that names a robot which does not come with tsc."""
-    found = named_robot(text)
-    if found is None or found.name.lower() in robots.names():
+    result = named_robot(text)
+    if result is None or result.name.lower() in robots.names():
         return None
     from tiniscript.base.spelling import nearest
 
-    near = nearest(found.name.lower(), robots.names()) or ""
-    values = {"found": found.name, "near": near, "known": ", ".join(robots.names())}
-    repair = Repair((Edit(found.span, near),) if near else (), False)
-    return Diagnostic(NO_SUCH_ROBOT, found.span, values, repair=repair)
+    suggestion = nearest(result.name.lower(), robots.names()) or ""
+    values = {"found": result.name, "near": suggestion, "known": ", ".join(robots.names())}
+    repair = Repair((Edit(result.span, suggestion),) if suggestion else (), False)
+    return Diagnostic(NO_SUCH_ROBOT, result.span, values, repair=repair)

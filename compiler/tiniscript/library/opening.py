@@ -59,11 +59,11 @@ def connection_to(
     begun_s = monotonic()
     while True:
         is_held_up = is_stop and _is_suspended(address)
-        client = None if is_held_up else _joined(address, verb, asked_baud, language)
+        client = None if is_held_up else _join_shared(address, verb, asked_baud, language)
         if client is not None:
             return client
         if is_name(address):
-            address = _resolved(port, language)
+            address = _resolve_address(port, language)
             begun_s = monotonic()
             continue
         try:
@@ -77,7 +77,7 @@ def connection_to(
             if failure.reason != "port_busy" or (waited_s > BUSY_S and not is_stop):
                 raise
         if is_stop:
-            past = _past_holder(address, baud, kit, limit_s, language, port, waited_s)
+            past = _connect_past_holder(address, baud, kit, limit_s, language, port, waited_s)
             if past is not None:
                 return past
         sleep(AGAIN_S)
@@ -85,11 +85,11 @@ def connection_to(
 
 def _is_suspended(address: str) -> bool:
     """Whether the command that shares a port is suspended: it does not answer."""
-    registration = registry.found(address)
+    registration = registry.find_registration(address)
     return registration is not None and holders.is_suspended(registration.pid)
 
 
-def _past_holder(
+def _connect_past_holder(
     address: str, baud: int, kit: int, limit_s: float, language: str, port: str, waited_s: float
 ) -> PortConnection | None:
     """Return a connection past the suspended holder of a busy port; None while others may get in.
@@ -97,7 +97,7 @@ def _past_holder(
     A holder that cannot be passed is woken. One that goes on may be writing firmware: it is left
     alone. Raises RobotError in the end.
     """
-    registration = registry.found(address)
+    registration = registry.find_registration(address)
     path = str(registry.lock_of(address)) if is_address(address) else address
     holder = holders.holder(path, None if registration is None else registration.pid)
     if holder is not None and holder.is_suspended:
@@ -169,7 +169,7 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
     if failure.reason == errors.MISSING:
         from tiniscript.link import ports
 
-        known = ", ".join(each.port for each in ports.listed())
+        known = ", ".join(item.port for item in ports.listed())
         if known:
             reason, values["known"] = "port_missing_but", shown(known)
     return RobotError(reason, language, values)
@@ -200,7 +200,7 @@ def shown(name: str) -> str:
     return printable(name, SHOWN)
 
 
-def _joined(port: str, verb: str, baud: int | None, language: str) -> SharedConnection | None:
+def _join_shared(port: str, verb: str, baud: int | None, language: str) -> SharedConnection | None:
     try:
         client = joined(port, verb)
     except OtherVersion as other:
@@ -217,7 +217,7 @@ def _joined(port: str, verb: str, baud: int | None, language: str) -> SharedConn
     return client
 
 
-def _resolved(port: str, language: str) -> str:
+def _resolve_address(port: str, language: str) -> str:
     """Return the address of a robot that is named. Raises RobotError."""
     from tiniscript.link import ports
 

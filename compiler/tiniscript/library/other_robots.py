@@ -38,11 +38,11 @@ def naming_robots(
     """
     if not any(diagnostic.code in (*_UNKNOWN, OTHER_ROBOT) for diagnostic in diagnostics):
         return diagnostics
-    found = named_among(_others(), diagnostics, text, robot.name, robot.kit)
-    return found if is_chosen else [_told(diagnostic, text) for diagnostic in found]
+    result = named_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
+    return result if is_chosen else [_with_robot_names(diagnostic, text) for diagnostic in result]
 
 
-def _told(diagnostic: Diagnostic, text: str) -> Diagnostic:
+def _with_robot_names(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a hint to a robot that comes with tsc with what the program needs to name it."""
     first = diagnostic.values.get("first")
     if diagnostic.code is not OTHER_ROBOT or first not in robots.names():
@@ -64,11 +64,11 @@ def named_among(
     own = set(kit.names)
     known = {robot: set(its.names) for robot, its in others.items() if robot != name}
     of_kits = own.union(*known.values())
-    said = {token.text for token in scan(text).tokens if token.kind is WORD}
-    used = {word if word in of_kits else concept_of(word) for word in said} & of_kits
+    texts = {token.text for token in scan(text).tokens if token.kind is WORD}
+    used = {word if word in of_kits else concept_of(word) for word in texts} & of_kits
     whole = [robot for robot, its in known.items() if used <= its]
     named: list[Diagnostic] = []
-    told: list[set[str]] = []  # robots that words have led to
+    messages: list[set[str]] = []  # robots that words have led to
     codes = {*_UNKNOWN, NO_BUTTON} if used - own - {BUTTON} else {*_UNKNOWN}
     for diagnostic in diagnostics:
         word = diagnostic.values.get("found", "").upper()
@@ -78,10 +78,10 @@ def named_among(
         word = side if side in of_kits - own else word
         having = [robot for robot, its in known.items() if word in its - own]
         if diagnostic.code in codes and having:
-            having = [each for each in having if each in whole] or having
-            if any(each <= {*having} for each in told):
+            having = [item for item in having if item in whole] or having
+            if any(item <= {*having} for item in messages):
                 continue
-            told.append({*having})
+            messages.append({*having})
             values = {"found": word, "own": name, **dict(zip(_NUMBERS, having, strict=False))}
             diagnostic = Diagnostic(OTHER_ROBOT, diagnostic.span, values)
         named.append(diagnostic)
@@ -99,7 +99,7 @@ def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
     return bool(words) and any(words & set(robot.kit.names) for _, robot in given.profiles())
 
 
-def _others() -> dict[str, Kit]:
+def _other_kits() -> dict[str, Kit]:
     """Return the known kits, by the name or the path of their robots."""
     others: dict[str, Kit] = {}
     for name in robots.names():

@@ -105,8 +105,8 @@ def check(
     warning."""
     if not isinstance(text, str):
         raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
-    found = _compiled(text, robot, "", language, is_strict=False)[0]
-    return diagnostics_of(found, language)
+    result = _compiled(text, robot, "", language, is_strict=False)[0]
+    return diagnostics_of(result, language)
 
 
 def show(
@@ -133,8 +133,8 @@ def _contents(path: os.PathLike[str], language: Language) -> str | bytes:
         data = contents(Path(path), MOST_BYTES)
         return data if Path(path).suffix.lower() == ".bin" else data.decode("utf-8-sig")
     except (OSError, ValueError) as why:
-        said = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        values = {"path": printable(str(path), 200), "why": printable(said, 200)}
+        text = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
+        values = {"path": printable(str(path), 200), "why": printable(text, 200)}
         raise UsageError("unreadable", _checked(language), values) from None
 
 
@@ -188,9 +188,9 @@ def diagnostics_of(compiled: Compiled, language: Language) -> list[Message]:
 
 def remarks(places: Map | None, language: Language) -> dict[int, str]:
     """Return the source line for each instruction that begins one, as remarks in a disassembly."""
-    found: dict[int, str] = {}
+    result: dict[int, str] = {}
     if places is None:
-        return found
+        return result
     for place in places.places:
         line = places.line(place.line)
         shown = line.strip()
@@ -198,8 +198,8 @@ def remarks(places: Map | None, language: Language) -> dict[int, str]:
             end = place.end_column - 1 if place.end_line == place.line else len(line)
             shown = line[place.column - 1 : end][:REMARK]
         values = {"line": str(place.line), "shown": printable(shown.replace("\t", " "))}
-        found[place.offset] = sentence("line", language, values)
-    return found
+        result[place.offset] = sentence("line", language, values)
+    return result
 
 
 def _compiled(
@@ -224,9 +224,9 @@ def _program(
     found, profile = _compiled(text, robot, name, language, optimize=optimize)
     diagnostics = tuple(diagnostics_of(found, language))
     if not found.is_right:
-        said = [as_text(message(diagnostic, found.source, language), found.source, language)
+        texts = [as_text(message(diagnostic, found.source, language), found.source, language)
                 for diagnostic in found.diagnostics]  # fmt: skip
-        error = ProgramError("mistakes", language, said="\n".join(said))
+        error = ProgramError("mistakes", language, said="\n".join(texts))
         error.diagnostics = diagnostics
         raise error
     places = source_map.made(found)
@@ -246,8 +246,8 @@ def _read(data: bytes, profile: Robot, language: Language) -> Image:
         if refused.name == "NO_SUCH_DEVICE" and image.devices:  # an image for a larger kit
             raise ProgramError("OTHER_KIT", language, {"robot": profile.name}) from None
         values = {"offset": f"{refused.offset:04x}", "rule": refused.name}
-        said = sentence("bad_code", language, values)
-        raise ProgramError(refused.name, language, values, said) from None
+        text = sentence("bad_code", language, values)
+        raise ProgramError(refused.name, language, values, text) from None
     except ImageRefused as refused:
         raise ProgramError(refused.name, language, {"robot": profile.name}) from None
     return image

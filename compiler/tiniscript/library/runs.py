@@ -154,10 +154,10 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
             values = {"robot": robot.name, "found": printable(str(name), 60), "known": known}
             raise UsageError("no_sensor", language, values)
         several = readings if isinstance(readings, Iterable) else [readings]
-        found = [] if isinstance(several, str | bytes) else list(several)
-        if not found:
+        result = [] if isinstance(several, str | bytes) else list(several)
+        if not result:
             raise UsageError("bad_readings", language, {"name": devices[number].name})
-        lists[number] = [_reading(devices[number], each, language) for each in found]
+        lists[number] = [_reading(devices[number], item, language) for item in result]
     return lists
 
 

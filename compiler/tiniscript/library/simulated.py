@@ -52,10 +52,11 @@ def virtual_robot(
     left, right = motors
     for motor in (left, right):
         within("motors", motor, LEAST_MOTOR, MOST_MOTOR, language)
-    told = thousandths(sensors or {}, profile, language)
-    settings = Settings(seed=seed, noise=noise, motors=(left, right), told=told)
+    message = thousandths(sensors or {}, profile, language)
+    settings = Settings(seed=seed, noise=noise, motors=(left, right), told=message)
     simulated = Simulated(
-        _made(profile, os.fspath(world), settings, language), 0.0 if hurry == math.inf else hurry
+        _make_robot(profile, os.fspath(world), settings, language),
+        0.0 if hurry == math.inf else hurry,
     )
     return VirtualRobotConnection(simulated, profile, language)
 
@@ -97,7 +98,7 @@ class VirtualRobotConnection(RobotConnection):
             self._simulated.close()
 
 
-class Seen(NamedTuple):
+class DriveState(NamedTuple):
     pose: Pose
     driven_cm: float
     bumps: int
@@ -112,10 +113,10 @@ class Simulated(SimulatorThread):
     def took_turn(self) -> None:
         self.robot.take_events()  # discarded: nothing draws them
         driving = self.robot.driving
-        self.seen = Seen(self.robot.pose, driving.driven_cm, driving.bumps)
+        self.seen = DriveState(self.robot.pose, driving.driven_cm, driving.bumps)
 
 
-def _made(profile: Robot, world: str, settings: Settings, language: Language) -> VirtualRobot:
+def _make_robot(profile: Robot, world: str, settings: Settings, language: Language) -> VirtualRobot:
     """Return the robot in its world. Raises UsageError."""
     try:
         return VirtualRobot(profile.speaking(language), worlds.load(world), settings)

@@ -97,12 +97,12 @@ def as_json(places: Map) -> str:
 
     Importing json takes longer than writing this.
     """
-    lines = ", ".join(map(_quoted, places.lines))
+    lines = ", ".join(map(_c_string, places.lines))
     numbers = ", ".join(f"[{', '.join(map(str, place))}]" for place in places.places)
-    yes_no = ", ".join("true" if each else "false" for each in places.yes_no)
+    yes_no = ", ".join("true" if item else "false" for item in places.yes_no)
     return (
-        f'{{"version": {VERSION}, "name": {_quoted(places.name)}, "lines": [{lines}],'
-        f' "places": [{numbers}], "variables": [{", ".join(map(_quoted, places.variables))}],'
+        f'{{"version": {VERSION}, "name": {_c_string(places.name)}, "lines": [{lines}],'
+        f' "places": [{numbers}], "variables": [{", ".join(map(_c_string, places.variables))}],'
         f' "yes_no": [{yes_no}]}}'
     )
 
@@ -113,7 +113,7 @@ _ESCAPES |= {
 }
 
 
-def _quoted(text: str) -> str:
+def _c_string(text: str) -> str:
     return f'"{text.translate(_ESCAPES)}"'
 
 
@@ -163,13 +163,13 @@ def _forget_oldest(folder: Path) -> None:
     files.remove_abandoned(folder, names)
     known = [name for name in names if name.endswith(".json")]
     if len(known) > KEPT:
-        found = sorted((_changed_s(folder / name), name) for name in known)
-        for _, name in found[: len(known) - KEPT]:
+        result = sorted((_modification_s(folder / name), name) for name in known)
+        for _, name in result[: len(known) - KEPT]:
             with suppress(OSError):
                 (folder / name).unlink()
 
 
-def _changed_s(path: Path) -> float:
+def _modification_s(path: Path) -> float:
     try:
         return path.stat().st_mtime
     except OSError:  # another command has just removed it

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
+from tiniscript.base.words import WORDS
 from tiniscript.codegen.text.line import PlainCode, plain_code, spelled_out
 from tiniscript.codegen.text.memory import MOST_BRACKETS, Reader
 from tiniscript.diagnostics import codes
@@ -23,17 +24,19 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
     """Return what a robot of this level lacks for a checked program."""
     parsed = parse(source)
     tokens = list(spelled_out(parsed.scan.tokens))
+    ends = ("end", "alias")  # what begins their block says it
+    lacked = {word for word in level.lacks if WORDS[word].role.name not in ends}
     diagnostics = [
         Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})
         for token in tokens
-        if token.kind is WORD and (token.text in level.lacks or len(token.text) > LONGEST_WORD)
+        if token.kind is WORD and (token.text in lacked or len(token.text) > LONGEST_WORD)
     ]
     if "DEF" not in level.lacks and any(procedure.values for procedure in program.procedures):
         diagnostics += _values(program, kit, level)
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)
     if plain.length > limit:
-        place = _first_after(plain, limit)
+        place = _first_beyond(plain, limit)
         diagnostics.append(_too_many(codes.LEVEL_CODE, place, level, plain.length, limit))
         return diagnostics
     reader = Reader(tokens, kit, level.sensor_bytes)
@@ -63,10 +66,10 @@ def _values(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     return values
 
 
-def _first_after(plain: PlainCode, limit: int) -> Span:
+def _first_beyond(code: PlainCode, limit: int) -> Span:
     """Return the text of the first instruction whose code does not lie within the limit."""
-    ends = [*(place.offset for place in plain.places[1:]), plain.length]
-    return next(place.span for place, end in zip(plain.places, ends, strict=True) if end > limit)
+    ends = [*(place.offset for place in code.places[1:]), code.length]
+    return next(place.span for place, end in zip(code.places, ends, strict=True) if end > limit)
 
 
 def _too_many(code: codes.Code, place: Span, level: Level, bytes_: int, limit: int) -> Diagnostic:

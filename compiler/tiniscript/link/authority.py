@@ -29,8 +29,8 @@ class RobotKey(NamedTuple):
     """A key of a robot. `which` is one of KEYS; `name` is the robot's.
 
     `is_pending`: it is not known whether the robot has taken it; `is_stale`: the robot has refused
-    it, so it is shown only where something depends on it; `seals`: the robot seals, so what is not
-    sealed is not believed.
+    it, so it is shown only where something depends on it; `uses_seals`: the robot seals, so
+    what is not sealed is not believed.
     """
 
     id: int
@@ -39,7 +39,7 @@ class RobotKey(NamedTuple):
     name: str = ""
     is_pending: bool = False
     is_stale: bool = False
-    seals: bool = False
+    uses_seals: bool = False
 
     @property
     def place(self) -> tuple[int, int]:
@@ -53,7 +53,7 @@ class RobotKey(NamedTuple):
 class KeyRing:
     """The keys of a person; a class of it says where they are. No method raises an exception."""
 
-    def _kept(self) -> list[RobotKey]:
+    def _stored_keys(self) -> list[RobotKey]:
         """Return all keys."""
         raise NotImplementedError
 
@@ -63,7 +63,7 @@ class KeyRing:
 
     def of_robot(self, robot: int | None) -> list[RobotKey]:
         """Return the keys of a robot, or of all."""
-        return [key for key in self._kept() if robot in (None, key.id)]
+        return [key for key in self._stored_keys() if robot in (None, key.id)]
 
     def made(self, robot: int, which: int, name: str) -> RobotKey | None:
         """Make a key and keep it as a pending one; None if it cannot be kept."""
@@ -107,7 +107,7 @@ class KeyRing:
     def refuse(self, key: RobotKey) -> None:
         """The robot has another key than this one: it is stale, until it is right after all."""
         self._change(lambda before: [
-            kept._replace(is_stale=True) if kept[:3] == key[:3] else kept for kept in before
+            item._replace(is_stale=True) if item[:3] == key[:3] else item for item in before
         ])  # fmt: skip
 
     def drop(self, key: RobotKey) -> None:
@@ -128,7 +128,7 @@ def has_to_seal(ring: KeyRing | None, robot: DeviceInfo | None) -> bool:
     if ring is None:
         return False
     keys = ring.of_robot(None if robot is None else robot.id)
-    return any(key.seals and not key.is_pending for key in keys)
+    return any(key.uses_seals and not key.is_pending for key in keys)
 
 
 def is_other(ring: KeyRing | None, place: str, robot: DeviceInfo) -> bool:
@@ -136,7 +136,7 @@ def is_other(ring: KeyRing | None, place: str, robot: DeviceInfo) -> bool:
     has answered before, or with its name. One whose key we have too has to prove itself.
     """
     ours = [] if ring is None else ring.of_robot(None)
-    ours = [key for key in ours if key.seals and not key.is_pending]
+    ours = [key for key in ours if key.uses_seals and not key.is_pending]
     if ring is None or any(key.id == robot.id for key in ours) or ring.accepts(robot.id):
         return False
     before, name = ring.robot_at(place), canonical(robot.name)
@@ -165,7 +165,9 @@ def show_keys(
         if reply.status == STALE:  # a stop or a fault came between: the tag was one of before
             reply = yield from _show(key, robot, nonce, epoch)
         if ring is not None and reply.status == OK:
-            now = key._replace(is_pending=False, is_stale=False, seals=_seals(robot) or key.seals)
+            now = key._replace(
+                is_pending=False, is_stale=False, uses_seals=_can_seal(robot) or key.uses_seals
+            )
             if now != key:
                 ring.settle(now)
         if ring is not None and reply.status == WRONG_KEY:
@@ -175,7 +177,7 @@ def show_keys(
     return reply
 
 
-def _seals(robot: DeviceInfo) -> bool:
+def _can_seal(robot: DeviceInfo) -> bool:
     return bool(robot.values.features & SEALS)
 
 
@@ -193,7 +195,7 @@ def _show(
     challenge = reply.values.challenge
     text = challenge + nonce.to_bytes(4, "little") + bytes([epoch(), key.which])
     seal = None
-    if _seals(robot):
+    if _can_seal(robot):
         own = robot.values.nonce
         seal = Seal(session_key(key.key, challenge, nonce, own, epoch(), key.which))
     tag = siphash(key.key, text)
@@ -211,7 +213,7 @@ def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
     while reply.status == HOLD_BUTTON:
         reply = yield from requests.kept(request._replace(pause_ms=HOLD_PAUSE_MS), EmptyReply)
     if reply.status == OK:
-        ring.settle(key._replace(seals=_seals(robot)))
+        ring.settle(key._replace(uses_seals=_can_seal(robot)))
     elif reply.status not in TAKEN:
         ring.drop(key)
     return reply

@@ -7,7 +7,7 @@ works with either.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from tiniscript.bytecode.image import Image
 from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, MIDWAY, OTHER_ROBOT, UNPROVEN, Event
@@ -27,10 +27,15 @@ from tiniscript.link.payloads import (
 from tiniscript.link.requests import DeviceInfo, FetchedImage, Reply
 from tiniscript.link.wifi import BrokerSettings, Network
 
+if TYPE_CHECKING:
+    from tiniscript.link.foreign import Foreign
+
 STATUS = "status"  # the robot's status says why
 
 
+FOREIGN = "link_foreign"  # `stranger` says what answers instead of a robot
 DEADLINE_MS = 20_000  # of a request, unless another is given
+KEPT_BYTES = 2048  # of what comes before a robot has answered
 CLAIM_LIMIT_MS = 30_000  # the robot waits for a hand on its button so long, and no longer
 T = TypeVar("T")
 
@@ -177,12 +182,20 @@ class LinkConnection:
     """A connection to a robot. All but `close` and `stop` raise ConnectionLost once it has ended.
 
     `held_by` is the verb of the command that holds the port, if that is another command. `heard`
-    counts received bytes; `is_echoed`: the line returns what is sent.
+    counts received bytes, `came` are the last of those that came before a robot has answered;
+    `is_echoed`: the line returns what is sent.
     """
 
     held_by = ""
     heard = 0
+    came = b""
     is_echoed = False
+
+    def note_heard(self, data: bytes) -> None:
+        """Count received bytes, and keep them while no robot has answered."""
+        self.heard += len(data)
+        if data and self.robot is None:
+            self.came = (self.came + data)[-KEPT_BYTES:]
 
     @property
     def robot(self) -> DeviceInfo | None:
@@ -235,6 +248,20 @@ def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
         return STATUS
     if line.robot is not None:
         return "link_lost"
+    found = stranger(line)
+    if found is not None and found.has_row:
+        return FOREIGN
     if line.is_echoed:
         return "link_echo"
+    if found is not None and found.is_sure:
+        return FOREIGN
     return "link_other" if line.heard else "link_silent"
+
+
+def stranger(line: LinkConnection) -> Foreign | None:
+    """Return what answers instead of a robot, as far as its bytes tell."""
+    if line.robot is not None or not line.came:
+        return None
+    from tiniscript.link import foreign
+
+    return foreign.stranger(line.came)

@@ -43,12 +43,12 @@ def holder(path: str, pid: int | None = None) -> Holder | None:
 
     None where nobody tells.
     """
-    found = next(_who_have(path), None) if sys.platform == "linux" else pid
-    found = pid if found is None else found
-    if found is None or found == os.getpid():
+    result = next(_processes_with(path), None) if sys.platform == "linux" else pid
+    result = pid if result is None else result
+    if result is None or result == os.getpid():
         return None
-    name = _command(found)
-    return None if name is None else Holder(found, printable(name, NAME_CHARACTERS))
+    name = _command(result)
+    return None if name is None else Holder(result, printable(name, NAME_CHARACTERS))
 
 
 def is_suspended(pid: int) -> bool:
@@ -58,19 +58,19 @@ def is_suspended(pid: int) -> bool:
             about = Path(f"/proc/{pid}/stat").read_bytes()
             return about.rpartition(b")")[2].split()[0] in (b"T", b"t")
         return False
-    return _said_by_ps(pid, "state").startswith("T")
+    return _ps_column(pid, "state").startswith("T")
 
 
-def _who_have(path: str) -> Iterator[int]:
+def _processes_with(path: str) -> Iterator[int]:
     """Yield the processes that have a file open, as far as this user may know that."""
     try:
-        wanted = Path(path).stat()
+        expected = Path(path).stat()
     except (OSError, ValueError):
         return
     for process in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):  # it has ended, or is another user's
             if int(process.name) != os.getpid() and any(
-                os.path.samestat(wanted, path.stat()) for path in (process / "fd").iterdir()
+                os.path.samestat(expected, path.stat()) for path in (process / "fd").iterdir()
                 if path.exists()
             ):  # fmt: skip
                 yield int(process.name)
@@ -84,7 +84,7 @@ def _command(pid: int) -> str | None:
             data = Path(f"/proc/{pid}/cmdline").read_bytes()
             words = data.decode("utf-8", "replace").split("\0")
     else:
-        words = _said_by_ps(pid, "args").split()
+        words = _ps_column(pid, "args").split()
     if not any(words):
         return None
     verbs = [at for at, word in enumerate(words[:3]) if word in ("tiniscript", "tsc")]
@@ -94,7 +94,7 @@ def _command(pid: int) -> str | None:
     return Path(words[0]).name
 
 
-def _said_by_ps(pid: int, column: str) -> str:
+def _ps_column(pid: int, column: str) -> str:
     if sys.platform == "win32":
         return ""
     import subprocess  # a stop on Linux does without

@@ -26,7 +26,8 @@ NAME_CHARACTERS = 16
 MOST = 2000  # keys in a file
 MODE = 0o600  # only this person reads it
 _LOCK = Lock()  # the robots of a fleet have threads of their own
-_MARKS = ("is_pending", "is_stale", "seals")
+# What a file calls a field of a key.
+_MARKS = {"is_pending": "is_pending", "is_stale": "is_stale", "seals": "uses_seals"}
 _KINDS = tuple(name.lower() for name, _ in KEYS)
 
 
@@ -71,7 +72,7 @@ class KeyFile(KeyRing):
 
         Raises BadKeys, and TooManyKeys where keys that are there would go for it.
         """
-        with self._alone():
+        with self._locked():
             before = self.all()
             given = {key.place: key for key in known_seals(keys, before)}
             rest = [key for key in before if key.is_pending or key.place not in given]
@@ -82,45 +83,45 @@ class KeyFile(KeyRing):
 
     def forget(self, robot: int) -> None:
         """Take the keys of a robot out of the file. Raises BadKeys."""
-        with self._alone():
+        with self._locked():
             self._write([key for key in self.all() if key.id != robot])
 
     def accept(self, robot: int) -> None:
         """Let a robot answer where another one did, or with its name. Raises BadKeys."""
         try:
-            met_robots.accept(self._met, robot)
+            met_robots.accept(self._met_robots_path, robot)
         except OSError as failure:
             raise BadKeys(failure.strerror or str(failure)) from None
 
     # -- as a KeyRing: where the file cannot be read there is no key ------------------------------
 
-    def _kept(self) -> list[RobotKey]:
+    def _stored_keys(self) -> list[RobotKey]:
         with suppress(BadKeys):
             robot_keys = self.all()
             return (
-                [key._replace(seals=False) for key in robot_keys]
+                [key._replace(uses_seals=False) for key in robot_keys]
                 if self._is_for_virtual
                 else robot_keys
             )
         return []
 
     @property
-    def _met(self) -> Path:
+    def _met_robots_path(self) -> Path:
         return self.path.with_name("robots.json")
 
     def robot_at(self, place: str) -> int | None:
-        return met_robots.met(self._met).places.get(place)
+        return met_robots.met(self._met_robots_path).places.get(place)
 
     def meet(self, place: str, robot: int) -> None:
         if not self._is_for_virtual:
-            met_robots.meet(self._met, place, robot)
+            met_robots.meet(self._met_robots_path, place, robot)
 
     def accepts(self, robot: int) -> bool:
-        return self._accepts_all or robot in met_robots.met(self._met).accepted
+        return self._accepts_all or robot in met_robots.met(self._met_robots_path).accepted
 
     def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         try:
-            with self._alone():
+            with self._locked():
                 before = self.all()
                 after = change(before)
                 if after != before:
@@ -130,7 +131,7 @@ class KeyFile(KeyRing):
         return True
 
     @contextmanager
-    def _alone(self) -> Iterator[None]:
+    def _locked(self) -> Iterator[None]:
         """No other thread and no other process changes the file. Raises BadKeys."""
         with _LOCK:
             try:
@@ -153,10 +154,10 @@ class KeyFile(KeyRing):
             raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
 
 
-def known_seals(given: Iterable[RobotKey], before: Iterable[RobotKey]) -> list[RobotKey]:
+def known_seals(robot_keys: Iterable[RobotKey], before: Iterable[RobotKey]) -> list[RobotKey]:
     """Return keys with what was known before: that their robots seal."""
-    found = {key.key for key in before if key.seals}
-    return [key._replace(seals=key.seals or key.key in found) for key in given]
+    matches = {key.key for key in before if key.uses_seals}
+    return [key._replace(uses_seals=key.uses_seals or key.key in matches) for key in robot_keys]
 
 
 def is_shared(path: Path) -> bool:
@@ -177,7 +178,7 @@ def written(keys: Iterable[RobotKey]) -> bytes:
             "name": key.name,
             "kind": _KINDS[key.which],
             "key": key.key.hex(),
-            **{name: True for name in _MARKS if getattr(key, name)},
+            **{mark: True for mark, field in _MARKS.items() if getattr(key, field)},
         }
         for key in keys
     ]
@@ -187,12 +188,12 @@ def written(keys: Iterable[RobotKey]) -> bytes:
 def read(data: bytes) -> list[RobotKey]:
     """Return the keys in a file. Raises BadKeys where it is none, without anything from it."""
     try:
-        found = json.loads(data)
-        if found["tiniscript_keys"] != 1:
+        result = json.loads(data)
+        if result["tiniscript_keys"] != 1:
             raise BadKeys
-        if len(found["keys"]) > MOST:
+        if len(result["keys"]) > MOST:
             raise BadKeys
-        return [_key(row) for row in found["keys"]]
+        return [_key(row) for row in result["keys"]]
     except (ValueError, TypeError, KeyError, IndexError, RecursionError):
         raise BadKeys from None
 
@@ -208,5 +209,5 @@ def _key(row: dict[str, object]) -> RobotKey:
     ):
         raise ValueError
     name = printable(str(row.get("name", "")), NAME_CHARACTERS)
-    marks = {name: row.get(name) is True for name in _MARKS}
+    marks = {field: row.get(mark) is True for mark, field in _MARKS.items()}
     return RobotKey(int(robot, 16), _KINDS.index(kind), data, name, **marks)

@@ -185,26 +185,26 @@ WHEELS = (
 class Field(NamedTuple):
     """`kind` is one of KINDS, or `rest`: all remaining bytes, `low` to `high` of them.
 
-    What `fills` a frame has as many bytes as the frame; `high` is that of a large one.
+    What `fills_frame` has as many bytes as the frame; `high` is that of a large one.
     """
 
     name: str
     kind: str
     low: int
     high: int
-    fills: bool = False
+    fills_frame: bool = False
 
 
 class Message(NamedTuple):
     """`request` has the fields that a computer sends, `reply` those that follow the status OK.
 
-    An event has no request; its fields are in `reply`. A message that `acts` is stale if its
+    An event has no request; its fields are in `reply`. A message that `is_action` is stale if its
     epoch is not the robot's.
     """
 
     number: int
     name: str
-    acts: bool
+    is_action: bool
     request: tuple[Field, ...]
     reply: tuple[Field, ...]
     meaning: str
@@ -222,15 +222,17 @@ def _fields(text: str, before: int = 0) -> tuple[Field, ...]:
         if kind == "rest":
             low, _, high = range_of_rest.partition("..")
             room = payload_bytes(LARGE_FRAME) - before - sum(field.high for field in fields)
-            fields.append(Field(name, kind, int(low), int(high or room), fills=not high))
+            fields.append(Field(name, kind, int(low), int(high or room), fills_frame=not high))
         else:
             size = struct.calcsize(KINDS[kind])
             fields.append(Field(name, kind, size, size))
     return tuple(fields)
 
 
-def _message(number: int, name: str, acts: bool, request: str, reply: str, meaning: str) -> Message:
-    return Message(number, name, acts, _fields(request), _fields(reply, STATUS_BYTES), meaning)
+def _message(
+    number: int, name: str, is_action: bool, request: str, reply: str, meaning: str
+) -> Message:
+    return Message(number, name, is_action, _fields(request), _fields(reply, STATUS_BYTES), meaning)
 
 
 # The robot's memory has these records too: `port.h`.
@@ -460,20 +462,20 @@ def written(fields: tuple[Field, ...], values: Mapping[str, int | bytes]) -> byt
 
 def read(fields: tuple[Field, ...], payload: bytes) -> dict[str, int | bytes]:
     """Return the values in a payload. Raises Malformed if its length does not fit."""
-    found: dict[str, int | bytes] = {}
+    result: dict[str, int | bytes] = {}
     at = 0
     for field in fields:
         size = len(payload) - at if field.kind == "rest" else field.low
         if not field.low <= size <= field.high or at + size > len(payload):
             raise Malformed
         piece = payload[at : at + size]
-        found[field.name] = (
+        result[field.name] = (
             piece if field.kind == "rest" else struct.unpack("<" + KINDS[field.kind], piece)[0]
         )
         at += size
     if at != len(payload):
         raise Malformed
-    return found
+    return result
 
 
 def sizes(fields: tuple[Field, ...]) -> tuple[int, int]:

@@ -53,7 +53,7 @@ def accept(path: Path, robot: int) -> None:
     """Remember that a robot may answer where another one did. Raises OSError."""
 
     def with_it(before: Met) -> Met:
-        others = [each for each in before.accepted if each != robot]
+        others = [item for item in before.accepted if item != robot]
         return before._replace(accepted=[*others, robot])
 
     _change(path, with_it)

@@ -149,10 +149,10 @@ class Backlog:
         return len(self._events) + (self._missed > 0)
 
     def put(self, told: Iterable[Told]) -> None:
-        for each in told:
-            if each[1].name == "PLACE":  # the newest one says all
+        for item in told:
+            if item[1].name == "PLACE":  # the newest one says all
                 self._events = deque(one for one in self._events if one[1].name != "PLACE")
-            self._events.append(each)
+            self._events.append(item)
             if len(self._events) > KEPT:
                 self._drop()
 

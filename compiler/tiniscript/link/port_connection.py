@@ -112,10 +112,10 @@ class PortConnection(LinkConnection):
         self._wake()
         return began_ms
 
-    def halt(self, run: int) -> None:
+    def end_run(self, run: int) -> None:
         """End a run whose client has gone; what others have asked for goes on."""
         with self._news:
-            self.session.halt(run, self._now_ms())
+            self.session.end_run(run, self._now_ms())
         self._wake()
 
     def withdraw(self, request: PendingRequest[Any]) -> None:
@@ -174,15 +174,15 @@ class PortConnection(LinkConnection):
             while not self._is_closing:
                 with self._news:
                     data = self.session.poll(self._now_ms())
-                    self._tell()
+                    self._notify()
                 if data:
                     self._write(data)
                 heard = self._read()
                 if heard:
                     with self._news:
-                        self.heard += len(heard)
+                        self.note_heard(heard)
                         self.session.receive(heard, self._now_ms())
-                        self._tell()
+                        self._notify()
         except (OSError, TypeError) as why:  # TypeError: from pyserial, if the port is closed
             self._end(str(why))
         except Exception as bug:
@@ -197,26 +197,26 @@ class PortConnection(LinkConnection):
 
     def _read(self) -> bytes:
         """Wait for a byte and return it with those after it: a socket of pyserial tells of one."""
-        found = bytes(self._port.read(1))
+        result = bytes(self._port.read(1))
         with suppress(OSError):  # the port is gone: the next read says so, after its last bytes
-            while 0 < len(found) < READ_BYTES and (more := self._port.in_waiting):
-                found += self._port.read(more)
-        return found
+            while 0 < len(result) < READ_BYTES and (more := self._port.in_waiting):
+                result += self._port.read(more)
+        return result
 
     def _write(self, data: bytes) -> None:
         with suppress(serial.SerialTimeoutException):  # counts as lost: the session sends it again
             self._port.write(data)
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         """Pass events and outcomes on to the waiting thread and to the listener."""
         time_ms = self._now_ms()
-        told = [(time_ms, event) for event in self.session.events()]
+        messages = [(time_ms, event) for event in self.session.events()]
         over = [request for request in self._under_way if request.outcome is not None]
         if over:
             self._under_way = [request for request in self._under_way if request.outcome is None]
-        self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in told)
-        mine = [each for each in told if self._takes_places or each[1].name != "PLACE"]
+        self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in messages)
+        mine = [item for item in messages if self._takes_places or item[1].name != "PLACE"]
         self._events.put(mine)
         self._news.notify_all()
-        if self._listener is not None and (told or over):
-            self._listener(told)
+        if self._listener is not None and (messages or over):
+            self._listener(messages)

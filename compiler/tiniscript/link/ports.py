@@ -18,7 +18,7 @@ from tiniscript.link.port_names import is_address, is_at_broker, is_bluetooth, i
 from tiniscript.link.transports import Port, Transport
 
 if TYPE_CHECKING:
-    from tiniscript.link.transports.bluetooth_search import Seen
+    from tiniscript.link.transports.bluetooth_search import SeenDevice
     from tiniscript.link.transports.network import Announced
 
 OPEN_S = 20.0  # timeout of opening: a radio that is out of reach takes long
@@ -26,22 +26,22 @@ OPEN_S = 20.0  # timeout of opening: a radio that is out of reach takes long
 _TRANSPORTS = ((is_bluetooth, "bluetooth"), (is_at_broker, "broker"), (is_network_name, "network"))
 
 
-class Found(NamedTuple):
+class ListedPort(NamedTuple):
     """A port that the system lists, and the system's description of it."""
 
     port: str
     description: str
 
 
-def listed() -> list[Found]:
+def listed() -> list[ListedPort]:
     """Return the ports that the system knows. Opens none of them, because that resets boards."""
     from tiniscript.link.transports import serial
 
-    found = []
-    for each in serial.listed():
-        description = each.description if each.description != "n/a" else ""
-        found.append(Found(each.device, printable(description)))  # a device says it
-    return sorted(found)
+    matches = []
+    for item in serial.listed():
+        description = item.description if item.description != "n/a" else ""
+        matches.append(ListedPort(item.device, printable(description)))  # a device says it
+    return sorted(matches)
 
 
 def is_radio(port: str) -> bool:
@@ -54,7 +54,7 @@ def is_radio(port: str) -> bool:
     if sys.platform == "win32":
         from tiniscript.link.transports import serial
 
-        known = {each.device.lower(): each.hwid or "" for each in serial.listed()}
+        known = {item.device.lower(): item.hwid or "" for item in serial.listed()}
         return "BTHENUM" in known.get(name, "")
     return False
 
@@ -82,7 +82,7 @@ def opened_past_lock(port: str, baud: int, limit_s: float = OPEN_S) -> Port:
     return cast(Port, serial.opened(port, baud, limit_s, is_exclusive=False))
 
 
-def in_reach() -> list[Seen]:
+def in_reach() -> list[SeenDevice]:
     """Search with Bluetooth LE for some seconds, and return the robots. Raises PortError."""
     with _installed():
         from tiniscript.link.transports import bluetooth

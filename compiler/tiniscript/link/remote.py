@@ -44,10 +44,10 @@ def pressed(names: Iterable[str], x: int = 0, y: int = 0) -> Pressed:
     keys = 0
     for name in names:
         keys |= 1 << REMOTE_KEYS.index(name)
-    found = Pressed(keys, x, y)
-    if not found.is_sound:
-        raise ValueError(found)
-    return found
+    result = Pressed(keys, x, y)
+    if not result.is_sound:
+        raise ValueError(result)
+    return result
 
 
 class RemoteControl:
@@ -85,20 +85,20 @@ class RemoteControl:
         self._held.clear()
         self._said, self._unanswered = NOTHING, 0
         self._take_asked()
-        self._tell(Reply(status))
+        self._take_reply(Reply(status))
 
     @property
     def newest(self) -> Pressed:
         """All keys that somebody holds, and the pad of who has moved his last."""
-        found = NOTHING
-        for each in self._held.values():
-            pad = (each.x, each.y) if each.x or each.y else (found.x, found.y)
-            found = Pressed(found.keys | each.keys, *pad)
-        return found
+        result = NOTHING
+        for item in self._held.values():
+            pad = (item.x, item.y) if item.x or item.y else (result.x, result.y)
+            result = Pressed(result.keys | item.keys, *pad)
+        return result
 
     def due_ms(self) -> int | None:
         """Return when to look again, or None."""
-        times = [until for each in self._held if (until := self._until_ms[each]) is not None]
+        times = [until for item in self._held if (until := self._until_ms[item]) is not None]
         newest = self.newest
         if newest != self._said:
             gap_ms = EVERY_MS if self._unanswered == AHEAD else GAP_MS if self._unanswered else 0
@@ -135,12 +135,12 @@ class RemoteControl:
         """Take the robot's answer. One that takes no keys is not told of them again."""
         self._unanswered = 0
         if outcome.status == OK:
-            self._tell(Reply(OK, 0, EmptyReply()))
+            self._take_reply(Reply(OK, 0, EmptyReply()))
             return
         self._held.clear()
         self._said = NOTHING
         self._take_asked()
-        self._tell(Reply(outcome.status, outcome.detail))
+        self._take_reply(Reply(outcome.status, outcome.detail))
 
     def hear(self) -> None:
         """An earlier word was answered."""
@@ -148,13 +148,13 @@ class RemoteControl:
 
     def miss(self) -> None:
         """No answer has come in time."""
-        self._tell(Reply(LOST))
+        self._take_reply(Reply(LOST))
 
     def _take_asked(self) -> None:
         self._sent += self._asked.values()
         self._asked.clear()
 
-    def _tell(self, reply: Reply[EmptyReply]) -> None:
+    def _take_reply(self, reply: Reply[EmptyReply]) -> None:
         for pending_request in self._sent:
             pending_request.outcome = reply
         self._sent.clear()

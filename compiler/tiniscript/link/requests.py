@@ -182,7 +182,7 @@ def live(code: bytes, is_latched: bool, kit: int, robot: DeviceInfo) -> Exchange
     if kit not in (0, robot.kit):
         return Reply(STATUSES["WRONG_KIT"], robot.kit)
     request = Request("LIVE", {"mode": RUN, "code": code})
-    reply = yield from _unlatched(is_latched, patient(request, ReceiptReply))
+    reply = yield from _after_clear(is_latched, patient(request, ReceiptReply))
     is_older = robot.isa < (ISA_MAJOR, ISA_MINOR)
     if is_older and reply.status == RULES["UNKNOWN_OPCODE"][0]:  # LIVE names no version
         return _other_machine(robot)
@@ -201,10 +201,10 @@ def clear() -> Exchange[EmptyReply]:
 def start(is_detached: bool, is_latched: bool) -> Exchange[ReceiptReply]:
     """Start the program that the robot holds."""
     request = Request("START", {"mode": DETACHED * is_detached})
-    return _unlatched(is_latched, patient(request, ReceiptReply))
+    return _after_clear(is_latched, patient(request, ReceiptReply))
 
 
-def _unlatched(is_latched: bool, exchange: Exchange[T]) -> Exchange[T]:
+def _after_clear(is_latched: bool, exchange: Exchange[T]) -> Exchange[T]:
     """Release the latch, if a stop has set it, before an exchange."""
     if is_latched:
         cleared = yield from clear()
@@ -236,9 +236,9 @@ def upload(
     is_short = len(image.code) <= room and image.isa == isa and not image.later
     if is_short and is_its_kit:
         request = Request("PROGRAM", {"mode": mode, "code": image.code})
-        reply = yield from _unlatched(is_latched, patient(request, ReceiptReply))
+        reply = yield from _after_clear(is_latched, patient(request, ReceiptReply))
     else:
-        reply = yield from _unlatched(is_latched, _in_pieces(image, mode, robot))
+        reply = yield from _after_clear(is_latched, _in_pieces(image, mode, robot))
         if not is_its_kit and reply.status == RULES["NO_SUCH_DEVICE"][0]:
             return Reply(STATUSES["WRONG_KIT"], robot.kit)
     if reply.status == OK and reply.values.program != image.checksum:

@@ -24,30 +24,30 @@ def siphash(key: bytes, message: bytes) -> bytes:
     for at in range(0, len(padded), 8):
         word = int.from_bytes(padded[at : at + 8], "little")
         state[3] ^= word
-        state = _stirred(state, 2)
+        state = _sip_rounds(state, 2)
         state[0] ^= word
     state[2] ^= 0xFF
-    state = _stirred(state, 4)
+    state = _sip_rounds(state, 4)
     return (state[0] ^ state[1] ^ state[2] ^ state[3]).to_bytes(8, "little")
 
 
-def _stirred(state: list[int], rounds: int) -> list[int]:
+def _sip_rounds(state: list[int], rounds: int) -> list[int]:
     a, b, c, d = state
     for _ in range(rounds):
         a = (a + b) & _MASK
-        b = _left(b, 13) ^ a
-        a = _left(a, 32)
+        b = _rotate_left(b, 13) ^ a
+        a = _rotate_left(a, 32)
         c = (c + d) & _MASK
-        d = _left(d, 16) ^ c
+        d = _rotate_left(d, 16) ^ c
         a = (a + d) & _MASK
-        d = _left(d, 21) ^ a
+        d = _rotate_left(d, 21) ^ a
         c = (c + b) & _MASK
-        b = _left(b, 17) ^ c
-        c = _left(c, 32)
+        b = _rotate_left(b, 17) ^ c
+        c = _rotate_left(c, 32)
     return [a, b, c, d]
 
 
-def _left(word: int, bits: int) -> int:
+def _rotate_left(word: int, bits: int) -> int:
     return (word << bits | word >> 64 - bits) & _MASK
 
 
@@ -85,10 +85,10 @@ class Seal:
         assert not self.is_spent
         self.sent += 1
         counter = self.sent.to_bytes(COUNTER_BYTES, "little")
-        said = frame.payload
+        text = frame.payload
         if frame.number == _WIFI and not frame.is_reply:  # the only one with a secret: a password
-            said = said[:1] + self._covered(counter, said[1:])
-        payload = b"\0" + counter + said
+            text = text[:1] + self._mask(counter, text[1:])
+        payload = b"\0" + counter + text
         whole = frame._replace(payload=payload, is_sealed=True)
         return whole._replace(payload=payload + self._mac(whole))
 
@@ -104,7 +104,7 @@ class Seal:
         self.heard = counter
         return frame._replace(payload=payload[_BEFORE:])
 
-    def _covered(self, counter: bytes, text: bytes) -> bytes:
+    def _mask(self, counter: bytes, text: bytes) -> bytes:
         """Cover bytes of the frame with this counter: nobody else can read them."""
         stream = b"".join(
             siphash(self._key, counter + bytes([k])) for k in range(-(-len(text) // _BLOCK))

@@ -121,6 +121,7 @@ class PendingExchange(PendingRequest[T]):
         self.limit_ms, self.starts, self.ends_runs = limit_ms, starts, ends_runs
         self.exchange = exchange
         self.deadline_ms = 0
+        self.epoch: int | None = None  # in which it was asked for, by somebody
         self.is_own = is_own  # made by the session itself
         self.halts = halts  # the run of a client that has gone
         self.presses = presses  # keys of a remote control
@@ -219,7 +220,7 @@ class Session(Requester):
         self._cancel(CANCELLED)
         self._stop.begin(now_ms)
 
-    def halt(self, run: int, now_ms: int) -> None:
+    def end_run(self, run: int, now_ms: int) -> None:
         """End a run whose client has gone. What others have asked for goes on."""
         self._orphan = run
         self._end_orphan(now_ms)
@@ -425,8 +426,8 @@ class Session(Requester):
             self._end_exchange(pending, over.value, now_ms)
             return
         message = BY_NAME[request.name]
-        acts = message.number >= FIRST_ACTING and request.name not in UNSEALED
-        if pending.is_void and acts:
+        is_action = message.number >= FIRST_ACTING and request.name not in UNSEALED
+        if pending.is_void and is_action:
             pending.exchange.close()
             self._end_exchange(pending, Reply(_STALE), now_ms)
             return
@@ -599,7 +600,7 @@ class Session(Requester):
         ):
             reply = Reply(UNPROVEN)
         self._note_progress(reply, now_ms)
-        if isinstance(self._transmission, Window) and self._goes_on(reply, frame, now_ms):
+        if isinstance(self._transmission, Window) and self._take_data_reply(reply, frame, now_ms):
             return
         values = reply.values if reply.status == OK else None
         if isinstance(values, HelloReply):
@@ -683,16 +684,18 @@ class Session(Requester):
             if robot.state == STATE_STOPPED or (
                 is_same and (not is_fault or self._handshake.is_doubted)
             ):
-                self._void()
+                self._void(frame.epoch if is_same else None)
         self._handshake.doubted = None
 
-    def _void(self) -> None:
-        """The robot was stopped: do nothing that was asked for before. Questions are answered."""
+    def _void(self, began: int | None = None) -> None:
+        """The robot was stopped: do nothing that was asked for before. Questions are answered.
+
+        `began`: the epoch that has begun so, if what was asked for in it is known to be later.
+        """
         self._remote.let_go()
-        for waiting in self._waiting:
-            waiting.wanted.is_void = True
-        if self._pending is not None:
-            self._pending.wanted.is_void = True
+        for pending in (*self._waiting, *([self._pending] if self._pending else [])):
+            if began is None or pending.wanted.epoch != began:
+                pending.wanted.is_void = True
 
     def _tell_stop(self, event: StoppedEvent) -> None:
         """Tell that STOP has stopped the robot, if its event has not."""
@@ -714,7 +717,7 @@ class Session(Requester):
             pending.done_bytes = reply.values.next
         pending.deadline_ms = now_ms + pending.limit_ms
 
-    def _goes_on(self, reply: Reply[SentReply], frame: Frame, now_ms: int) -> bool:
+    def _take_data_reply(self, reply: Reply[SentReply], frame: Frame, now_ms: int) -> bool:
         """Take a reply to one of many DATA; return whether that was not the last one."""
         assert isinstance(self._transmission, Window)
         if frame.epoch != self._transmission.epoch or reply.status not in (OK, _STALE):
@@ -726,6 +729,8 @@ class Session(Requester):
         return not self._transmission.take(frame, next_offset, now_ms)
 
     def _look_first(self, has_ended: bool, is_other: bool) -> None:
+        if is_other:
+            self._handshake.is_open = False  # if this is lost, what is asked next finds out
         again = self._look_again(has_ended, is_other)
         self._waiting.appendleft(PendingExchange(again, DEAF_MS, is_own=True))
 
@@ -778,7 +783,7 @@ class Session(Requester):
                 self._ask_for_proof(event)
                 return
             if self._stop.due_ms is not None:
-                if not self._confirms(event, frame):
+                if not self._confirms_stop(event, frame):
                     self._take_end(event, frame)
                     self._state.take(event)
                     return
@@ -815,7 +820,7 @@ class Session(Requester):
     def _has_places(self) -> bool:
         return self.robot is not None and bool(self.robot.values.features & PLACES)
 
-    def _confirms(self, event: StoppedEvent, frame: Frame) -> bool:
+    def _confirms_stop(self, event: StoppedEvent, frame: Frame) -> bool:
         """Whether the stop that is under way has stopped the robot, or has found it stopped.
 
         Another stop's STOPPED may have been under way, and the robot may have started again since:
@@ -853,7 +858,7 @@ class Session(Requester):
             self._state.take(event)
             self._events.append(event)
         else:
-            self._lost()
+            self._lose_robot()
         return reply
 
     # -- exchanges --------------------------------------------------------------------------------
@@ -879,6 +884,7 @@ class Session(Requester):
         self, exchange: Exchange[T], starts: bool = False, ends_runs: bool = False
     ) -> PendingExchange[T]:
         pending = PendingExchange(exchange, starts=starts, ends_runs=ends_runs)
+        pending.epoch = self._epoch
         self._waiting.append(pending)
         return pending
 
@@ -917,9 +923,9 @@ class Session(Requester):
 
     def _close(self) -> None:
         self._cancel(LOST)
-        self._lost()
+        self._lose_robot()
 
-    def _lost(self) -> None:
+    def _lose_robot(self) -> None:
         """A robot that hears us and is not heard drives while it hears anything: first its dead
         man's time goes by, from the last frame on.
         """
@@ -931,9 +937,9 @@ class Session(Requester):
 
     def _cancel(self, status: int) -> None:
         if self._pending:
-            wanted = self._pending.wanted
-            is_midway = status == CANCELLED and wanted.is_midway
-            wanted.outcome = Reply(status, MIDWAY if is_midway else 0)
+            expected = self._pending.wanted
+            is_midway = status == CANCELLED and expected.is_midway
+            expected.outcome = Reply(status, MIDWAY if is_midway else 0)
         self._pending = self._orphan = self._handshake.doubted = None
         self._transmission.end()
         self._unheard_ms = None

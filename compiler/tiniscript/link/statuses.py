@@ -49,6 +49,6 @@ def sentence(status: int, detail: int, lang: str) -> Sentence:
         "version": f"{detail >> 8}.{detail & 0xFF}",
         "name": name,
     }
-    said = languages.text(CATALOGUE, f"{key}/said", lang)
+    text = languages.text(CATALOGUE, f"{key}/said", lang)
     advice = languages.found(CATALOGUE, f"{key}/try", lang) or ""
-    return Sentence(said.format(**values), advice.format(**values))
+    return Sentence(text.format(**values), advice.format(**values))

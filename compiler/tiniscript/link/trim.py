@@ -33,7 +33,7 @@ class Pace(NamedTuple):
         return all(at_40 < at_80 or (at_40, at_80) == (0, 0) for at_40, at_80 in lines)
 
     def data(self) -> bytes:
-        return struct.pack("<4H", *(round(100 * each) for each in self))
+        return struct.pack("<4H", *(round(100 * item) for item in self))
 
 
 class Trim(NamedTuple):
@@ -69,7 +69,7 @@ def told(reply: TrimReply) -> Trim:
     """Return the trim in the reply to TRIM."""
     pace = None
     if len(reply.pace) == PACE_BYTES:
-        pace = Pace(*(each / 100 for each in struct.unpack("<4H", reply.pace)))
+        pace = Pace(*(item / 100 for item in struct.unpack("<4H", reply.pace)))
     return Trim(
         bool(reply.wheels & EXCHANGED),
         bool(reply.wheels & LEFT_REVERSED),

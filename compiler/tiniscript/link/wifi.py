@@ -98,7 +98,7 @@ def forget() -> Exchange[WifiReply]:
 def give(network: Network) -> Exchange[WifiReply]:
     """Give the robot a network, in the parts that find room in a frame, and have it kept."""
     steps = [_request("NETWORK", network.name), *_parts("PASSWORD", network.password)]
-    return _given(steps, "HOST" if network.is_access_point else "JOIN")
+    return _run_steps(steps, "HOST" if network.is_access_point else "JOIN")
 
 
 def use_broker(broker: BrokerSettings | None) -> Exchange[WifiReply]:
@@ -111,7 +111,7 @@ def use_broker(broker: BrokerSettings | None) -> Exchange[WifiReply]:
         if broker.tls is not None:
             steps.append(_request("BROKER_TLS", broker.tls.date.to_bytes(4, "little")))
             steps += _parts("BROKER_TRUST", broker.tls.trust)
-    return _given(steps, "USE_BROKER")
+    return _run_steps(steps, "USE_BROKER")
 
 
 def address(reply: WifiReply) -> str:
@@ -129,7 +129,7 @@ def _parts(step: str, text: bytes) -> list[Request]:
     return [_request(step, text[k : k + WIFI_TEXT_BYTES]) for k in parts]
 
 
-def _given(steps: list[Request], last: str) -> Exchange[WifiReply]:
+def _run_steps(steps: list[Request], last: str) -> Exchange[WifiReply]:
     """Take the steps up to the first that is refused, then the one that has them kept."""
     for step in steps:
         reply = yield from requests.single(step, WifiReply)

@@ -28,25 +28,25 @@ class Wire:
 
     def heard(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
         """Wait `wait_ms` for a byte at most; return it and what follows until a silence."""
-        found = b""
+        result = b""
         wait = wait_ms
-        while len(found) < MOST_BYTES:
+        while len(result) < MOST_BYTES:
             more = self._read(wait)
             if not more:
                 break
-            found += more
+            result += more
             wait = quiet_ms
-        return found
+        return result
 
     def _read(self, wait_ms: int) -> bytes:
         try:
             self._port.timeout = wait_ms / 1000
-            found = bytes(self._port.read(1))
-            waiting = self._port.in_waiting if found else 0
+            result = bytes(self._port.read(1))
+            waiting = self._port.in_waiting if result else 0
             if waiting:
                 self._port.timeout = 0
-                found += self._port.read(waiting)
-            return found
+                result += self._port.read(waiting)
+            return result
         except TypeError as why:  # as above
             raise OSError(str(why)) from None
 

@@ -1,9 +1,10 @@
 """Reads what was meant by a wrong program. People are told of one that it reads wholly and surely.
 
-Six steps, a module each: meanings of words (`meanings`, with a lexicon for each language),
+Seven steps, a module each: meanings of words (`meanings`, with a lexicon for each language),
 rewrites (`rewrites`, with the table `rows`), slots, blocks, candidates (`search`, of whose lines
 `lines` finds the readings), explanations (`slips` says what is wrong with one instruction,
-`explanation` what with a text). `told` asks these and all other readers in their order.
+`explanation` what with a text), diagnostics (`meant`). `told` asks these and all other readers in
+their order.
 
 The laws, from which no row and no reader is exempt, and where each is kept:
 
@@ -23,6 +24,7 @@ The laws, from which no row and no reader is exempt, and where each is kept:
   wrong at several places is told once (`dedupe`).
 - A mistake points at what its message names (`pointing`), and a sign that nobody sees has a name
   (`invisible`).
+- What the comment sign of another language begins is a note, and nothing in it is read (`notes`).
 - A question in brackets that a word has not is asked before it, and a value there is named
   (`bracketed`).
 """

@@ -45,9 +45,9 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
         return {}
     for k, (value, its) in enumerate(zip(values, word.arguments, strict=False)):
         words = [word for word in plain(value).split() if word not in own]
-        said = [said_of(word, "power")[0] for word in words if said_of(word, "power")]
-        if said or is_amount(*words) or k == place:
-            sample = said[0] if said and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
+        texts = [said_of(word, "power")[0] for word in words if said_of(word, "power")]
+        if texts or is_amount(*words) or k == place:
+            sample = texts[0] if texts and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
             sample = _own_number(words, its.unit) or sample
             values[k] = f"{' ' * (k > 0)}{sample}"
     head = call[0][: len(call[0]) - len(call[2])]
@@ -58,5 +58,5 @@ def _own_number(words: Sequence[str], unit: str) -> str:
     """Return the number that words for an amount say in its unit: `muy lento 5 segundos`."""
     units = {said_of(word, "unit")[0] for word in words if said_of(word, "unit")}
     numbers = [(said_of(word, "number") or (word,))[0] for word in words]
-    found = [it for it in numbers if it.replace(".", "", 1).isdecimal() and (units or it != "1")]
-    return found[0] if len(found) == 1 and units <= {unit} else ""
+    matches = [it for it in numbers if it.replace(".", "", 1).isdecimal() and (units or it != "1")]
+    return matches[0] if len(matches) == 1 and units <= {unit} else ""

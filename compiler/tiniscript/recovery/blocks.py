@@ -70,7 +70,7 @@ def _is_behind(item: Item, reading: Reading) -> bool:
     No separator is before it, and one is after it.
     """
     tokens, items = reading.tokens, reading.items or ()
-    before = [each.kind for each in items if each.start < item.start][-1:]
+    before = [entry.kind for entry in items if entry.start < item.start][-1:]
     if item.word not in _ASKING or before != ["do"] or item.end >= len(tokens):
         return False
     apart, after = tokens[item.start - 1], tokens[item.end]
@@ -124,7 +124,7 @@ class Matching:
         return True
 
     def edit(self, old: int, *new: str) -> None:
-        self.edit_tokens(self.item.start, old, [made(each) for each in new])
+        self.edit_tokens(self.item.start, old, [made(item) for item in new])
 
     def edit_tokens(self, at: int, old: int, new: list[Lexeme]) -> None:
         self.edits.setdefault(self.k, []).append(Edit(at, old, new))
@@ -175,7 +175,7 @@ class Matching:
         """Whether a header is a word behind an instruction, and nothing more: `F(1, 80) LOP`."""
         tokens, (_, _, start, end) = self.line.reading.tokens, self.item
         around = [*tokens[max(0, start - 1) : start], *tokens[start + 1 : end]]
-        is_begun = [each.text for each in around[:2]] == [";", "("]
+        is_begun = [item.text for item in around[:2]] == [";", "("]
         return is_begun and end == len(tokens) and all(it.source is None for it in around)
 
     def is_when(self) -> bool:
@@ -315,8 +315,8 @@ class Matching:
         last = self.item.start
         items = [it for it in self.line.reading.items or () if block.start <= it.start <= last]
         arm = max((k for k, each in enumerate(items) if each.kind == "arm"), default=0)
-        told = [item for item in items[arm:] if item.kind == "do"]
-        between = self.line.reading.tokens[told[0].end : told[-1].start] if told else []
+        messages = [item for item in items[arm:] if item.kind == "do"]
+        between = self.line.reading.tokens[messages[0].end : messages[-1].start] if messages else []
         headers = sum(item.kind == "open" and item.word == "IF" for item in items)
         return headers > 1 or any(each.text == ";" and each.source is not None for each in between)
 

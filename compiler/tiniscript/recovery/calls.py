@@ -43,14 +43,14 @@ class _Call(NamedTuple):
 
 def misplaced_values(source: Source) -> list[Diagnostic]:
     """Return what is told of calls whose values are in another form."""
-    told = []
+    diagnostics = []
     start = 0
     for line in source.text.split("\n"):
         for call in _calls(without_note(line)[0], start):
             readings = _unit_apart(call), _thousands(call), _seconds_of_motors(call, source.text)
-            told += [found for found in readings if found][:1]
+            diagnostics += [reading for reading in readings if reading][:1]
         start += len(line) + 1
-    return told
+    return diagnostics
 
 
 def _calls(body: str, start: int) -> Iterator[_Call]:
@@ -58,14 +58,16 @@ def _calls(body: str, start: int) -> Iterator[_Call]:
         word = WORDS.get(match[1].upper())
         if word is not None and word.arguments:
             span = Span(start + match.start(), start + match.end())
-            yield _Call(word, _parted(match[2]), span, match[0])
+            yield _Call(word, _split_values(match[2]), span, match[0])
 
 
-def _parted(values: str) -> list[str]:
-    return [each.strip() for each in _COMMA.split(values)]
+def _split_values(values: str) -> list[str]:
+    return [item.strip() for item in _COMMA.split(values)]
 
 
-def _told(call: _Call, code: codes.Code, fix: str, is_sure: bool, **values: str) -> Diagnostic:
+def _call_diagnostic(
+    call: _Call, code: codes.Code, fix: str, is_sure: bool, **values: str
+) -> Diagnostic:
     repair = Repair((Edit(call.span, fix),), is_sure)
     return Diagnostic(code, call.span, {**values, "fix": fix}, call.span, repair)
 
@@ -73,7 +75,7 @@ def _told(call: _Call, code: codes.Code, fix: str, is_sure: bool, **values: str)
 def _unit_apart(call: _Call) -> Diagnostic | None:
     """`F(20, CM, 60)`, `F(CM, 20, 60)`, `F(20, 60, CM)`, `F(CM SIDE, 60)`."""
     unit = UNIT_OF.get(call.word.text, "")
-    values = [each for each in call.values if each.upper() != unit]
+    values = [value for value in call.values if value.upper() != unit]
     before = _UNIT_BEFORE.fullmatch(values[0]) if values else None
     if before and before["unit"].upper() == unit and len(values) == len(call.values):
         values[0] = before["value"]
@@ -83,7 +85,9 @@ def _unit_apart(call: _Call) -> Diagnostic | None:
         return None
     first, second = (word for word, its in UNIT_OF.items() if its == unit)
     fix = call.with_values([f"{values[0]} {unit}", *values[1:]])
-    return _told(call, codes.UNIT_PLACE, fix, True, found=unit, first=first, second=second)
+    return _call_diagnostic(
+        call, codes.UNIT_PLACE, fix, True, found=unit, first=first, second=second
+    )
 
 
 def _thousands(call: _Call) -> Diagnostic | None:
@@ -93,7 +97,7 @@ def _thousands(call: _Call) -> Diagnostic | None:
         return None
     joined = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
     inside = joined.partition("(")[2].rpartition(")")[0]
-    values = _parted(inside)
+    values = _split_values(inside)
     is_of_time = any(
         argument.unit == "s" and value not in call.values
         for argument, value in zip(wanted, values, strict=False)
@@ -101,7 +105,7 @@ def _thousands(call: _Call) -> Diagnostic | None:
     if len(values) != len(wanted) or is_of_time:
         return None
     fix = call.with_values(values)
-    return _told(call, codes.BAD_NUMBER, fix, True, found=found[0])
+    return _call_diagnostic(call, codes.BAD_NUMBER, fix, True, found=found[0])
 
 
 def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
@@ -116,7 +120,7 @@ def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
     fix = f"{call.with_values(powers)};W({time})"
     fix += "" if text[call.span.end :].strip() else ";S"
     values = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
-    return _told(call, codes.ARGUMENT_COUNT, fix, False, **values)
+    return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **values)
 
 
 # -- what is shown of a call that nothing reads ---------------------------------------------------
@@ -132,8 +136,8 @@ def own_example(text: str) -> str:
     unit = UNIT_OF.get(call.word.text, "") if call else ""
     if call is None or not unit:
         return ""
-    values = [re.sub(rf"(?i)\b{unit}\b", "", each).strip() for each in call.values]
-    values = [re.sub(r"  +", " ", each) for each in values if each]
+    values = [re.sub(rf"(?i)\b{unit}\b", "", value).strip() for value in call.values]
+    values = [re.sub(r"  +", " ", value) for value in values if value]
     is_whole = len(values) == len(call.word.arguments)
     return call.with_values([f"{values[0]} {unit}", *values[1:]]) if is_whole else ""
 
@@ -141,19 +145,19 @@ def own_example(text: str) -> str:
 def likely_word(word: str, text: str) -> str:
     """Return the word of a call that an unknown one may be by its letters and its values."""
     call = _ANY_CALL.fullmatch(text)
-    values = _parted(call[1]) if call else []
+    values = _split_values(call[1]) if call else []
     numbers = [number for number in map(_NUMBER.match, values) if number]
     if not values or len(numbers) != len(values):
         return ""
     is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
     short = shortened(word)
     if is_tone:
-        found = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
+        result = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
     elif len(short) == 1:
-        found = short[0]
+        result = short[0]
     else:
-        found = word[:1] if len(word) <= _SHORT else ""
-    return found if found in WORDS and len(WORDS[found].arguments) == len(values) else ""
+        result = word[:1] if len(word) <= _SHORT else ""
+    return result if result in WORDS and len(WORDS[result].arguments) == len(values) else ""
 
 
 def usage_with(word: str, number: str) -> str:

@@ -46,6 +46,7 @@ from tiniscript.recovery.meanings import (
     said_of,
     texts,
 )
+from tiniscript.recovery.notes import note_edits
 from tiniscript.recovery.rewrites import one_word
 from tiniscript.recovery.writing import PLAIN_SIGNS, without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
@@ -70,8 +71,11 @@ _AS = {
 }  # fmt: skip
 _TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
 _NEGATES = ("no", "without", "unless", "different")
-# What frames a program and says nothing: its setup, the tags of a page; and labels of lines.
-_FRAME = re.compile(r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>")
+# What frames a program and says nothing: its setup, the tags of a page, a function with no name;
+# and labels of lines.
+_FRAME = re.compile(
+    r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>|(?:\bfunction\s*\(\s*\)|\(\s*\)\s*=>)(?=\s*\{)"
+)
 _ESCAPED = {"¡=": "!=", "&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
 _PARTS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
 _GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
@@ -123,7 +127,7 @@ UNKNOWN = Difference([""], [])  # nobody has looked, or not at this alone
 
 def difference(text: str, repaired: str, kit: Kit) -> Difference:
     """Return what a text says that a repaired one doesn't, and what only that does."""
-    before, after = _of_wrong(text, _words_of(repaired), kit), _of_right(repaired, kit)
+    before, after = _words_of_wrong(text, _words_of(repaired), kit), _words_of_right(repaired, kit)
     lost = [*_amounts(before, after), *_words(before, after), *_questions(before, after)]
     lost += before.sums() - after.sums()
     more = [word for word in _DRIVES if after.words[word] > before.meant[word]]
@@ -138,35 +142,39 @@ def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[D
     It is shown together with what is `lost`, and so is what was not sure before.
     """
     sure = [it for it in diagnostics if it.repair and it.repair.is_sure and it.repair.edits]
-    lost = _lost_by_sure(sure, text, kit)
+    lost = _losses_of_sure_repairs(sure, text, kit)
     shown = [it for it in diagnostics if id(it) not in lost and not it.values.get("lost")
              and not (it.repair and it.repair.is_sure) and edits_of(it)]  # fmt: skip
-    gone = zip(shown, _lost_by(shown, text, kit), strict=True)
-    left_out = {id(it): found for it, its in gone if (found := _unsaid(it, its.lost, text))}
+    gone = zip(shown, _losses(shown, text, kit), strict=True)
+    left_out = {
+        id(it): found for it, its in gone if (found := _unmentioned_losses(it, its.lost, text))
+    }
     return [
-        _shown(it, lost[id(it)].lost) if id(it) in lost
-        else _shown(it, left_out[id(it)]) if id(it) in left_out else it
+        _with_losses(it, lost[id(it)].lost) if id(it) in lost
+        else _with_losses(it, left_out[id(it)]) if id(it) in left_out else it
         for it in diagnostics
     ]  # fmt: skip
 
 
-def _lost_by_sure(sure: Sequence[Diagnostic], text: str, kit: Kit) -> dict[int, Difference]:
+def _losses_of_sure_repairs(
+    sure: Sequence[Diagnostic], text: str, kit: Kit
+) -> dict[int, Difference]:
     """Return what is lost by which sure repairs: by one alone, or by all of them together."""
     edits = [it.repair.edits for it in sure if it.repair]
     joint = [it for k in _layers(dict(enumerate(edits)))[0] for it in edits[k]]
     if not joint or not any(difference(text, applied(text, joint), kit)):
         return {}
-    lost = {id(it): its for it, its in zip(sure, _lost_by(sure, text, kit), strict=True)}
-    is_joint = not any(any(each) for each in lost.values())  # none alone: then all together do it
+    lost = {id(it): its for it, its in zip(sure, _losses(sure, text, kit), strict=True)}
+    is_joint = not any(any(item) for item in lost.values())  # none alone: then all together do it
     return {key: its for key, its in lost.items() if is_joint or any(its)}
 
 
 def keeps_all(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
     """Return for each diagnostic whether its changes alone lose nothing that was written."""
-    return [not its.lost for its in _lost_by(diagnostics, text, kit)]
+    return [not loss.lost for loss in _losses(diagnostics, text, kit)]
 
 
-def _lost_by(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Difference]:
+def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Difference]:
     """Return what the changes of each of these lose alone.
 
     Where they are many, they are looked at together: halves of them while there are looks left. Of
@@ -175,13 +183,13 @@ def _lost_by(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Dif
     edits = [edits_of(it) or () for it in diagnostics]
     changing = [k for k, its in enumerate(edits) if its]
     left = min(LOOKS, LOOKED_AT // (len(text) + 1))
-    found = [NOTHING] * len(edits)
+    differences = [NOTHING] * len(edits)
     groups = deque([k] for k in changing)
     if len(groups) > left:
         *layers, rest = _layers({k: edits[k] for k in changing})
         groups = deque(layers)
         for k in rest:
-            found[k] = UNKNOWN
+            differences[k] = UNKNOWN
     while groups:
         group, left = groups.popleft(), left - 1
         joint = difference(text, applied(text, [it for k in group for it in edits[k]]), kit)
@@ -189,41 +197,43 @@ def _lost_by(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Dif
         if half and any(joint) and left > len(groups) + 1:
             groups += [group[:half], group[half:]]
         elif any(joint):
-            shares = _shares(joint, [_around(edits[k], text) for k in group])
+            shares = _split_difference(joint, [_surrounding_text(edits[k], text) for k in group])
             for k, share in zip(group, shares, strict=True):
-                found[k] = share
-    return found
+                differences[k] = share
+    return differences
 
 
 def _layers(edits: Mapping[int, Sequence[Edit]]) -> list[list[int]]:
     """Return groups of changes that do not touch, by their keys, and at last those in no group."""
     layers: list[list[int]] = [[] for _ in range(LAYERS + 1)]
-    taken: list[list[Span]] = [[] for _ in range(LAYERS)]
+    spanses: list[list[Span]] = [[] for _ in range(LAYERS)]
     for k, its in edits.items():
-        free = (at for at, spans in enumerate(taken) if not any(_touches(it, spans) for it in its))
+        free = (
+            at for at, spans in enumerate(spanses) if not any(_overlaps(it, spans) for it in its)
+        )
         at = next(free, LAYERS)
         layers[at].append(k)
         for edit in its if at < LAYERS else ():
-            insort(taken[at], edit.span)
+            insort(spanses[at], edit.span)
     return [layer for layer in layers[:-1] if layer] + layers[-1:]
 
 
-def _touches(edit: Edit, spans: Sequence[Span]) -> bool:
+def _overlaps(edit: Edit, spans: Sequence[Span]) -> bool:
     """Whether a change is at a place that others have; these are in order, and do not touch."""
     at = bisect_right(spans, edit.span.end, key=lambda span: span.start)
     return at > 0 and spans[at - 1].end >= edit.span.start
 
 
-def _shares(joint: Difference, parts: Sequence[str]) -> list[Difference]:
+def _split_difference(joint: Difference, parts: Sequence[str]) -> list[Difference]:
     """Return what each of several changes loses, which are in these parts: what stands there."""
     if len(parts) == 1:
         return [joint]
     own = [[it for it in joint.lost if it in part] for part in parts]
-    is_told = not joint.more and {*joint.lost} == {it for its in own for it in its}
-    return [Difference(its, []) if its or is_told else UNKNOWN for its in own]
+    is_told = not joint.more and {*joint.lost} == {it for item in own for it in item}
+    return [Difference(item, []) if item or is_told else UNKNOWN for item in own]
 
 
-def _around(edits: Sequence[Edit], text: str) -> str:
+def _surrounding_text(edits: Sequence[Edit], text: str) -> str:
     """Return the instructions that changes are in."""
     start, end = min(edits).span.start, max(edit.span.end for edit in edits)
     begin = max(text.rfind(sign, 0, start) for sign in _SEPARATORS) + 1
@@ -231,23 +241,23 @@ def _around(edits: Sequence[Edit], text: str) -> str:
     return text[begin : min((it for it in behind if it >= 0), default=len(text))]
 
 
-def _unsaid(diagnostic: Diagnostic, lost: Sequence[str], text: str) -> list[str]:
+def _unmentioned_losses(diagnostic: Diagnostic, lost: Sequence[str], text: str) -> list[str]:
     """Return what a shown change leaves out and does not say: a unit, or what it only cuts out.
 
     A minus is none of these: a move goes the other way then.
     """
     edits = edits_of(diagnostic) or []
-    made = " ".join(edit.text for edit in edits).upper()
+    outcome = " ".join(edit.text for edit in edits).upper()
     gone = {*_WRITTEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())}
-    kept = {*_WRITTEN.findall(made)}
+    kept = {*_WRITTEN.findall(outcome)}
     is_cut = kept <= gone and diagnostic.code not in _NAMING
-    found = []
-    for each in lost:
-        unit = _WITH_UNIT.fullmatch(each) if diagnostic.repair else None
-        is_unit = unit is not None and unit[1].upper() not in made
-        if is_unit or (is_cut and each.upper() in gone - kept):
-            found.append(each)
-    return found
+    result = []
+    for item in lost:
+        unit = _WITH_UNIT.fullmatch(item) if diagnostic.repair else None
+        is_unit = unit is not None and unit[1].upper() not in outcome
+        if is_unit or (is_cut and item.upper() in gone - kept):
+            result.append(item)
+    return result
 
 
 def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
@@ -262,7 +272,7 @@ def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[
         for diagnostic in diagnostics
         if _ASKS_NEAR.search(diagnostic.values.get("fix", ""))
     ]
-    if not guesses or any(it.value == float(NEAR_CM) for it in _of_right(text, kit).amounts):
+    if not guesses or any(it.value == float(NEAR_CM) for it in _words_of_right(text, kit).amounts):
         return [*diagnostics]
     sample = {"sample": f"{NEAR_CM} cm"}
     return [
@@ -273,7 +283,7 @@ def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[
     ]
 
 
-def _shown(diagnostic: Diagnostic, lost: Sequence[str]) -> Diagnostic:
+def _with_losses(diagnostic: Diagnostic, lost: Sequence[str]) -> Diagnostic:
     values = {**diagnostic.values, "lost": ", ".join(lost)} if lost else diagnostic.values
     repair = diagnostic.repair and diagnostic.repair._replace(is_sure=False)
     return diagnostic._replace(values=values, repair=repair)
@@ -286,7 +296,7 @@ class _Said:
         self.is_right = is_right  # as far as it is repaired
         self.others = others
         parts = [without_note(line.translate(PLAIN_SIGNS)) for line in text.split("\n")]
-        self.notes = Counter(self._all_of([note for _, note in parts]))
+        self.notes = Counter(self._all_lines([note for _, note in parts]))
         self.body = self._without_frame("\n".join(body for body, _ in parts))
         lines = [lexemes(self._apart(line)) for line in self.body.split("\n")]
         self.names = Names(lines, kit)
@@ -309,7 +319,7 @@ class _Said:
         self._read()
 
     @staticmethod
-    def _all_of(lines: Sequence[str]) -> list[str]:
+    def _all_lines(lines: Sequence[str]) -> list[str]:
         return [concept_of(text) or text for line in lines for text in texts(lexemes(line))]
 
     @staticmethod
@@ -358,18 +368,18 @@ class _Said:
             return "S" if text == "STOP" else text
         return (concept_of(text) or "") if len(lexicon().get(text, ())) == 1 else ""
 
-    def _may_be(self, token: Lexeme) -> set[str]:
+    def _possible_words(self, token: Lexeme) -> set[str]:
         """Return the words of the language that a word may say."""
         if token.text not in self._meanings:
             self._meanings[token.text] = self._found_in(token)
         return self._meanings[token.text]
 
     def _found_in(self, token: Lexeme) -> set[str]:
-        found = {self._word(token), concept_of(token.text) or ""}
-        found |= {
+        matches = {self._word(token), concept_of(token.text) or ""}
+        matches |= {
             meaning.concept for meaning in self.names.meanings(token.text) if meaning.cost <= NEAR
         }
-        return {"S" if each == "STOP" else each for each in found}
+        return {"S" if item == "STOP" else item for item in matches}
 
     def _read(self) -> None:
         slots = self._slots()
@@ -377,14 +387,14 @@ class _Said:
         while k < len(self.tokens):
             token, before = self.tokens[k], self.tokens[k - 1] if k else _END
             if token.text == "(":
-                depth.append(bool(self._may_be(before) & CALLED))
+                depth.append(bool(self._possible_words(before) & CALLED))
             elif token.text == ")":
                 depth = depth[:-1] or [False]
             elif token is _END:
                 depth = [False]
             if (value := self._number(token)) is not None:
                 is_said = bool(said_of(before.text, "leaves", "by")) and before.kind is WORD
-                k = k + 1 if is_said or self._is_yes(k) else self._take(k, value, slots[k])
+                k = k + 1 if is_said or self._is_yes(k) else self._add_amount(k, value, slots[k])
                 continue
             if token.kind is WORD and not self._is_label(k):
                 self._take_word(k, len(depth) > 1)
@@ -394,11 +404,15 @@ class _Said:
     def _is_yes(self, k: int) -> bool:
         """Whether a 1 alone is asked for yes: `while (1)`."""
         head, sign = self.tokens[max(0, k - 2)], self.tokens[k - 1]
-        is_alone = (sign.text, self.tokens[k].text, self._after(k).text) == ("(", "1", ")")
-        return is_alone and bool(self._may_be(head) & ASKING)
+        is_alone = (sign.text, self.tokens[k].text, self._next_lexeme(k).text) == ("(", "1", ")")
+        return is_alone and bool(self._possible_words(head) & ASKING)
 
     def _take_word(self, k: int, is_in_brackets: bool) -> None:
-        token, before, after = self.tokens[k], self.tokens[k - 1] if k else _END, self._after(k)
+        token, before, after = (
+            self.tokens[k],
+            self.tokens[k - 1] if k else _END,
+            self._next_lexeme(k),
+        )
         if self._is_loose_unit(k):
             self.loose.append((said_of(token.text, "unit")[0], token.source or token.text))
             return
@@ -407,17 +421,19 @@ class _Said:
         is_part = token.text in self._parts
         is_sign = token.text == "X" and before.kind is NUMBER and after.kind in (NUMBER, WORD)
         is_joint = (
-            word in ("AND", "OR") and not is_in_brackets and bool(self._may_be(after) & _DRIVES)
+            word in ("AND", "OR")
+            and not is_in_brackets
+            and bool(self._possible_words(after) & _DRIVES)
         )
         is_again = (word == "IF" and before.text in ("AND", "OR")) or (
             word == "OR" and before.text in _SENSES
         )
-        is_again |= after.text == "." and self._after(k + 1).kind is WORD  # `random.randint`
+        is_again |= after.text == "." and self._next_lexeme(k + 1).kind is WORD  # `random.randint`
         is_again |= word in MOVES and after.kind is WORD and word == self._word(after)
         is_needless = (word == "TRUE" and "=" in around and is_in_brackets) or (
             word == "TIME" and not around & _SENSES.keys()
         )
-        self.meant.update(self._may_be(token))
+        self.meant.update(self._possible_words(token))
         self.strange += token.text not in WORDS and not self.names.is_name(token.text)
         if is_part or is_sign or is_joint or is_again or is_needless:
             return
@@ -426,7 +442,7 @@ class _Said:
             self.foreign[word] += word != token.text
             self.written.setdefault(word, token.source or token.text)
 
-    def _after(self, k: int) -> Lexeme:
+    def _next_lexeme(self, k: int) -> Lexeme:
         return self.tokens[k + 1] if k + 1 < len(self.tokens) else _END
 
     def _is_label(self, k: int) -> bool:
@@ -435,25 +451,29 @@ class _Said:
         before = self.tokens[back] if k else _END
         is_end = before.text in ENDED or bool(said_of(before.text, "end"))
         token = self.tokens[k]
-        is_block = token.text in self.names.defs or bool(self._may_be(token) & BLOCK_ENDS.keys())
-        return is_end and is_block and before.kind is WORD and self._after(k).text in (";", "(")
+        is_block = token.text in self.names.defs or bool(
+            self._possible_words(token) & BLOCK_ENDS.keys()
+        )
+        return (
+            is_end and is_block and before.kind is WORD and self._next_lexeme(k).text in (";", "(")
+        )
 
     # -- numbers ---------------------------------------------------------------------------------
 
     def _number(self, token: Lexeme) -> float | None:
         if token.kind is NUMBER:
             return float(token.text)
-        said = said_of(token.text, "number") if token.kind is WORD else ()
+        text = said_of(token.text, "number") if token.kind is WORD else ()
         is_other = self.names.is_name(token.text) or len(lexicon().get(token.text, ())) > 1
-        return float(said[0]) if said and not is_other and said != ("1",) else None
+        return float(text[0]) if text and not is_other and text != ("1",) else None
 
-    def _take(self, k: int, value: float, slot: str) -> int:
+    def _add_amount(self, k: int, value: float, slot: str) -> int:
         """Keep the number at a place with its sign and its unit; return where to read on."""
-        token, after = self.tokens[k], self._after(k)
+        token, after = self.tokens[k], self._next_lexeme(k)
         is_minus = self._is_minus(k)
-        written = f"{'-' if is_minus else ''}{token.source or token.text}"
+        text = f"{'-' if is_minus else ''}{token.source or token.text}"
         while token.kind is WORD and value % 10 == 0:  # `ochenta y cinco`
-            at = k + 1 + bool(said_of(self._after(k).text, "and"))
+            at = k + 1 + bool(said_of(self._next_lexeme(k).text, "and"))
             more = self._number(self.tokens[at]) if at < len(self.tokens) else None
             if more is None or more >= (100 if value % 100 == 0 else 10):
                 break
@@ -462,9 +482,9 @@ class _Said:
         if said := self._unit_after(k):
             unit, scale = said
             value, k = value * scale / 1000, k + 1
-            written += f"{after.space or ''}{after.source or after.text}"
+            text += f"{after.space or ''}{after.source or after.text}"
         signed = -value if is_minus else value
-        self.amounts.append(Amount(signed, unit, written, self.lines[k]))
+        self.amounts.append(Amount(signed, unit, text, self.lines[k]))
         return k + 1
 
     def _is_minus(self, k: int) -> bool:
@@ -478,23 +498,27 @@ class _Said:
 
     def _unit_after(self, k: int) -> tuple[str, float] | None:
         """Return the unit after a number, and how many thousandths of it one is."""
-        token, next_one = self._after(k), self._after(k + 1).text
+        token, next_one = self._next_lexeme(k), self._next_lexeme(k + 1).text
         if token.text == "%" and next_one in (")", ",", ";"):  # no remainder of a division
             return "%", 1000
-        said = said_of(token.text, "unit")
+        text = said_of(token.text, "unit")
         is_letter = len(token.text) == 1 and token.kind is WORD
         is_apart = is_letter and token.space != "" and next_one not in (",", ")")
         is_order = is_letter and token.source == token.text and token.space != ""
-        if not said or (is_apart and is_order) or self.names.is_name(token.text):
+        if not text or (is_apart and is_order) or self.names.is_name(token.text):
             return None
-        return said[0] if said[0] in _COUNTED_UNITS else "", float(said[1])
+        return text[0] if text[0] in _COUNTED_UNITS else "", float(text[1])
 
     def _is_loose_unit(self, k: int) -> bool:
         """Whether a word says a unit and nothing else, of no number."""
-        token, before, after = self.tokens[k], self.tokens[k - 1] if k else _END, self._after(k)
-        said = {each.kind for each in lexicon().get(token.text, ())}
+        token, before, after = (
+            self.tokens[k],
+            self.tokens[k - 1] if k else _END,
+            self._next_lexeme(k),
+        )
+        texts = {item.kind for item in lexicon().get(token.text, ())}
         is_behind = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
-        is_unit = said == {"unit"} or ("unit" in said and (is_behind or token.text in WAYS))
+        is_unit = texts == {"unit"} or ("unit" in texts and (is_behind or token.text in WAYS))
         is_free = not self.names.is_name(token.text) and after.kind is not NUMBER
         if not is_unit or not is_free or (len(token.text) == 1 and not is_behind):
             return False
@@ -555,12 +579,12 @@ class _Said:
 
     def calls(self, name: str) -> int:
         """Return how often a DEF is called: after DEF, or after an end, its name is no call."""
-        found = 0
+        result = 0
         for k, (before, lexeme) in enumerate(pairwise([_END, *self.tokens])):
-            found += lexeme.text == name and not (
-                "DEF" in self._may_be(before) or self._is_label(k)
+            result += lexeme.text == name and not (
+                "DEF" in self._possible_words(before) or self._is_label(k)
             )
-        return found
+        return result
 
     @cached_property
     def negations(self) -> list[str]:
@@ -571,7 +595,9 @@ class _Said:
             if not is_no or self.names.is_name(token.text):
                 continue
             around = self.tokens[max(0, k - 4) : k]
-            if said_of(token.text, "unless") or any(self._may_be(it) & ASKING for it in around):
+            if said_of(token.text, "unless") or any(
+                self._possible_words(it) & ASKING for it in around
+            ):
                 negations.append(token.source or token.text)
         return negations
 
@@ -598,7 +624,7 @@ class _Said:
         left = [
             lexeme for lexeme in self.tokens if lexeme is not _END and lexeme.text not in (";", "{")
         ]
-        found = 0
+        result = 0
         for k, token in enumerate(left):
             word = self._word(token)
             if word in _HEADS:
@@ -606,33 +632,34 @@ class _Said:
                 end += word == "DEF"
                 if 0 < end < len(left):
                     is_over = left[end].text in (*ENDED, "}") or self._word(left[end]) in _ARMS
-                    found += is_over
-        return found
+                    result += is_over
+        return result
 
     def _arms_in_brackets(self) -> int:
         """Return how many IFs have two branches in their brackets: `IF(question, F, B)`."""
-        found = 0
+        result = 0
         for k, token in enumerate(self.tokens[:-1]):
-            end = closed(self.tokens, k + 1) if self._after(k).text == "(" else 0
-            if end and "IF" in self._may_be(token):
+            end = closed(self.tokens, k + 1) if self._next_lexeme(k).text == "(" else 0
+            if end and "IF" in self._possible_words(token):
                 inside = pairwise(self.tokens[k + 2 : end - 1])
                 begun = [b for a, b in inside if a.text in (",", ";")]
-                found += sum(bool(self._may_be(lexeme) & _DRIVES) for lexeme in begun) > 1
-        return found
+                result += sum(bool(self._possible_words(lexeme) & _DRIVES) for lexeme in begun) > 1
+        return result
 
 
 @lru_cache(2)
-def _of_wrong(text: str, others: frozenset[str], kit: Kit) -> _Said:
+def _words_of_wrong(text: str, others: frozenset[str], kit: Kit) -> _Said:
+    text = applied(text, note_edits(text))
     return _Said(applied(text, key_edits(text, kit)), others, kit, is_right=False)
 
 
 @lru_cache(2)
-def _of_right(text: str, kit: Kit) -> _Said:
+def _words_of_right(text: str, kit: Kit) -> _Said:
     return _Said(text, _words_of(text), kit, is_right=True)
 
 
 def _words_of(text: str) -> frozenset[str]:
-    return frozenset(each.upper() for each in _NAME.findall(text))
+    return frozenset(item.upper() for item in _NAME.findall(text))
 
 
 def _amounts(before: _Said, after: _Said) -> Iterator[str]:
@@ -652,7 +679,7 @@ def _amounts(before: _Said, after: _Said) -> Iterator[str]:
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
     units |= {after.units.get(token.text, "") for token in after.tokens}
     loose = Counter(after.loose)
-    yield from (each[1] for each in before.loose if each[0] not in units and not loose[each])
+    yield from (item[1] for item in before.loose if item[0] not in units and not loose[item])
 
 
 class _Stock:
@@ -666,15 +693,15 @@ class _Stock:
 
     def has(self, values: Sequence[float]) -> bool:
         """Whether there is one for each of these, of which there is one at least."""
-        found = (len(self.places.get(value, ())) >= n for value, n in Counter(values).items())
-        return bool(values) and all(found)
+        result = (len(self.places.get(value, ())) >= n for value, n in Counter(values).items())
+        return bool(values) and all(result)
 
     def take(self, values: Sequence[float]) -> None:
         for value in values:
             self.places[value].popleft()
 
     def all(self) -> list[Amount]:
-        return [self.amounts[k] for k in sorted(k for its in self.places.values() for k in its)]
+        return [self.amounts[k] for k in sorted(k for item in self.places.values() for k in item)]
 
 
 def _apart(
@@ -727,9 +754,9 @@ def _runs(text: str) -> Iterator[tuple[float, list[float]]]:
             if not all(_BETWEEN.fullmatch(gap) for gap in gaps):
                 break
             digits = [match[0].translate(_LETTERS) for match in run]
-            written = text[run[0].start() : run[-1].end()]
-            parts = [float(each) for each in re.findall(r"\d+(?:\.\d+)?|\.\d+", written)]
-            yield from ((value, parts) for value in _values(digits, ":" in written))
+            sentence = text[run[0].start() : run[-1].end()]
+            parts = [float(item) for item in re.findall(r"\d+(?:\.\d+)?|\.\d+", sentence)]
+            yield from ((value, parts) for value in _values(digits, ":" in sentence))
 
 
 def _values(digits: Sequence[str], is_time: bool) -> Iterator[float]:
@@ -756,7 +783,7 @@ def _questions(before: _Said, after: _Said) -> Iterator[str]:
     """Give the comparisons that are gone, or turned round, and branches that nothing is in."""
     asked = _senses(before) - (after.notes - before.notes)
     left = _senses(after)
-    turners = ({word: said.words[word] for word in _TURNERS} for said in (before, after))
+    turners = ({word: item.words[word] for word in _TURNERS} for item in (before, after))
     negated = (before.negations, after.negations)
     may_turn = bool(negated[0] or negated[1]) or len({str(turner) for turner in turners}) > 1
     if asked.total() > left.total() or (asked - left and not may_turn):

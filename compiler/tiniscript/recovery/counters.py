@@ -40,45 +40,45 @@ class _Counter(NamedTuple):
 
 def counters(source: Source) -> list[Diagnostic]:
     """Return what is told of headers with a counter that is used, and of the ends that name it."""
-    told: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     rows = [lexemes(without_note(line)[0]) for line in source.text.split("\n")]
-    found = [[*_headers(row)] for row in rows]
-    names = {each.name for row in found for each in row}
+    matches = [[*_headers(row)] for row in rows]
+    names = {item.name for row in matches for item in row}
     if not names:
         return []
     words = Counter(token.text for row in rows for token in row)
     ends = Counter(b.text for row in rows for a, b in pairwise(row) if _is_end(a, b, b.text))
     start = 0
-    for row, own, line in zip(rows, found, source.text.split("\n"), strict=True):
-        spans = _spans(row, start)
-        for each in own:
-            in_header = [it.text for it in row[each.start : each.end]].count(each.name)
-            is_used = words[each.name] > in_header + ends[each.name]
-            if is_used or any(said_of(it.text, "each") for it in row[each.start : each.end]):
-                span = Span(spans[each.start].start, spans[each.end - 1].end)
-                told.append(
-                    _told(
+    for row, own, line in zip(rows, matches, source.text.split("\n"), strict=True):
+        spans = _counter_spans(row, start)
+        for item in own:
+            in_header = [it.text for it in row[item.start : item.end]].count(item.name)
+            is_used = words[item.name] > in_header + ends[item.name]
+            if is_used or any(said_of(it.text, "each") for it in row[item.start : item.end]):
+                span = Span(spans[item.start].start, spans[item.end - 1].end)
+                diagnostics.append(
+                    _counter_diagnostic(
                         span,
-                        _said(source, spans[each.start : each.begun]),
+                        _spans_text(source, spans[item.start : item.begun]),
                         "LOOP",
-                        _loop(each, is_used),
+                        _loop(item, is_used),
                     )
                 )
         for k, (end, name) in enumerate(pairwise(row)):
             if name.text in names and _is_end(end, name, name.text):
                 span = Span(spans[k].start, spans[k + 1].end)
-                told.append(_told(span, source[span], "END_LOOP", "END_LOOP"))
+                diagnostics.append(_counter_diagnostic(span, source[span], "END_LOOP", "END_LOOP"))
         start += len(line) + 1
-    return told
+    return diagnostics
 
 
-def _told(span: Span, found: str, right: str, fix: str) -> Diagnostic:
+def _counter_diagnostic(span: Span, found: str, right: str, fix: str) -> Diagnostic:
     code: Code = codes.OTHER_LANGUAGE
     values = {"found": found, "right": right, "fix": fix, "usage": WORDS[right].usage}
     return Diagnostic(code, span, values, span, Repair((Edit(span, fix),), False))
 
 
-def _said(source: Source, spans: Sequence[Span]) -> str:
+def _spans_text(source: Source, spans: Sequence[Span]) -> str:
     return source[Span(spans[0].start, spans[-1].end)].partition("(")[0].strip()
 
 
@@ -88,12 +88,12 @@ def _loop(counter: _Counter, is_used: bool) -> str:
     return f"{name} = {before};{loop};{name} = {name} + 1" if is_used else loop
 
 
-def _spans(row: Sequence[Lexeme], start: int) -> list[Span]:
-    found = []
+def _counter_spans(row: Sequence[Lexeme], start: int) -> list[Span]:
+    spans = []
     for token in row:
         start += width(token)
-        found.append(Span(start - len(token.source or ""), start))
-    return found
+        spans.append(Span(start - len(token.source or ""), start))
+    return spans
 
 
 def _is_end(end: Lexeme, name: Lexeme, counter: str) -> bool:
@@ -175,6 +175,6 @@ class _Rest:
     def number(self) -> int | None:
         """Pass a whole number, None for anything else."""
         is_there = self.k < len(self.row) and self.row[self.k].kind is NUMBER
-        found = int(self.text()) if is_there and self.text().isdecimal() else None
+        result = int(self.text()) if is_there and self.text().isdecimal() else None
         self.k += is_there
-        return found
+        return result

@@ -21,7 +21,9 @@ _WITH_LINES: dict[Code, tuple[str, ...] | None] = {
 _UNKNOWN = (codes.UNKNOWN_WORD, codes.UNTAUGHT)  # one word: of each its first place
 _ONCE = _WITH_LINES | {
     **dict.fromkeys((codes.BRACES, codes.CASES), ()),
-    **dict.fromkeys((codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME)),
+    **dict.fromkeys(
+        (codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME, codes.SWITCH_WHAT)
+    ),
 }
 
 
@@ -52,7 +54,7 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
                 values.get(name, "").upper() for name in (values if names is None else names)
             )
         groups.setdefault((code, key), []).append(diagnostic)
-    return codes.in_order([_together(same, source) for same in groups.values()])
+    return codes.in_order([_merge_diagnostics(same, source) for same in groups.values()])
 
 
 def _unquotes(diagnostic: Diagnostic, source: Source) -> bool:
@@ -83,7 +85,7 @@ def _unquoted(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnos
     return told
 
 
-def _together(same: Sequence[Diagnostic], source: Source) -> Diagnostic:
+def _merge_diagnostics(same: Sequence[Diagnostic], source: Source) -> Diagnostic:
     first = same[0]
     if len(same) == 1 or first.code not in (*_WITH_LINES, codes.MISSING_OPEN):
         return first

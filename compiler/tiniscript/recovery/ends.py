@@ -22,8 +22,8 @@ def possible_places(tokens: Sequence[Lexeme]) -> list[str]:
     header, *inside = instructions(tokens)
     places: list[str] = []
     depth = 0
-    for each in inside:
-        word = each[0].text if each else ""
+    for item in inside:
+        word = item[0].text if item else ""
         depth += word in BLOCK_ENDS
         if word in ENDED:
             if not depth:
@@ -31,8 +31,8 @@ def possible_places(tokens: Sequence[Lexeme]) -> list[str]:
             depth -= 1
         if word in _ARMS and not depth:
             places = []  # it ends in its last branch
-        elif each and not depth:
-            places.append(laid_out(each))
+        elif item and not depth:
+            places.append(laid_out(item))
     is_endless = texts(header[1:]) in _ENDLESS
     return places[-1:] if is_endless else places
 

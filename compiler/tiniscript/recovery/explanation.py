@@ -123,13 +123,13 @@ class Explanation:
         return self.about.values(code) | {"whole": self.whole, "ends": self.ends}
 
 
-def explained(program: str, found: Candidate) -> list[Explanation]:
+def explained(program: str, candidate: Candidate) -> list[Explanation]:
     """Return what is wrong with each line that a candidate changes, in the order of the text."""
-    explainer = _Explainer(program, found)
-    for k, change in enumerate(found.changes):
+    explainer = _Explainer(program, candidate)
+    for k, change in enumerate(candidate.changes):
         explainer.tell(k, change)
-    for each in explainer.out:
-        explainer.complete(each)
+    for item in explainer.out:
+        explainer.complete(item)
     return explainer.out
 
 
@@ -147,10 +147,10 @@ class _Block:
 
 
 class _Explainer:
-    def __init__(self, program: str, found: Candidate) -> None:
+    def __init__(self, program: str, candidate: Candidate) -> None:
         self.program = program
-        self.found = found
-        self.changes = found.changes
+        self.candidate = candidate
+        self.changes = candidate.changes
         self.lines = program.split("\n")
         self.starts = [0, *accumulate(len(line) + 1 for line in self.lines)]
         self.out: list[Explanation] = []
@@ -158,7 +158,7 @@ class _Explainer:
 
     def complete(self, told: Explanation) -> None:
         if told.code is not codes.NEVER_ENDS:
-            is_shown = self.found.is_whole and told.last > (told.first, 1)
+            is_shown = self.candidate.is_whole and told.last > (told.first, 1)
             told.whole = self.whole(told.first, told.last) if is_shown else ""
         start, end = self.words(told.edits[0].span)
         while start < end and self.program[start] in "\r\n":
@@ -174,10 +174,10 @@ class _Explainer:
             change for change in self.changes if lines & {*range(change.first, change.last + 1)}
         ]
         touched += [self.changes[k] for k in (told.first, *told.opened)]
-        text = " ".join(f"{each.text} {self.lines[each.first]}" for each in touched)
+        text = " ".join(f"{item.text} {self.lines[item.first]}" for item in touched)
         has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & OF_BLOCKS)
-        is_block_sure = self.found.has_sure_blocks or not has_blocks
-        return is_block_sure and all(each.is_sure for each in touched)
+        is_block_sure = self.candidate.has_sure_blocks or not has_blocks
+        return is_block_sure and all(item.is_sure for item in touched)
 
     def words(self, span: Span) -> Span:
         """Return a span with all of the words that it begins and ends in."""
@@ -214,16 +214,16 @@ class _Explainer:
             is_brace = code is codes.BRACES and before[0].text in BRACES
             is_arm = bool(after) and after[0].text in _ARMS
             is_more = code in (_OF_ARM if is_arm else _OF_BLOCK) and (closed or is_brace or is_arm)
-            told = self.added(closed or around, edit, (k, 1), after) if is_more else None
-            told = told or self.new(k, part, code, step)
-            told.opened |= {closed.first} if closed else set()
-            if code is codes.WRONG_END and isinstance(about := told.about, Slipped):
+            message = self.added(closed or around, edit, (k, 1), after) if is_more else None
+            message = message or self.new(k, part, code, step)
+            message.opened |= {closed.first} if closed else set()
+            if code is codes.WRONG_END and isinstance(about := message.about, Slipped):
                 right = slips.right_of(about.slip)
                 line = str(self.changes[closed.first if closed else k].first + 1)
-                told.about = about._replace(word=ENDED.get(right, ""), line=line, fix=right)
+                message.about = about._replace(word=ENDED.get(right, ""), line=line, fix=right)
             for block in self.open:
                 if block.first == k or is_brace:
-                    block.told = block.told or told
+                    block.told = block.told or message
         line_end = "\r\n" if "\r" in self.program else "\n"
         for count, end in enumerate(ends, 2):
             self.end((k, count), change, end.strip(), line_end + end)
@@ -234,19 +234,19 @@ class _Explainer:
         """Return the instructions of a line that change; nothing for one, or for others."""
         steps: dict[int, list[Step]] = {}
         for step in self.changes[k].steps:
-            one, other = (instructions(each) for each in step[1:])
+            one, other = (instructions(item) for item in step[1:])
             if len(one) != len(other) or step.code is codes.ASKED_AFTER:
                 return []
             pairs = enumerate(zip(one, other, strict=True))
             n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(one) - 1)
             steps.setdefault(n, []).append(Step(step.code, one[n], other[n]))
         was, now = instructions(before), instructions(after)
-        notes = (without_note(each)[1] for each in (old, own))
+        notes = (without_note(item)[1] for item in (old, own))
         if len(was) != len(now) or len({*notes}) > 1 or {*texts(before)} & {*BRACES}:
             return []
         if _is_closed(before) and not all(map(_is_closed, was)):
             return []  # a separator is in brackets
-        found = []
+        matches = []
         first, end = self.starts[self.changes[k].first], 0
         for n, (part, meant) in enumerate(zip(was, now, strict=True)):
             text, new = slips.written(part), slips.written(meant)
@@ -257,11 +257,12 @@ class _Explainer:
                 edit = trimmed(place.start, text, new)
                 if edit.span.start == place.end:
                     edit = Edit(place, new)  # an end that is missing comes behind all of it
-                found.append(Change(place, edit, steps.get(n, []), part, meant))
+                matches.append(Change(place, edit, steps.get(n, []), part, meant))
                 if not steps.get(n) and text.isascii():
                     return []
-        is_alone = not self.found.is_whole and all(it.after for it in found)  # others are not read
-        return found if len(found) > 1 or (len(was) > 1 and is_alone) else []
+        has_all = all(it.after for it in matches)
+        is_alone = not self.candidate.is_whole and has_all  # others are not read
+        return matches if len(matches) > 1 or (len(was) > 1 and is_alone) else []
 
     def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
         """Open and close blocks; return the first one that began in an earlier change."""
@@ -273,7 +274,7 @@ class _Explainer:
             if token.text in BLOCK_ENDS:
                 self.open.append(_Block(token.text, k))
             elif token.text in ENDED and self.open:
-                ended = (each for each in self.open[::-1] if each.word == ENDED[token.text])
+                ended = (item for item in self.open[::-1] if item.word == ENDED[token.text])
                 block = next(ended, self.open[-1])  # ends may be crossed
                 self.open.remove(block)
                 closed = closed or (block if block.first < k else None)
@@ -285,17 +286,17 @@ class _Explainer:
         self, block: _Block | None, edit: Edit, last: tuple[int, int], after: Sequence[Lexeme]
     ) -> Explanation | None:
         """Make an edit part of what is told of the beginning of its block, None where too long."""
-        told = block.told if block else None
-        if block is None or told is None or told.code not in _SHOW_WHOLE:
+        explanation = block.told if block else None
+        if block is None or explanation is None or explanation.code not in _SHOW_WHOLE:
             return None
-        first = min(told.first, block.first)
+        first = min(explanation.first, block.first)
         if not self.whole(first, last):
             return None
-        told.edits.append(edit)
-        told.first, told.last = first, max(told.last, last)
-        ends = next((each.text for each in after if each.text in ENDED), "")
-        told.ends = told.ends or ends
-        return told
+        explanation.edits.append(edit)
+        explanation.first, explanation.last = first, max(explanation.last, last)
+        ends = next((item.text for item in after if item.text in ENDED), "")
+        explanation.ends = explanation.ends or ends
+        return explanation
 
     def new(self, k: int, part: Change, code: Code, step: Step | None) -> Explanation:
         is_end = code is codes.NEVER_ENDS
@@ -317,7 +318,7 @@ class _Explainer:
         if code in _DEDUPED:  # LIGHT_L and LIGHT_R
             same = (it for it in self.changes[k].steps if it.code is code)
             pairs = ((texts(it.before), texts(it.after)) for it in same)
-            names = [each for was, now in pairs for each in now if each not in was]
+            names = [item for was, now in pairs for item in now if item not in was]
             if slips.right_of(slip) in names:
                 return Slipped(slip, right=", ".join(dict.fromkeys(names)))
         return Slipped(slip)
@@ -326,15 +327,15 @@ class _Explainer:
         """Return what is said of a block that lacks its end on the line where it begins."""
         now, at = texts(part.after), added_end(part.before, part.after)
         end = next((it for it in now if it in ENDED), "") if at is None else now[at]
-        found = Unended(ENDED.get(end, ""), end)
-        inside = [each for each in instructions(part.after[:at]) if each]
+        unended = Unended(ENDED.get(end, ""), end)
+        inside = [instruction for instruction in instructions(part.after[:at]) if instruction]
         above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
-        if at is not None and found.word in now[:at]:
-            found.behind = laid_out(inside[-1]) if inside else ""
-            found.places = shown(possible_places(part.after[header_of(part.after, at) : at]))
+        if at is not None and unended.word in now[:at]:
+            unended.behind = laid_out(inside[-1]) if inside else ""
+            unended.places = shown(possible_places(part.after[header_of(part.after, at) : at]))
         elif k and above:  # its indentation says where it ends
-            found.line, found.last = str(above.last + 1), _first_line(above)
-        return found
+            unended.line, unended.last = str(above.last + 1), _first_line(above)
+        return unended
 
     def end(self, last: tuple[int, int], change: search.Change, end: str, text: str) -> None:
         """Tell of an end that is missing behind a line."""
@@ -344,17 +345,17 @@ class _Explainer:
         if self.added(block, edit, last, lexemes(end)):
             return
         first, word = (block.first, block.word) if block else (last[0], "")
-        found = Unended(word, end, line=str(change.last + 1), last=_first_line(change))
+        result = Unended(word, end, line=str(change.last + 1), last=_first_line(change))
         whole = self.whole(first, last)
         if block and self.may_end_earlier(block, last[0]):
-            found.several, found.last, whole = found.last, "", ""
+            result.several, result.last, whole = result.last, "", ""
             if before := self.early(block, last[0]):
-                found.early, found.begins = str(before.last + 1), _first_line(before)
+                result.early, result.begins = str(before.last + 1), _first_line(before)
         if first < last[0]:
-            found.begun = str(self.changes[first].first + 1)
+            result.begun = str(self.changes[first].first + 1)
         place = Span(self.starts[self.changes[first].first], behind)
         self.out.append(
-            Explanation(codes.NEVER_ENDS, place, place, found, [edit], first, (first, 1), whole)
+            Explanation(codes.NEVER_ENDS, place, place, result, [edit], first, (first, 1), whole)
         )
 
     def early(self, block: _Block, last: int) -> search.Change | None:
@@ -374,7 +375,7 @@ class _Explainer:
         header, end = (self.changes[k].text.split("\n")[0] for k in (block.first, last))
         is_deeper = end[:1].isspace() > header[:1].isspace()
         is_endless = {*texts(lexemes(header))} & {"FOREVER", "TRUE"}
-        if len(inside) < 2 or self.found.has_sure_blocks or is_deeper or is_endless:
+        if len(inside) < 2 or self.candidate.has_sure_blocks or is_deeper or is_endless:
             return False
         is_sign = inside[-1] in _SIGNS and inside[-1] not in inside[:-1]
         return is_sign or block.word not in ("LOOP", "DEF")

@@ -18,9 +18,9 @@ def invisible(diagnostic: Diagnostic, text: str) -> Diagnostic:
     pairs = pairs or [(text[slice(*diagnostic.span)], "")] * (
         diagnostic.code is codes.ODD_CHARACTER
     )
-    if not pairs or not all(old != new == _seen(old) for old, new in pairs):
+    if not pairs or not all(old != new == _visible_code(old) for old, new in pairs):
         return diagnostic
-    sign = next(each for old, _ in pairs for each in old if _is_invisible(each))
+    sign = next(item for old, _ in pairs for item in old if _is_invisible(item))
     return diagnostic._replace(
         code=codes.ODD_CHARACTER, values={"found": f"U+{ord(sign):04X}", "fix": ""}
     )
@@ -30,5 +30,5 @@ def _is_invisible(sign: str) -> bool:
     return sign not in _SEEN and category(sign) in _KINDS
 
 
-def _seen(text: str) -> str:
+def _visible_code(text: str) -> str:
     return "".join(sign for sign in text if not _is_invisible(sign))

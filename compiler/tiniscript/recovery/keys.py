@@ -25,7 +25,7 @@ _SIDES = {"F": "UP", "B": "DOWN", "L": "LEFT", "R": "RIGHT"}  # what arrows say 
 _PART = re.compile(r"([^;{}|]*)(\|?)")
 _PIECE = re.compile(r"\d[\d.]*|[^\W\d_]+|<>|!=|==|\S")
 _HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # of `upKey`
-_EQUAL = ("=", "==", "_", "-", '"', "'", "<>", "!=", "(")
+_EQUAL = ("=", "==", "_", "-", ".", '"', "'", "<>", "!=", "(")
 _GIVEN = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
 _SET = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
 _LINKS = ("the", "of", "to", "is", "filler", "small", "pressed")
@@ -53,17 +53,17 @@ def asked_keys(source: Source, kit: Kit) -> list[Diagnostic]:
     rows = [without_note(line)[0] for line in source.text.split("\n")]
     names = Names([lexemes(row) for row in rows], kit)
     own = names.defs.union(*names.parameters.values(), _SET.findall(plain(source.text)))
-    told: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     start = depth = 0
     for row, line in zip(rows, source.text.split("\n"), strict=True):
         for part in _PART.finditer(row):
             if part[2]:
                 continue  # `SI|`
-            told += _Part(part[1], start + part.start(), names, own).told(depth > 0)
-            words = [each.text for each in lexemes(part[1])]
+            diagnostics += _Part(part[1], start + part.start(), names, own).told(depth > 0)
+            words = [lexeme.text for lexeme in lexemes(part[1])]
             depth += sum((it in BLOCK_ENDS) - (it in ENDED) for it in map(names.meant, words))
         start += len(line) + 1
-    return told
+    return diagnostics
 
 
 def key_edits(text: str, kit: Kit) -> list[Edit]:
@@ -94,57 +94,57 @@ class _Part:
             for piece in _PIECE.finditer(_HUMP.sub(" ", source)):
                 humps = len(_HUMP.findall(source[: piece.end()]))
                 at = start + piece.start() - min(humps, piece.start())
-                yield from _parted(plain(piece[0]), at if humps else start + piece.start())
+                yield from _split_key(plain(piece[0]), at if humps else start + piece.start())
 
     def told(self, is_inside: bool) -> Iterator[Diagnostic]:
         """Give what is told of an instruction, which is inside a block or not."""
-        if order := self._given():
+        if order := self._assigned_key():
             yield self._order(*order, "IF" if is_inside else "WHEN")
             return
-        asks = (k for k, each in enumerate(self.pieces) if self._meant(each) in ASKING)
+        asks = (k for k, each in enumerate(self.pieces) if self._key_of(each) in ASKING)
         k = next(asks, len(self.pieces))
         while k < len(self.pieces):
             key = self._key(k) or self._side(k)
             if key is not None:
-                yield from self._said(key)
+                yield from self._key_diagnostics(key)
             k = key.end if key else k + 1
 
-    def _meant(self, piece: _Piece) -> str:
+    def _key_of(self, piece: _Piece) -> str:
         return self.names.meant(piece.word) if piece.word.isalpha() else ""
 
     def _span(self, key: _Key) -> Span:
         first, last = self.pieces[key.first], self.pieces[key.end - 1]
         return Span(self.at + first.span.start, self.at + last.span.end)
 
-    def _said(self, key: _Key) -> Iterator[Diagnostic]:
+    def _key_diagnostics(self, key: _Key) -> Iterator[Diagnostic]:
         span = self._span(key)
-        found = self.text[span.start - self.at : span.end - self.at]
+        result = self.text[span.start - self.at : span.end - self.at]
         if not key.right:
-            yield Diagnostic(codes.UNKNOWN_NAME, span, {"no_key": found, "keys": ", ".join(KEYS)})
-        elif found.upper() != key.right:
-            values = {"found": found, "right": key.right, "fix": key.right}
+            yield Diagnostic(codes.UNKNOWN_NAME, span, {"no_key": result, "keys": ", ".join(KEYS)})
+        elif result.upper() != key.right:
+            values = {"found": result, "right": key.right, "fix": key.right}
             repair = Repair((Edit(span, key.right),), True)
             yield Diagnostic(codes.OTHER_LANGUAGE, span, values, span, repair)
 
     # -- an order that is given to a key ----------------------------------------------------------
 
-    def _given(self) -> tuple[_Key, str] | None:
+    def _assigned_key(self) -> tuple[_Key, str] | None:
         key = self._key(0) if self.pieces else None
         if key is None or not key.right:
             return None
-        given = _GIVEN.fullmatch(self.text, self.pieces[key.end - 1].span.end)
-        return (key, given[1].strip()) if given else None
+        match = _GIVEN.fullmatch(self.text, self.pieces[key.end - 1].span.end)
+        return (key, match[1].strip()) if match else None
 
     def _order(self, key: _Key, order: str, head: str) -> Diagnostic:
         begin = self._span(key)
         span = Span(begin.start, self.at + len(self.text.rstrip()))
         fix = f"{head}({key.right});{order};{BLOCK_ENDS[head]}"
-        found = self.text[begin.start - self.at : begin.end - self.at]
+        result = self.text[begin.start - self.at : begin.end - self.at]
         values, repair = (
-            {"found": found, "right": key.right, "fix": fix},
+            {"found": result, "right": key.right, "fix": fix},
             Repair((Edit(span, fix),), False),
         )
-        if found.upper() != key.right:
+        if result.upper() != key.right:
             return Diagnostic(codes.OTHER_LANGUAGE, begin, values, span, repair)
         values = {"word": re.split(r"\W", order)[0].upper(), "fix": fix}
         return Diagnostic(codes.NO_VALUE, span, values, span, repair)
@@ -153,20 +153,25 @@ class _Part:
 
     def _key(self, k: int) -> _Key | None:
         """Return the key that pieces from one on say: its side goes before it or behind it."""
-        begun = self._while(k, lambda it: it.isalpha() and _says(it, *_LINKS))
+        if self._word(k).isalpha() and self._word(k + 1) == "." and not _is_key(self._word(k)):
+            key = self._key(k + 2)  # of a thing: `input.buttonIsPressed(Button.A)`
+            return key and key._replace(first=k)
+        begun = self._while(k, lambda it: it.isalpha() and _is_key_word(it, *_LINKS))
         side = _side(self._word(begun))
         at = (
-            self._while(begun + 1, lambda it: _says(it, "the", "of") or it == "_")
+            self._while(begun + 1, lambda it: _is_key_word(it, "the", "of") or it == "_")
             if side
             else begun
         )
         if not _is_key(self._word(at)):
             return None
-        end = self._while(at, lambda it: _is_key(it) or _says(it, "the", "of"))
-        end = self._while(at, _is_key) if self._word(end) in ("A", "B") else end
+        end = self._past_keys(at, "the", "of")
+        end = self._past_keys(at) if self._word(end) in ("A", "B") else end
         signs: list[str] = []
         if not side:
-            behind = self._while(end, lambda it: it in _EQUAL or _says(it, *_LINKS))
+            behind = self._while(
+                end, lambda it: it in _EQUAL or _is_key(it) or _is_key_word(it, *_LINKS)
+            )
             letters = (n for n in range(end, behind + 1) if self._word(n) in ("A", "B"))
             side = _side(self._word(behind))
             last = behind if side else next(letters, None)
@@ -179,25 +184,31 @@ class _Part:
                 return None
             is_compared = bool({*signs} & {"=", "==", "_"}) and self._word(behind) not in ("", ")")
             end = (last if last is not None else behind if is_compared else end - 1) + 1
-        closing = self._while(end, lambda it: it in ('"', "'") or _says(it, "is", "the", "pressed"))
-        end = closing if self._says_pressed(end, closing) or '"' in signs or "'" in signs else end
+        while self._word(end) == "_" and self._word(end + 1).isalnum():
+            end += 2  # a name is one thing
+        closing = self._while(
+            end, lambda it: it in ('"', "'") or _is_key_word(it, "is", "the", "pressed")
+        )
+        end = (
+            closing if self._mentions_pressed(end, closing) or '"' in signs or "'" in signs else end
+        )
         if "(" in signs and self._word(end) == ")":
             end += 1
         is_not = bool({*signs} & {"<>", "!="})
         if self._word(end) in ("=", "==") and self._word(end + 1) in ("0", "1"):
             is_not, end = self._word(end + 1) == "0", end + 2
-        first = k if self._says_pressed(k, begun) else begun
+        first = k if self._mentions_pressed(k, begun) else begun
         before = self.pieces[k - 1] if k else _Piece("", Span(0, 0))
-        if before.word == "(" or self._meant(before) in ASKING:
+        if before.word == "(" or self._key_of(before) in ASKING:
             first = k  # with its article
         return _Key(first, end, f"{'NOT ' if is_not else ''}KEY_{side}" if side else "")
 
     def _side(self, k: int) -> _Key | None:
         """Return the key that a side alone says, which nothing else is asked with: `WHEN(UP)`."""
         side = _side(self._word(k))
-        end = self._while(k + 1, lambda it: _says(it, "is", "pressed"))
+        end = self._while(k + 1, lambda it: _is_key_word(it, "is", "pressed"))
         is_alone = self._word(k - 1) == "(" and self._word(end) == ")"
-        is_upright = side in ("UP", "DOWN") or self._says_pressed(k + 1, end)
+        is_upright = side in ("UP", "DOWN") or self._mentions_pressed(k + 1, end)
         return _Key(k, end, f"KEY_{side}") if side and is_alone and is_upright else None
 
     def _word(self, k: int) -> str:
@@ -208,11 +219,18 @@ class _Part:
             k += 1
         return k
 
-    def _says_pressed(self, start: int, end: int) -> bool:
-        return any(_says(self._word(k), "pressed") for k in range(start, end))
+    def _past_keys(self, k: int, *links: str) -> int:
+        """Pass what says a key, also in one name, `KEY_ARROW`, and words of these kinds."""
+        while _is_key(self._word(k)) or _is_key_word(self._word(k), *links):
+            after = self._word(k + 2) if self._word(k + 1) == "_" else ""
+            k += 2 if _is_key(after) or _is_key_word(after, *links) else 1
+        return k
+
+    def _mentions_pressed(self, start: int, end: int) -> bool:
+        return any(_is_key_word(self._word(k), "pressed") for k in range(start, end))
 
 
-def _says(word: str, *kinds: str) -> bool:
+def _is_key_word(word: str, *kinds: str) -> bool:
     return bool(said_of(word, *kinds)) and not {word, concept_of(word)} & {*WORDS, *ASKING}
 
 
@@ -237,7 +255,7 @@ def _words() -> tuple[str, ...]:
     return tuple(word for word in lexicon() if _is_key(word) and word.isascii())
 
 
-def _parted(word: str, start: int) -> Iterator[_Piece]:
+def _split_key(word: str, start: int) -> Iterator[_Piece]:
     """Give a word, in two where a key and its side are glued: `KEYUP`."""
     for key, ends in product(_words(), (str.removeprefix, str.removesuffix)):
         rest = ends(word, key)

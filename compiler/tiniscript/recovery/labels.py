@@ -84,8 +84,8 @@ def _is_order(word: str, sign: str, text: str) -> bool:
 
 def _is_step(word: str) -> bool:
     """Whether a word counts what is done: `paso`, `step`, `line`."""
-    said = {(each.kind, each.value) for each in lexicon().get(word, ())}
-    return ("unit", "steps") in said or ("stem", "LINE") in said
+    texts = {(item.kind, item.value) for item in lexicon().get(word, ())}
+    return ("unit", "steps") in texts or ("stem", "LINE") in texts
 
 
 def _is_free(word: str, text: str) -> bool:

@@ -40,18 +40,20 @@ def leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
     lines = source.text.split("\n")
     starts = [0, *accumulate(len(line) + 1 for line in lines)]
     tasks = frozenset(_TASK.findall(plain(source.text)))  # which have no name
-    told: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     for row, start in zip(rows, starts, strict=False):
-        told += _words(row, start, names, tasks)
-    return told
+        diagnostics += _words(row, start, names, tasks)
+    return diagnostics
 
 
-def of_its_frame(source: Source, kit: Kit) -> list[Diagnostic]:
+def setup_and_end_leftovers(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is told of each `SI|` after an instruction, and of a word for the end of all."""
     rows = [without_note(line)[0] for line in source.text.split("\n")]
     starts = [0, *accumulate(len(line) + 1 for line in source.text.split("\n"))]
-    told = [each for row, start in zip(rows, starts, strict=False) for each in _setups(row, start)]
-    return [*told, *_ending(rows, starts, Names([lexemes(row) for row in rows], kit))]
+    messages = [
+        setup for row, start in zip(rows, starts, strict=False) for setup in _setups(row, start)
+    ]
+    return [*messages, *_ending(rows, starts, Names([lexemes(row) for row in rows], kit))]
 
 
 def _ending(rows: Sequence[str], starts: Sequence[int], names: Names) -> Iterator[Diagnostic]:
@@ -94,7 +96,7 @@ def _words(row: str, start: int, names: Names, tasks: Set[str]) -> Iterator[Diag
         tokens = lexemes(part[0])
         if not 1 < len(tokens) <= 1 + _MOST or tokens[0].text not in _ALONE:
             continue
-        if all(it.text in tasks or _says_nothing(it, names) for it in tokens[1:]):
+        if all(it.text in tasks or _is_filler(it, names) for it in tokens[1:]):
             end = start + part.start() + len(part[0].rstrip())
             begin = start + part.start() + part[0].index(tokens[0].source or "")
             begin += len(tokens[0].source or "")
@@ -105,10 +107,10 @@ def _words(row: str, start: int, names: Names, tasks: Set[str]) -> Iterator[Diag
             yield Diagnostic(codes.WORDS_AFTER, span, values, span, repair)
 
 
-def _says_nothing(token: Lexeme, names: Names) -> bool:
+def _is_filler(token: Lexeme, names: Names) -> bool:
     """Whether a token is a word that is no order, no name and no part of a sentence."""
     word = token.text
     if token.kind is not WORD or word in WORDS or names.is_name(word) or names.meant(word):
         return False
-    kinds = {said.kind for said in lexicon().get(word, ())}
+    kinds = {item.kind for item in lexicon().get(word, ())}
     return concept_of(word) is None and kinds <= _MEANS_NOTHING

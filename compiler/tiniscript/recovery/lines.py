@@ -91,7 +91,7 @@ class Reading(NamedTuple):
     @property
     def said(self) -> str:
         """The tokens without those that change nothing: separators, brackets around one value."""
-        text = " ".join(each for each in self.text if each != ";")
+        text = " ".join(item for item in self.text if item != ";")
         while (bare := _NEEDLESS.sub(r"\1\2", text)) != text:
             text = bare
         return text
@@ -99,14 +99,14 @@ class Reading(NamedTuple):
 
 def right(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
     """Return the items of a line, or where it is wrong. Braces and bare ends are items, too."""
-    return _right(tuple(map(_alike, tokens)), names)
+    return _parse_items(tuple(map(_normalized, tokens)), names)
 
 
 def is_right(tokens: Sequence[Lexeme], names: Names) -> bool:
     return not isinstance(right(tokens, names), Failure)
 
 
-def _alike(token: Lexeme) -> tuple[str, str]:
+def _normalized(token: Lexeme) -> tuple[str, str]:
     """Return a token as the lexer has it; all numbers that any instruction reads alike are one."""
     text = token.text
     if text in DEGREES:
@@ -116,7 +116,7 @@ def _alike(token: Lexeme) -> tuple[str, str]:
 
 
 @lru_cache(REMEMBERED)
-def _right(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] | Failure:
+def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] | Failure:
     items: list[Item] = []
     start = 0
     around = [";", *(text for _, text in tokens), BRACES[1], ";"]
@@ -148,8 +148,8 @@ def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Read
     setup = meanings.setup_of(tokens)
     readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
     whole = [reading._replace(tokens=[*setup, *reading.tokens]) for reading in readings]
-    told = ((reading, right(reading.tokens, names)) for reading in whole)
-    return [reading._replace(items=its) for reading, its in told if not isinstance(its, Failure)]
+    message = ((reading, right(reading.tokens, names)) for reading in whole)
+    return [reading._replace(items=its) for reading, its in message if not isinstance(its, Failure)]
 
 
 _Successors = Callable[[Reading, Failure], Iterator[Reading]]
@@ -203,11 +203,11 @@ class _Search:
     @staticmethod
     def says_twice(reading: Reading, items: Sequence[Item], first: Reading) -> bool:
         """Whether one instruction of the line became the same one twice, which nobody wrote."""
-        told = [texts(reading.tokens[item.start : item.end]) for item in items]
-        for one, other, item in zip(told, told[1:], items, strict=False):
+        messages = [texts(reading.tokens[item.start : item.end]) for item in items]
+        for one, other, item in zip(messages, messages[1:], items, strict=False):
             if item.kind == "do" and one[0] == other[0]:
                 if one == other and one[0] in ("S", "STOP", "SHOW"):
-                    return first.text.count(one[0]) < told.count(one)
+                    return first.text.count(one[0]) < messages.count(one)
                 if not reading.is_sure and one == other == first.text[: len(one)]:
                     return True
         return False
@@ -221,7 +221,7 @@ class _Search:
                 code = codes.NAME_WITH_SPACE if is_name else codes.OTHER_LANGUAGE
                 reading = reading.changed(tokens, 1.0 if is_name else 0.5, code)
                 continue
-            after = next(self._by_rows(reading, None), None)
+            after = next(self._apply_patterns(reading, None), None)
             if after is None:
                 break
             reading = after
@@ -229,16 +229,16 @@ class _Search:
 
     def rewritten(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         """Give what a reading becomes where it fails: by rows, calls in words, meanings."""
-        ways = (self._by_rows, self._by_slots, self._by_words)
+        ways = (self._apply_patterns, self._fill_slots, self._translate_word)
         return map(self.at_once, chain(*(way(reading, failure) for way in ways)))
 
-    def _by_rows(self, reading: Reading, failure: Failure | None) -> Iterator[Reading]:
+    def _apply_patterns(self, reading: Reading, failure: Failure | None) -> Iterator[Reading]:
         """Make the rows that touch a place; for none those that come before all others."""
         line = rewrites.Encoded(reading.tokens, self.names)
         for row in rewrites.tried(line, is_first=failure is None):
             for match in line.matches(row.pattern):
                 start, end = line.span(match)
-                if failure and not _touches(failure, start, end):
+                if failure and not _is_near(failure, start, end):
                     continue
                 tokens = line.rewritten(row, match)
                 if tokens is not None:
@@ -246,11 +246,11 @@ class _Search:
                     yield reading.changed(tokens, row.cost, row.code, not row.is_offered, is_new)
                     break
 
-    def _by_slots(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
+    def _fill_slots(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         tokens = reading.tokens
         for start, end in _calls(tokens):
             words = tokens[start:end]
-            if not _touches(failure, start, end):
+            if not _is_near(failure, start, end):
                 continue
             has_until = end < len(tokens) and tokens[end].text == "UNTIL"
             call = filled(words, self.names, has_until)
@@ -259,7 +259,7 @@ class _Search:
             line = [*tokens[:start], *call.tokens, *tokens[end:]]
             yield reading.changed(line, call.cost, _code_of_call(words), call.is_sure)
 
-    def _by_words(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
+    def _translate_word(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         """Translate the first word that is none of the language."""
         tokens, around = reading.tokens, ("", *reading.text, "")
         for k, token in enumerate(tokens[: failure.at + 2]):
@@ -267,8 +267,8 @@ class _Search:
                 continue
             is_function = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
             is_misspelt = is_function and not concept_of(token.text)
-            near = nearest(token.text, FUNCTIONS) if is_misspelt else None
-            guess = (Meaning(near, KNOWN),) if near else ()
+            suggestion = nearest(token.text, FUNCTIONS) if is_misspelt else None
+            guess = (Meaning(suggestion, KNOWN),) if suggestion else ()
             meanings = guess or self.names.meanings(token.text)
             if _is_long(tokens, k, meanings[0].concept if meanings else ""):
                 continue
@@ -330,7 +330,7 @@ def _code_of_call(words: Sequence[Lexeme]) -> Code:
     return codes.OTHER_CALL
 
 
-def _touches(failure: Failure, start: int, end: int) -> bool:
+def _is_near(failure: Failure, start: int, end: int) -> bool:
     return start <= failure.at + 1 and end >= failure.start - 1
 
 

@@ -141,8 +141,8 @@ def plain(text: str) -> str:
 @cache
 def words_of(*kinds: str) -> str:
     """Return a pattern of the words that the lexicon says one of these of."""
-    found = (word for word in lexicon() if said_of(word, *kinds))
-    return f"(?:{'|'.join(map(re.escape, sorted(found, key=len, reverse=True)))})"
+    result = (word for word in lexicon() if said_of(word, *kinds))
+    return f"(?:{'|'.join(map(re.escape, sorted(result, key=len, reverse=True)))})"
 
 
 _END = re.compile(words_of("end") + "_?")
@@ -171,7 +171,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         and (bare := [part for part in parts if not said_of(part, "sensing")]) != parts
     ):
         return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
-    if found := _of_stem(parts):
+    if found := _sensor_with_side(parts):
         return (Meaning(found, KNOWN),)
     alike, near = _speller().alike(word), _speller().near(word)
     guesses = (
@@ -183,7 +183,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
     return next(((Meaning(each, cost),) for each, cost in guesses if each), ())
 
 
-def _of_stem(parts: Sequence[str]) -> str:
+def _sensor_with_side(parts: Sequence[str]) -> str:
     """Return the sensor that two words say, one of them its side: `LEFT_LIGHT`, `luzDer`."""
     glued = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
     pairs = [tuple(parts)] if len(parts) == 2 else glued if len(parts) == 1 else []
@@ -205,12 +205,12 @@ def _in_two_words(word: str) -> str | None:
     for k in range(2, min(len(word), 24) - 1):
         halves = word[:k].rstrip("_"), word[k:].lstrip("_")
         long = [half for half in halves if len(half) > 2]  # `there` is no THE RE
-        said = {half if half == "STOP" else concept_of(half) or "" for half in long}
+        texts = {half if half == "STOP" else concept_of(half) or "" for half in long}
         turns = [half for half in halves if said_of(half, "turn")]
         with_frame = halves if len(halves[1]) > 3 else halves[:1]  # `irAdelante`, and no GOAL
         beside = [*turns, *(half for half in with_frame if said_of(half, "filler"))]
-        meant = said - {"", "M", "F"} or said - {"", "M"}
-        is_framed = bool(said & {"F", "M"} or beside) or len({*map(concept_of, halves)}) == 1
+        meant = texts - {"", "M", "F"} or texts - {"", "M"}
+        is_framed = bool(texts & {"F", "M"} or beside) or len({*map(concept_of, halves)}) == 1
         is_all = all(half in beside or half == "STOP" or concept_of(half) for half in halves)
         if len(meant) == 1 and is_framed and is_all:
             only = next(iter(meant))
@@ -229,7 +229,7 @@ class _OfLine(NamedTuple):
     in_brackets: set[str]
     rows: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
-    pairs: set[tuple[str, str]]  # the name of a DEF, or one and that of a value
+    pairs: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
     begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
     called: set[str]  # words that are an instruction alone
     compared: set[str]  # words beside a sign that compares them with a number
@@ -239,9 +239,10 @@ class _OfLine(NamedTuple):
 
 @lru_cache(REMEMBERED)
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
-    begun, counted, left = _begun_in(line)
-    found = _OfLine(
-        set(), set(), set(), set(), {}, set(), begun, _alone_in(line), _compared_in(line), counted,
+    begun, counted, left = _block_counts(line)
+    of_line = _OfLine(
+        set(), set(), set(), set(), {}, set(), begun, _standalone_words(line),
+        _compared_words(line), counted,
         left,
     )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
@@ -251,45 +252,52 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         if token.kind is not WORD:
             continue
         if depth > 0:
-            found.in_brackets.add(token.text)
+            of_line.in_brackets.add(token.text)
         elif after.text in ("=", "++", "--", "+=", "-=", ":=", "<-") and token.text not in WORDS:
-            found.variables.add(token.text)
+            of_line.variables.add(token.text)
         is_def = "DEF" in (token.text, concept_of(token.text))
         is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not
-        is_def = is_def or (token.text == "TO" and at == 2 and bool(_of_logo(line[at:])))
+        is_def = is_def or (token.text == "TO" and at == 2 and bool(_logo_names(line[at:])))
         if is_def and after.kind is WORD and after.text not in WORDS:
             if not said_of(after.text, "main") and concept_of(after.text) != "START":
-                found.defs.add(after.text)
+                of_line.defs.add(after.text)
+                if bare := _bare_values(line[at:]):
+                    of_line.pairs.add((after.text, *bare))
                 end = closed(line, at)
-                given = texts(line[at + 1 : end - 1 : 2]) if end else _of_logo(line[at:])
-                if all(each.isidentifier() and each not in WORDS for each in given):
-                    found.parameters[after.text] = given
+                given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
+                if all(item.isidentifier() and item not in WORDS for item in given):
+                    of_line.parameters[after.text] = given
     if len(head) > 2 and "DEF" in (head[0].text, concept_of(head[0].text)):
-        row, names = _name_in_words(head[1:], ";"), found.defs
-        if len(row) == 2:
-            found.pairs.add((row[0], row[1]))
+        row, names = _name_in_words(head[1:], ";"), of_line.defs
     else:
-        row, names = _name_in_words(head, "="), found.variables
+        row, names = _name_in_words(head, "="), of_line.variables
     if row:
-        found.rows.add(row)
+        of_line.rows.add(row)
         names.add(joined(row))
-    return found
+    return of_line
 
 
-def _of_logo(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
+def _bare_values(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
+    """Return the names of `X, Y` or `X Y`, which lack their brackets, none beside other things."""
+    row = " ".join(texts(tokens)).partition(";")[0]
+    names = tuple(row.replace(",", " ").split())
+    return names if all(name.isidentifier() and name not in WORDS for name in names) else ()
+
+
+def _logo_names(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
     """Return the names of `:SIZE :SPEED`, none where anything else is there."""
     signs, names = texts(tokens[::2]), texts(tokens[1::2])
     return names if {*signs} == {":"} and len(signs) == len(names) else ()
 
 
-def _alone_in(line: tuple[Lexeme, ...]) -> set[str]:
+def _standalone_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that stand alone between separators."""
     around = (";", *texts(line), ";")
     triples = zip(around, around[1:], around[2:], strict=False)
     return {word for before, word, after in triples if before in ";|" and after == ";"}
 
 
-def _compared_in(line: tuple[Lexeme, ...]) -> set[str]:
+def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that are compared with a number, as nothing but a value is."""
     rows = [*zip(line, line[1:], line[2:], line[3:], strict=False)]
     alone = {
@@ -339,10 +347,10 @@ class Names:
         self.in_brackets = {name for line in of_lines for name in line.in_brackets}
         self.rows = {row for line in of_lines for row in line.rows}
         self.parameters = {k: its for line in of_lines for k, its in line.parameters.items()}
-        for name, value in {pair for line in of_lines for pair in line.pairs}:
-            if value in self.in_brackets:  # `DEF LADO X`, and `F(X, 50)` below
-                self.parameters[name] = (value,)
-                self.rows.discard((name, value))
+        for pair in {pair for line in of_lines for pair in line.pairs}:
+            if self.in_brackets.issuperset(pair[1:]):  # `DEF LADO X`, and `F(X, 50)` below
+                self.parameters[pair[0]] = pair[1:]
+                self.rows.discard(pair)
         self.begun = {word: block for line in of_lines for word, block in line.begun.items()}
         if sum(line.left for line in of_lines) < 0:
             self.begun |= {word: "LOOP" for line in of_lines for word in line.counted}
@@ -362,7 +370,7 @@ class Names:
         meant = {name: self.meant(name, NEAR) for name in compared - values}
         self.strange = {name for name, its in meant.items() if not its or its in CALLED}
         self.read_as = self.known._replace(values=frozenset(values | self.strange))
-        words = (frozenset(each) for each in (self.defs, self.in_brackets, self.rows))
+        words = (frozenset(item) for item in (self.defs, self.in_brackets, self.rows))
         self._content = (
             self.read_as,
             *words,
@@ -394,17 +402,17 @@ class Names:
         end, _, block = word.partition("_")
         if said_of(end, "end") and block in (*WORDS, *self.defs):
             return (Meaning(SOME_END, KNOWN),)
-        found = meanings(word)
+        result = meanings(word)
         return tuple(
-            meaning for meaning in found if meaning.concept in WORDS or self.has(meaning.concept)
+            meaning for meaning in result if meaning.concept in WORDS or self.has(meaning.concept)
         )
 
     def meant(self, word: str, most: int = MISSPELT) -> str:
         """Return the word of the language that a word means, "" for none or a less likely one."""
         if word in WORDS and word != "SI":
             return word
-        found = self.meanings(word)
-        return found[0].concept if found and found[0].cost <= most else ""
+        result = self.meanings(word)
+        return result[0].concept if result and result[0].cost <= most else ""
 
     def has(self, concept: str) -> bool:
         """Whether a concept is a device of the kit, or the end of any block."""
@@ -436,21 +444,21 @@ class Names:
         return [text, "@word", *self._classes_of_word(text)]
 
     def _classes_of_word(self, text: str) -> list[str]:
-        said = [meaning.kind for meaning in lexicon().get(text, ())]
+        texts = [meaning.kind for meaning in lexicon().get(text, ())]
         is_own = text in self.variables or text in self.defs
-        classes = [each for each in said if each.islower() and not is_own]
+        classes = [item for item in texts if item.islower() and not is_own]
         if text not in WORDS:
-            classes += [_CLASSES[each] for each in lexicon().get(text, ()) if each in _CLASSES]
-        classes += ["@unit"] if "unit" in said and text not in WORDS else []
+            classes += [_CLASSES[item] for item in lexicon().get(text, ()) if item in _CLASSES]
+        classes += ["@unit"] if "unit" in texts and text not in WORDS and not is_own else []
         classes += ["@cross"] if text == "X" and not is_own else []
-        if "unit" not in said and text not in WORDS and not is_own:
+        if "unit" not in texts and text not in WORDS and not is_own:
             classes += [f"@like_{way}" for way in WAYS if is_slip(text, way)]
         meant = [meaning.concept for meaning in self.meanings(text) if meaning.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
         classes += [ALIASES[word]] if word in ALIASES else []
         is_name = self.is_name(text)
         classes += meant
-        classes += [each for each in ANY if not said_of(text, "do") or each not in _NO_DO]
+        classes += [item for item in ANY if not said_of(text, "do") or item not in _NO_DO]
         if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
             classes.append("@val")
             classes += ["@measured"] if {word, text} & self.asked.keys() else []
@@ -476,7 +484,7 @@ class Names:
         return classes
 
 
-def _begun_in(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
+def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
     """Return what a line says of orders that begin blocks, and how many headers lack an end."""
     found: dict[str, str] = {}
     counted: list[str] = []
@@ -496,7 +504,7 @@ def _begun_in(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]
 
 
 def joined(row: Iterable[str]) -> str:
-    parts = [each for each in row if each != "-"]
+    parts = [item for item in row if item != "-"]
     if parts[0][0].isdecimal():  # `2PASOS`
         return "".join((*parts[1:], parts[0]))
     return "_".join(parts)

@@ -49,19 +49,19 @@ def ordered(text: str) -> Iterator[Moved]:
     setup = _SETUP.match(text)
     start = setup.end() if setup else 0
     for is_at_start in (True, False):
-        if moved := _ordered(text[start:], is_at_start):
+        if moved := _reorder(text[start:], is_at_start):
             yield moved._replace(text=text[:start] + moved.text)
 
 
-def _ordered(text: str, is_at_start: bool) -> Moved | None:
+def _reorder(text: str, is_at_start: bool) -> Moved | None:
     pieces = [*_pieces(text)]
     first: Moved | None = None
     is_guess = False
     for _ in range(_MOST_MOVES):
-        swap, late = _ends_swapped(pieces), _end_too_late(pieces)
-        move = swap or late or _def_too_late(pieces, is_at_start)
+        swap, late = _swapped_ends(pieces), _end_too_late(pieces)
+        move = swap or late or _late_def(pieces, is_at_start)
         if move is None:
-            return first and first._replace(text=_joined(pieces), is_guess=is_guess)
+            return first and first._replace(text=_join_pieces(pieces), is_guess=is_guess)
         begin, end, to = move
         name = next((it.name for it in pieces[begin::-1] if it.word == "DEF"), pieces[0].name)
         is_called = bool([*_calls(pieces, name, 0, len(pieces))])
@@ -84,7 +84,7 @@ def _pieces(text: str) -> Iterator[_Piece]:
             yield _Piece(shown, line, ALIASES.get(word, word), name)
 
 
-def _joined(pieces: list[_Piece]) -> str:
+def _join_pieces(pieces: list[_Piece]) -> str:
     """Return a program in which pieces of one line stay in it, where they are neighbours."""
     text = pieces[0].text.lstrip()
     for before, piece in pairwise(pieces):
@@ -95,15 +95,15 @@ def _joined(pieces: list[_Piece]) -> str:
 
 def _outermost(pieces: list[_Piece], k: int, start: int = 0) -> int:
     """Return where the block around a piece begins that none from `start` on is around."""
-    depth, found = 0, k
+    depth, result = 0, k
     for place in range(start, k):
         if pieces[place].word in BLOCK_ENDS:
-            found = place if not depth else found
+            result = place if not depth else result
             depth += 1
         elif pieces[place].word in ENDED:
             depth -= 1
-        found = k if not depth else found
-    return found
+        result = k if not depth else result
+    return result
 
 
 def _defs(pieces: list[_Piece]) -> Iterator[tuple[int, int]]:
@@ -122,7 +122,7 @@ def _calls(pieces: list[_Piece], name: str, start: int, end: int) -> Iterator[in
 _Move = tuple[int, int, int]
 
 
-def _ends_swapped(pieces: list[_Piece]) -> _Move | None:
+def _swapped_ends(pieces: list[_Piece]) -> _Move | None:
     """The ends of two blocks, of which the outer one ends first."""
     opened: list[str] = []
     for k, piece in enumerate(pieces):
@@ -148,7 +148,7 @@ def _end_too_late(pieces: list[_Piece]) -> _Move | None:
     return None
 
 
-def _def_too_late(pieces: list[_Piece], is_at_start: bool) -> _Move | None:
+def _late_def(pieces: list[_Piece], is_at_start: bool) -> _Move | None:
     """A DEF below its first call, or in a block."""
     before = 0
     for k, end in _defs(pieces):

@@ -56,12 +56,12 @@ def made_up(orders: Sequence[Order]) -> str:
 
 def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     """Return the orders of a sentence, in turn."""
-    found: list[Order] = []
+    result: list[Order] = []
     if len(words) > LONGEST:
         return []
     words = [
         one
-        for one, after in pairwise([*_joined(words, names), made(";")])
+        for one, after in pairwise([*_join_words(words, names), made(";")])
         if not said_of(one.text, "the")
         or said_of(after.text, "the")
         or not said_of(after.text, "idle")
@@ -69,28 +69,30 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     meant = ["", *(names.meant(word.text) for word in words[1:])]
     asks = next((k for k, each in enumerate(meant) if each in ("IF", "WHEN")), 0)
     if asks:
-        return _asked_between(orders(words[:asks], names), words[asks:], names)
+        return _orders_with_condition(orders(words[:asks], names), words[asks:], names)
     joins = "" if any(word.text == "(" for word in words) else ",."  # `gira(2, 80)` is one
     groups = groupby(words, key=lambda it: it.text in (*joins,) or bool(said_of(it.text, "then")))
     for is_between, group in groups:
         part = list(group)
-        if is_between or (not found and all(said_of(lexeme.text, "filler") for lexeme in part)):
+        if is_between or (not result and all(said_of(lexeme.text, "filler") for lexeme in part)):
             continue  # `Hola robot, …`
         own = _orders(part, names)
-        if not own or any(order.is_repeated for order in own[bool(not found) :]):
+        if not own or any(order.is_repeated for order in own[bool(not result) :]):
             return []  # nobody knows how much of it is done so often
-        found += own
-    return found
+        result += own
+    return result
 
 
-def _joined(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
+def _join_words(words: Sequence[Lexeme], names: Names) -> Sequence[Lexeme]:
     """Return words in which those that are one are one: `para adelante`, `si no`."""
     while joined := rewrites.one_word(words, names):
         words = joined[0]
     return words
 
 
-def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
+def _orders_with_condition(
+    first: list[Order], words: Sequence[Lexeme], names: Names
+) -> list[Order]:
     """Return orders and the condition after them; a move that it stops is watched meanwhile."""
     asked = block(words, names, is_open=False)
     if not asked and [order.word for order in first[-1:]] in (["S"], ["STOP"]):
@@ -110,7 +112,7 @@ def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) ->
 
 def _stopped_when(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
     """Return orders of which a condition ends the last one: `anda y para cuando …`."""
-    condition, sample = _asked(words[1:], names)
+    condition, sample = _parse_condition(words[1:], names)
     if not first or not condition or first[-1].word not in MOVES or "UNTIL" in first[-1].text:
         return []
     move = first[-1]
@@ -125,7 +127,7 @@ def _orders(words: list[Lexeme], names: Names) -> list[Order]:
     if whole := _order(words, names):
         return [whole]
     for k in range(2, len(words) - 1):
-        first = _order(words[:k], names) if _begins(words[k], names) else None
+        first = _order(words[:k], names) if _begins_order(words[k], names) else None
         if first and first.word == "BEEP" and said_of(words[k].text, "note"):
             return []
         rest = _orders(words[k:], names) if first and len(first.samples) < 2 else []
@@ -134,7 +136,7 @@ def _orders(words: list[Lexeme], names: Names) -> list[Order]:
     return []
 
 
-def _begins(token: Lexeme, names: Names) -> bool:
+def _begins_order(token: Lexeme, names: Names) -> bool:
     """Whether a word begins an order."""
     is_turn = bool(said_of(token.text, "turn"))
     return is_turn or names.meant(token.text) in (*CALLED, "S", "STOP")
@@ -146,7 +148,7 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
     first = names.meant(words[0].text)
     rest = [lexeme.text for lexeme in words[1:]]
     if first in ("S", "STOP") and rest:
-        if all(said_of(each, "the", "engine", "filler") for each in rest):
+        if all(said_of(item, "the", "engine", "filler") for item in rest):
             return Order("S", "S", ())
         if any(lexeme.kind is NUMBER for lexeme in words):
             pause = filled([made("W"), *words[1:]], names, has_until=False)
@@ -172,12 +174,12 @@ def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
     if call is None or call.times or "DISTANCE" not in names.sensors:
         return None
     word = call.tokens[0].text
-    condition, sample = _asked(words[k + 1 :], names, is_ahead=word == "F")
+    condition, sample = _parse_condition(words[k + 1 :], names, is_ahead=word == "F")
     text = f"{laid_out(call.tokens)} UNTIL({condition})"
     return Order(word, text, call.samples + sample) if condition else None
 
 
-def _asked(
+def _parse_condition(
     words: Sequence[Lexeme], names: Names, is_ahead: bool = True
 ) -> tuple[str, tuple[str, ...]]:
     """Return the condition that words ask, and what they do not say of it.
@@ -186,12 +188,12 @@ def _asked(
     """
     if exact := laid_out(condition_in(words, names)):
         return exact, ()
-    said = (worded(words, names) if is_ahead else None) or {}
-    condition = said.get("asked") or said.get("question", "")
+    text = (worded(words, names) if is_ahead else None) or {}
+    condition = text.get("asked") or text.get("question", "")
     is_other = any(names.meant(it.text) in _ASIDE or it.text in COMPARISONS for it in words)
     if is_other or not condition.startswith("DISTANCE"):
         return "", ()
-    return condition, () if "asked" in said else (f"{NEAR_CM} cm",)
+    return condition, () if "asked" in text else (f"{NEAR_CM} cm",)
 
 
 def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
@@ -202,7 +204,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     word = names.meant(tokens[0].text)
     if word not in ("IF", "WHILE", "LOOP") or len(tokens) > LONGEST:
         return ""
-    tokens = [tokens[0], *_joined(tokens[1:], names)]  # `si no hay` is no ELSE
+    tokens = [tokens[0], *_join_words(tokens[1:], names)]  # `si no hay` is no ELSE
     while tokens[-1].text in ENDED or said_of(tokens[-1].text, "end"):
         tokens = tokens[:-1]
     texts = [token.text for token in tokens]
@@ -212,7 +214,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     for k in [comma] if comma else range(2, arm):
         header = _head(word, tokens[1:k], names)
         body = orders(tokens[k:arm], names) if header else []
-        if header and not body and _begins(tokens[k], names):
+        if header and not body and _begins_order(tokens[k], names):
             return ""  # another order than the words after it say
         if not body or any(order.is_side_free for order in (*body, *other)):
             continue
@@ -234,7 +236,7 @@ def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
     if word == "LOOP":
         number = next((lexeme.text for lexeme in words if lexeme.kind is NUMBER), "")
         return f"LOOP({number})" if number and said_of(words[-1].text, "times") else ""
-    asked = _asked(words, names)[0]
+    asked = _parse_condition(words, names)[0]
     return f"{word}({asked})" if asked else ""
 
 
@@ -248,5 +250,12 @@ def condition_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
     tokens = readings[0].tokens if readings else []
     end = next((k for k, lexeme in enumerate(tokens) if lexeme.text == ";"), len(tokens)) - 1
     lexemes = tokens[2:end]
-    is_asked = any(lexeme.text in COMPARISONS or names.is_yes_no(lexeme.text) for lexeme in lexemes)
-    return lexemes if is_asked else []
+    return lexemes if any(_asks(lexeme.text, names) for lexeme in lexemes) else []
+
+
+def _asks(word: str, names: Names) -> bool:
+    """Whether a word makes a question of those beside it: a yes or no that never changes does not,
+    and may be said for more: `si no avanza`.
+    """
+    is_known = word in ("TRUE", "FALSE")
+    return word in COMPARISONS or (names.is_yes_no(word) and not is_known)

@@ -22,17 +22,17 @@ def pointed(diagnostic: Diagnostic, source: Source) -> Diagnostic:
     named = diagnostic.values.get("found", "").strip()
     if not named or code in _COUNTED or not names_found(diagnostic):
         return diagnostic
-    if _alike(source[span]) == _alike(named):
+    if _normalized(source[span]) == _normalized(named):
         return diagnostic
-    found = _nearest(named, span, source)
-    if found is None:
+    result = _nearest(named, span, source)
+    if result is None:
         return diagnostic
     if place is None and code not in _WAYS:
         place = span
-    return diagnostic._replace(span=found, place=place)
+    return diagnostic._replace(span=result, place=place)
 
 
-def _alike(text: str) -> str:
+def _normalized(text: str) -> str:
     return " ".join(plain(text).split())
 
 
@@ -42,9 +42,10 @@ def _nearest(named: str, span: Span, source: Source) -> Span | None:
     begin = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
     line_end = re.compile(r"[\r\n]|\Z").search(text, max(span.start, span.end))
     assert line_end is not None  # each text has an end
-    part = _each_plain(text[begin : line_end.start()])
-    words = r"\s*".join(map(re.escape, _each_plain(named).split()))
-    head, tail = (r"(?<!\w)" * named[0].isalnum(), r"(?!\w)" * named[-1].isalnum())
+    part = _unaccented(text[begin : line_end.start()])
+    words = r"\s*".join(map(re.escape, _unaccented(named).split()))
+    head = r"(?<!\w)" if named[0].isdigit() else r"(?<![^\W\d])" * named[0].isalpha()  # V of 2V
+    tail = r"(?!\w)" * named[-1].isalnum()
     matches = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
     places = (Span(begin + match.start(), begin + match.end()) for match in matches)
     return min(places, key=lambda it: _distance(it, span), default=None)
@@ -57,6 +58,6 @@ def _distance(one: Span, other: Span) -> tuple[int, int]:
 
 
 @lru_cache(16)
-def _each_plain(text: str) -> str:
+def _unaccented(text: str) -> str:
     """Return a text in capitals without accents, each character in its place."""
-    return "".join(short if len(short := plain(each)) == 1 else each for each in text)
+    return "".join(short if len(short := plain(item)) == 1 else item for item in text)

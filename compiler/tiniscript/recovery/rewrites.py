@@ -89,15 +89,15 @@ def cells(table: str) -> Iterator[list[str]]:
 
 @cache
 def of_tokens() -> tuple[Row, ...]:
-    found = []
+    matches = []
     for pattern, becomes, cost, code, how, example in cells(rows.TOKENS):
-        parts = tuple(_whole(becomes, rows.PARTS).split())
+        parts = tuple(_expanded(becomes, rows.PARTS).split())
         is_offered = "offered" in how
         may_lose = is_offered or bool(_OF_NUMBERS.search(f"{pattern} {becomes}"))
         row = Row(compiled(pattern, rows.PARTS), parts, float(cost), CODES[code], "first" in how,
                   is_offered, may_lose, _texts(example))  # fmt: skip
-        found.append(row)
-    return tuple(found)
+        matches.append(row)
+    return tuple(matches)
 
 
 @cache
@@ -114,7 +114,7 @@ def tried(line: Encoded, is_first: bool) -> Iterator[Row]:
 def of_signs() -> tuple[SignRow, ...]:
     return tuple(
         SignRow(
-            re.compile(_of_instruction(pattern), re.I),
+            re.compile(_anchored(pattern), re.I),
             becomes[1:-1],
             CODES[code],
             how == "offered",
@@ -124,7 +124,7 @@ def of_signs() -> tuple[SignRow, ...]:
     )
 
 
-def _of_instruction(pattern: str) -> str:
+def _anchored(pattern: str) -> str:
     """Return a pattern of characters whose `^` and `$` are where an instruction begins and ends."""
     edges = {"^": r"(?:\A|(?<=[;{}])|(?<=S[IB]\|))", "$": r"(?=\s*(?:[;}]|\Z))"}
     return _EDGE.sub(lambda match: edges.get(match[0], match[0]), pattern)
@@ -148,12 +148,12 @@ class Pattern(NamedTuple):
 
 def compiled(pattern: str, pieces: Mapping[str, str]) -> Pattern:
     """Return a row's pattern, in which `pieces` stand for its `<parts>`."""
-    atoms = [_atom(word) for word in _whole(pattern, pieces).split()]
+    atoms = [_atom(word) for word in _expanded(pattern, pieces).split()]
     needed = tuple(labels for _, labels in atoms if labels and not labels & {*ANY, "s|"})
     return Pattern(re.compile("".join(text for text, _ in atoms)), needed)
 
 
-def _whole(pattern: str, pieces: Mapping[str, str]) -> str:
+def _expanded(pattern: str, pieces: Mapping[str, str]) -> str:
     """Return a pattern with its `<parts>` written out."""
     while _PART.search(pattern):
         pattern = _PART.sub(lambda match: pieces[match[1]], pattern)
@@ -169,27 +169,27 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
     often = ""
     if len(atom) > 1 and atom[-1] in "?*+" and (atom[-2].isalnum() or atom[-2] in "':,;()"):
         atom, often = atom[:-1], atom[-1]
-    found = _ATOM.findall(atom)
+    result = _ATOM.findall(atom)
     labels = [
-        each if each[0] in "@_" or each[0].isalnum() else "s" + each.strip("'")
-        for each in found
-        if each != "$"
+        item if item[0] in "@_" or item[0].isalnum() else "s" + item.strip("'")
+        for item in result
+        if item != "$"
     ]
     if labels in (["@all"], ["@cond"]) and often:  # the brackets in it are closed in it
-        inner = body = _closing(["@flat"])
+        inner = body = _closing_pattern(["@flat"])
         if labels == ["@cond"]:  # or stand alone
             group = rf"{_token(['s('])}{inner}*?{_token(['s)'])}"
             body = rf"(?:{group}|(?!{group}){_token(labels)})"
         body = f"(?:{body}{often}?)"
         return f"(?P<{name}>{body})" if name else body, frozenset()
     one = _token(labels)
-    choices = [*([one] if labels else []), *([_EDGES["$"]] if "$" in found else [])]
+    choices = [*([one] if labels else []), *([_EDGES["$"]] if "$" in result else [])]
     body = f"(?:{'|'.join(choices)}){often}{'?' if often and often in '+*' else ''}"
-    is_needed = often in ("", "+") and "$" not in found
+    is_needed = often in ("", "+") and "$" not in result
     return f"(?P<{name}>{body})" if name else body, frozenset(labels if is_needed else ())
 
 
-def _closing(labels: Sequence[str]) -> str:
+def _closing_pattern(labels: Sequence[str]) -> str:
     """Return the pattern of a token of these labels, or of brackets that such tokens are in."""
     body = _token(labels)
     for _ in range(_DEEPEST):
@@ -211,12 +211,12 @@ def places(patterns: Mapping[int, Pattern]) -> Places:
     It is the label that the fewest patterns need, "" for one that any line may match.
     """
     many = Counter(label for it in patterns.values() for label in chain(*it.needed))
-    found: dict[str, list[int]] = {}
+    places: dict[str, list[int]] = {}
     for k, pattern in patterns.items():
-        rarest = min(pattern.needed, key=lambda it: sum(many[each] for each in it), default=("",))
+        rarest = min(pattern.needed, key=lambda it: sum(many[item] for item in it), default=("",))
         for label in rarest:
-            found.setdefault(label, []).append(k)
-    return found
+            places.setdefault(label, []).append(k)
+    return places
 
 
 class Encoded:
@@ -255,7 +255,7 @@ class Encoded:
         """Return the line after a row, or None where it does not hold here."""
         new: list[Lexeme] = []
         for part in row.becomes:
-            made_of = self._made(part, match)
+            made_of = self._replacement(part, match)
             if made_of is None:
                 return None
             if new and made_of and new[-1].source is None and made_of[0].space == "":
@@ -275,7 +275,7 @@ class Encoded:
             return None
         return self.tokens[:start] + new + self.tokens[end:]
 
-    def _made(self, part: str, match: re.Match[str]) -> list[Lexeme] | None:
+    def _replacement(self, part: str, match: re.Match[str]) -> list[Lexeme] | None:
         def captured(name: str) -> list[Lexeme]:
             start, end = self.span(match, name)
             return self.tokens[start:end]
@@ -287,7 +287,7 @@ class Encoded:
         if part[0] != "@":
             return [made(part.strip("'"))]
         function, *named = part[1:].split(":")
-        place = _Place(self, [captured(each) for each in named], self.span(match)[0])
+        place = _Place(self, [captured(item) for item in named], self.span(match)[0])
         return _FUNCTIONS[function](place)
 
     def translated(self, token: Lexeme) -> Lexeme:
@@ -363,7 +363,7 @@ def _times(place: _Place) -> _Made:
     return None if place.line.names.is_name(word) else [made(word[1:])]
 
 
-def _same(place: _Place) -> _Made:
+def _equal_number(place: _Place) -> _Made:
     """The second of two numbers, where they are the same."""
     (one,), (two,) = place.captured
     return [two] if one.text == two.text else None
@@ -388,19 +388,19 @@ def _seconds(place: _Place) -> _Made:
     return [made(f"{float(token.text) / 1000:g}")]
 
 
-def _own(place: _Place) -> _Made:
+def _converted_number(place: _Place) -> _Made:
     """A number with its unit, in the unit that values have: `500 ms` is 0.5, `1 m` is 100."""
     (number,), (unit,) = place.captured
-    said = said_of(unit.text, "unit") or ("", "1000")
+    text = said_of(unit.text, "unit") or ("", "1000")
     return [
-        number if said[1] == "1000" else made(number_text(float(number.text) * int(said[1]) / 1000))
+        number if text[1] == "1000" else made(number_text(float(number.text) * int(text[1]) / 1000))
     ]
 
 
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": lambda it: negated(it.captured[0]), "endof": _end_of, "dec": _decimal, "xn": _times,
-    "cat": _zero_after, "mmss": _minutes, "same": _same, "label": _label,
-    "ms": _seconds, "own": _own,
+    "cat": _zero_after, "mmss": _minutes, "same": _equal_number, "label": _label,
+    "ms": _seconds, "own": _converted_number,
     "most": partial(_limit, True), "least": partial(_limit, False),
 }  # fmt: skip
 

@@ -197,10 +197,16 @@ SIGNS = r"""
 ⟨(?<=[\w)])\s*\.\s*$¦(?<=\))\s*\.\s+(?=\w)⟩
     | `;⟨¦ ⟩` | TS010 | applied
     | ⟨S.¦F(2,80). R(1,60). S.⟩ => ⟨S;¦F(2,80); R(1,60); S;⟩
-/\*\s*(.*?)\s*\*/\s*$ | `// \1` | TS007 | applied | F(2,80) /* hola */ => F(2,80) // hola
-⟨(?:^|(?<=\s))(?:#+|--+>?|<!--|^REM\b)\s*(?=[^\W\d])¦^\s*/\s*(?=(?-i:[a-z]+)(?! ?\())⟩
+^\s*/\s*(?=(?-i:[a-z]+)(?! ?\())
     | `// ` | TS007 | applied
-    | SI|F(2, 60)⟨ # gira¦⏎/ gira⟩⏎R(1, 50) => SI|F(2, 60)⟨ // gira¦⏎// gira⟩⏎R(1, 50)
+    | SI|F(2, 60)⏎/ gira⏎R(1, 50) => SI|F(2, 60)⏎// gira⏎R(1, 50)
+\b(?:basic\.)?forever\s*\(\s*(?:function\s*\(\s*\)|\(\s*\)\s*=>)\s*\{
+    | `basic.forever() {` | TS102 | applied
+    | basic.forever(function () {⏎S⏎}) => LOOP(FOREVER);⏎S⏎END_LOOP
+^input\.onButtonPressed\(\s*Button\.([AB])\s*,\s*(?:function\s*\(\s*\)|\(\s*\)\s*=>)\s*\{
+    | `WHEN(KEY_\1) {` | TS102 | applied
+    | input.onButtonPressed(Button.A, function () {⏎S⏎}) => WHEN(KEY_A);⏎S⏎END_WHEN
+^\s*\}\s*\)\s*;?\s*$ | `}` | TS047 | applied | forever(() => {⏎S⏎}) => LOOP(FOREVER);⏎S⏎END_LOOP
 \b([A-Za-z]+)\.read\(\)
     | `\1` | TS102 | applied
     | IF(DISTANCE.read()<10);S;ENDIF => IF(DISTANCE<10);S;ENDIF
@@ -261,6 +267,11 @@ o=(|AND|OR|NOT l=@val is|equal+ to|than? n=@num|@val
 l=@val is? between a=@num and b=@num
     | $l > $a AND $l < $b | 1 | TS037 | offered
     | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
+# a side of the stick, which is a number: kind
+⟨PAD_X¦PAD_X¦PAD_Y¦PAD_Y⟩ is|=|== ⟨L|left¦R|right¦F|up¦B|down⟩
+    | ⟨PAD_X <¦PAD_X >¦PAD_Y >¦PAD_Y <⟩ 0 | 1 | TS010 | first offered
+    | IF(⟨PAD_X = LEFT¦PAD_X = DERECHA¦PAD_Y = UP¦PAD_Y = ABAJO⟩);S;ENDIF =>
+    IF(⟨PAD_X <¦PAD_X >¦PAD_Y >¦PAD_Y <⟩ 0);S;ENDIF
 # questions and sums: kind, branch
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val
     | $a $s $b AND $b $t $c | 1 | TS037 | applied
@@ -360,6 +371,17 @@ a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => 
     | $v = $e | 1.5 | TS050 | applied
     | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 # calls and their brackets: kind, two, other
+^ TIME ( n=@num ) $ | W ( $n ) | 1 | TS102 | offered | TIME(2);F(1, 50) => W(2);F(1, 50)
+a=@num b=@val
+    | $a * $b | 1.5 | TS048 | offered
+    | V = 30⏎F(1, 2V) => V = 30⏎F(1, 2 * V)
+f=MAX|MIN ( a=@noparen+ , b=@noparen+ , c=@noparen+ )
+    | $f ( $f ( $a , $b ) , $c ) | 1 | TS020 | offered
+    | X = MAX(LIGHT_L, LIGHT_R, 200)⏎F(1, X) => X = MAX(MAX(LIGHT_L, LIGHT_R), 200)⏎F(1, X)
+o==|(|, f=⟨ABS a=@num|@val¦MAX|MIN|ROUND|RANDOM a=@num|@val , b=@num|@val⟩ e=;|$
+    | $o $f ( $a ⟨¦, $b⟩ ) $e | 1 | TS015 | offered
+    | X = ⟨ABS DISTANCE¦ROUND DISTANCE, 1⟩⏎F(X, 50) =>
+    X = ⟨ABS(DISTANCE)¦ROUND(DISTANCE, 1)⟩⏎F(X, 50)
 x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
 x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
 RANDOM ( between|from? a=@num to|and|until|- b=@num )
@@ -664,14 +686,25 @@ d=@device ( ⟨lit¦dark¦most¦least⟩ )
 ^ n=@defw = a=@num|@val , b=@num|@val $
     | $n ( $a , $b ) | 1 | TS015 | offered
     | DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO = 3, 60 => DEF LADO(X, Y)⏎F(X, Y)⏎END_DEF⏎LADO(3, 60)
-^ TO n=@word ':' v=@name ⟨¦':' u=@name⟩ $
-    | DEF $n ( $v ⟨¦, $u⟩ ) | 1 | TS102 | applied
-    | TO SQUARE :SIZE⟨¦ :SPEED⟩⏎F(SIZE, ⟨50¦SPEED⟩)⏎END⏎SQUARE(⟨3¦3, 60⟩) =>
-    DEF SQUARE(SIZE⟨¦, SPEED⟩)⏎F(SIZE, ⟨50¦SPEED⟩)⏎END_DEF⏎SQUARE(⟨3¦3, 60⟩)
-n=@defw a=@num|@val ⟨¦,? b=@num|@val⟩ e=;|$
-    | $n ( $a ⟨¦, $b⟩ ) $e | 1 | TS015 | applied
-    | DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO ⟨3¦3 60⟩ =>
-    DEF LADO(X⟨¦, Y⟩)⏎F(X, ⟨50¦Y⟩)⏎END_DEF⏎LADO(⟨3¦3, 60⟩)
+^ TO n=@word ':' v=@name
+    ⟨¦':' u=@name¦':' u=@name ':' w=@name¦':' u=@name ':' w=@name ':' x=@name⟩ $
+    | DEF $n ( $v ⟨¦, $u¦, $u , $w¦, $u , $w , $x⟩ ) | 1 | TS102 | applied
+    | TO SIDE :X⟨¦ :Y¦ :Y :Z¦ :Y :Z :V⟩⏎SHOW(X⟨¦ + Y¦ + Y + Z¦ + Y + Z + V⟩)⏎END⏎
+    SIDE(1⟨¦, 2¦, 2, 3¦, 2, 3, 4⟩) =>
+    DEF SIDE(X⟨¦, Y¦, Y, Z¦, Y, Z, V⟩)⏎SHOW(X⟨¦ + Y¦ + Y + Z¦ + Y + Z + V⟩)⏎END_DEF⏎
+    SIDE(1⟨¦, 2¦, 2, 3¦, 2, 3, 4⟩)
+^ DEF n=@defw v=@usedname ,? u=@usedname ⟨¦,? w=@usedname¦,? w=@usedname ,? x=@usedname⟩ $
+    | DEF $n ( $v , $u ⟨¦, $w¦, $w , $x⟩ ) | 1 | TS015 | applied
+    | DEF LADO X⟨ Y¦, Y, Z¦ Y Z V⟩⏎SHOW(X + Y⟨¦ + Z¦ + Z + V⟩)⏎END_DEF⏎LADO(1, 2⟨¦, 3¦, 3, 4⟩) =>
+    DEF LADO(X, Y⟨¦, Z¦, Z, V⟩)⏎SHOW(X + Y⟨¦ + Z¦ + Z + V⟩)⏎END_DEF⏎LADO(1, 2⟨¦, 3¦, 3, 4⟩)
+n=@defw a=@num|@val
+    ⟨¦,? b=@num|@val¦,? b=@num|@val ,? c=@num|@val¦
+    ,? b=@num|@val ,? c=@num|@val ,? d=@num|@val⟩ e=;|$
+    | $n ( $a ⟨¦, $b¦, $b , $c¦, $b , $c , $d⟩ ) $e | 1 | TS015 | applied
+    | DEF LADO(X⟨¦, Y¦, Y, Z¦, Y, Z, V⟩)⏎SHOW(X⟨¦ + Y¦ + Y + Z¦ + Y + Z + V⟩)⏎END_DEF⏎
+    LADO 1⟨¦ 2¦, 2, 3¦ 2 3 4⟩ =>
+    DEF LADO(X⟨¦, Y¦, Y, Z¦, Y, Z, V⟩)⏎SHOW(X⟨¦ + Y¦ + Y + Z¦ + Y + Z + V⟩)⏎END_DEF⏎
+    LADO(1⟨¦, 2¦, 2, 3¦, 2, 3, 4⟩)
 ^ DEF ( n=@word )
     | DEF $n | 1 | TS039 | offered
     | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO

@@ -107,7 +107,7 @@ class Recovery:
         self.kit = kit
         self.mistakes = mistakes
         self.count = len(mistakes(program))
-        self.ends = _ends(program)
+        self.ends = _count_ends(program)
         self.unread = 0
         self.lines = [_Text(line, k) for k, line in enumerate(program.split("\n"))]
         self.drop_setups()
@@ -160,7 +160,11 @@ class Recovery:
                     new = row.pattern.sub(row.becomes, body, count=1)
                     before, after = lexemes(body), lexemes(new)
                     is_lost = names.defs & ({*texts(before)} - {*texts(after)})
-                    if new != body and not is_lost and _left_open(after) <= _left_open(before):
+                    if (
+                        new != body
+                        and not is_lost
+                        and _open_brackets(after) <= _open_brackets(before)
+                    ):
                         line.steps.append(Step(row.code, before, after))
                         line.is_sure = line.is_sure and not row.is_offered
                         body = new
@@ -183,23 +187,23 @@ class Recovery:
 
     def join_until(self) -> None:
         """Put an UNTIL on a line of its own after the instruction before it."""
-        kept: list[_Text] = []
+        texts: list[_Text] = []
         until = re.compile(rf"^\s*{words_of('until')}\b", re.MULTILINE)
         text = plain(self.program)
         if not until.search(text) or _END_UNTIL.search(text):
             return  # there is none, or it is taken for a block
         is_do = False
         for line in self.lines:
-            above = next((text for text in reversed(kept) if text.body.strip()), None)
+            above = next((text for text in reversed(texts) if text.body.strip()), None)
             body = above.body.rstrip().rstrip(";") if above and not above.note.strip() else ""
             if above and body.endswith(")") and not is_do and until.match(plain(line.body)):
                 above.body, above.note = f"{body} {line.body.strip()}", line.note
                 above.last = line.last
                 above.steps.append(Step(codes.UNTIL_ALONE, lexemes(line.body), lexemes(above.body)))
             else:
-                kept.append(line)
+                texts.append(line)
             is_do = is_do or _DO_ALONE.match(plain(line.body)) is not None
-        self.lines = kept
+        self.lines = texts
 
     def read_line(self, line: _Text) -> None:
         """Find the cheapest reading of a line, sure if no rival costs about as much; else parts."""
@@ -216,7 +220,9 @@ class Recovery:
         first = readings[0]
         line.rivals = [reading for reading in readings[1:] if reading.said != first.said]
         is_close = any(
-            rival.is_sure and rival.cost < first.cost + MARGIN and _kept(rival) >= _kept(first)
+            rival.is_sure
+            and rival.cost < first.cost + MARGIN
+            and _count_kept(rival) >= _count_kept(first)
             for rival in line.rivals
         )
         is_sure = first.is_sure and not is_close and not _is_key(tokens, first.tokens)
@@ -226,7 +232,7 @@ class Recovery:
         """Read each instruction of a line alone, where one cannot be read, if it is sure."""
         steps: list[Step] = []
         ends = [k for k, lexeme in enumerate([*tokens, made(";")]) if lexeme.text == ";"]
-        ends = [k for k in ends if k == len(tokens) or not _left_open(tokens[:k])]
+        ends = [k for k in ends if k == len(tokens) or not _open_brackets(tokens[:k])]
         for start, end in [*pairwise((-1, *ends))][::-1]:
             head, part, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
             readings = lines.read(part, names, is_quick=True)[:1]
@@ -279,7 +285,7 @@ class Recovery:
             for moved in ordered(text):
                 if left and not self.mistakes(moved.text):
                     text, left, changes, move = moved.text, [], [], moved
-        is_alone = has_sure_blocks and _ends(text) == self.ends
+        is_alone = has_sure_blocks and _count_ends(text) == self.ends
         if left and not ((is_sure or is_alone) and len(left) < self.count):
             return None
         is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
@@ -287,12 +293,12 @@ class Recovery:
 
     def rivals(self) -> list[tuple[float, int, Reading]]:
         """Return readings that are not the cheapest ones: how much more they cost, and the line."""
-        found = [
+        matches = [
             (rival.cost - text.reading.cost, k, rival)
             for k, text in enumerate(self.lines)
             for rival in text.rivals
         ]
-        return sorted(found, key=lambda it: it[0])
+        return sorted(matches, key=lambda it: it[0])
 
     def choices(self) -> Iterator[tuple[list[Reading], bool]]:
         """Give what each line may be read as; at last without the blocks of a program."""
@@ -343,14 +349,14 @@ class Recovery:
 
 def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
     """Whether a digit may be meant for the bracket that is missing after it: `DISTANCE < 209`."""
-    written = texts(old)
-    return written.count("(") > written.count(")") and any(
+    text = texts(old)
+    return text.count("(") > text.count(")") and any(
         sign.text == ")" and sign.source is None and re.fullmatch(f".+{rows.CLOSE_KEY}", one.text)
         for one, sign in pairwise(new)
     )
 
 
-def _left_open(tokens: Sequence[Lexeme]) -> int:
+def _open_brackets(tokens: Sequence[Lexeme]) -> int:
     """Return how many brackets are not closed."""
     depth = 0
     for sign in texts(tokens):
@@ -358,7 +364,7 @@ def _left_open(tokens: Sequence[Lexeme]) -> int:
     return depth
 
 
-def _ends(text: str) -> int:
+def _count_ends(text: str) -> int:
     return sum(lexeme.text in ENDED for lexeme in lexemes(text))
 
 
@@ -366,7 +372,7 @@ def _rank(candidate: Candidate) -> tuple[bool, bool]:
     return candidate.is_whole, candidate.is_applied
 
 
-def _kept(reading: Reading) -> int:
+def _count_kept(reading: Reading) -> int:
     """Return how many tokens of the text are in a reading: one with fewer is no equal rival."""
     return sum(token.source is not None for token in reading.tokens)
 
@@ -388,8 +394,8 @@ def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[
 
 def _without_empty(tokens: Sequence[Lexeme]) -> list[Lexeme]:
     """Drop separators with nothing between them."""
-    kept: list[Lexeme] = []
+    lexemes: list[Lexeme] = []
     for token in tokens:
-        if token.text != ";" or (kept and kept[-1].text not in (";", "|")):
-            kept.append(token)
-    return kept
+        if token.text != ";" or (lexemes and lexemes[-1].text not in (";", "|")):
+            lexemes.append(token)
+    return lexemes

@@ -26,24 +26,24 @@ Check = Callable[[str], Sequence[Diagnostic]]
 
 
 def beginning(
-    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
+    source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
     """Return what is told of a text by the way that it begins: with it the rest is read."""
-    said = setup(source.text)
-    if said and said.repair:
-        after = check(applied(source.text, said.repair.edits))
-        is_call = _CALL.match(source.text, said.repair.edits[0].span.end) is not None
-        if is_call or is_better(after, found, said.repair.edits):
-            return [said]
+    text = setup(source.text)
+    if text and text.repair:
+        after = check(applied(source.text, text.repair.edits))
+        is_call = _CALL.match(source.text, text.repair.edits[0].span.end) is not None
+        if is_call or is_better(after, diagnostics, text.repair.edits):
+            return [text]
     return _titles(source, kit)
 
 
-def other_word(source: Source, found: Sequence[Diagnostic]) -> Diagnostic | None:
+def other_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagnostic | None:
     """Return what is told of a word before the bar that is no `SI`."""
     first = lexemes(source.text[:_LONGEST].lstrip().partition("\n")[0])[:1]
     is_own = SEAL in source.text or (first and first[0].text in ("SI", "SB"))
-    told = (each for each in found if each.code is codes.SETUP_UNKNOWN)
-    return None if is_own else next(told, None)
+    message = (diagnostic for diagnostic in diagnostics if diagnostic.code is codes.SETUP_UNKNOWN)
+    return None if is_own else next(message, None)
 
 
 def setup(text: str) -> Diagnostic | None:
@@ -59,7 +59,7 @@ def setup(text: str) -> Diagnostic | None:
     is_own = head in ("SI", "SB")
     is_begun = is_own and (not rest or sign in rows.BARS)
     is_apart = match.end() > match.end("head")
-    if SEAL in line[end:] or not (is_begun or _begins(rest, sign, is_apart)):
+    if SEAL in line[end:] or not (is_begun or _begins_instruction(rest, sign, is_apart)):
         return None
     head_meant = head if is_own else "SI"
     fix = head_meant + "|"
@@ -70,11 +70,11 @@ def setup(text: str) -> Diagnostic | None:
         edits.append(Edit(Span(close, close + 1), ""))
         fix += text[span.end : close]
     said = {"found": head_meant, "letter" if sign.isalpha() else "sign": sign, "fix": fix}
-    is_sure = not any(each.isdecimal() for each in head + sign)
+    is_sure = not any(item.isdecimal() for item in head + sign)
     return Diagnostic(codes.SETUP_NEEDS_BAR, span, said, None, Repair(tuple(edits), is_sure))
 
 
-def _begins(rest: str, sign: str, is_apart: bool) -> bool:
+def _begins_instruction(rest: str, sign: str, is_apart: bool) -> bool:
     """Whether an instruction begins, and no condition; a sign before it says that by itself."""
     match = re.match(r"([^\W\d]\w*)\s*(\(|=|;|$)?", rest)
     if match is None:
@@ -89,9 +89,9 @@ def _begins(rest: str, sign: str, is_apart: bool) -> bool:
 
 def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return lines before `SI|` that are none of a program: its title, who wrote it."""
-    begun = _BEGUN.search(source.text)
-    told: list[Diagnostic] = []
-    for row in _ROW.finditer(source.text[: begun.start() if begun else 0]):
+    match = _BEGUN.search(source.text)
+    diagnostics: list[Diagnostic] = []
+    for row in _ROW.finditer(source.text[: match.start() if match else 0]):
         title = without_note(row[0])[0].strip()
         words = lexemes(title)
         if not words:
@@ -101,5 +101,7 @@ def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
             return []
         span, fix = Span(row.start(), row.start() + len(title)), f"// {title}"
         values = {"command": title} if words[0].text == "TSC" else {"fix": fix}
-        told.append(Diagnostic(codes.PROSE, span, values, span, Repair((Edit(span, fix),), False)))
-    return told
+        diagnostics.append(
+            Diagnostic(codes.PROSE, span, values, span, Repair((Edit(span, fix),), False))
+        )
+    return diagnostics

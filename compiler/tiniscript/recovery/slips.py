@@ -136,7 +136,7 @@ def code_of(change: Change) -> tuple[Code, Step | None]:
     more = {*texts(after)} - {*texts(before)}
     if "SI" in fewer and "IF" in more:
         return codes.SPANISH_IF, None
-    dropped = {each for each in fewer if {each, meant_by(each)} & {*ENDED}}
+    dropped = {item for item in fewer if {item, meant_by(item)} & {*ENDED}}
     if dropped and not more and fewer.keys() <= dropped | {";"}:
         return codes.EXTRA_WORD, None
     code, step = _code_of_steps(change) if steps else (_code_of_words(before, after), None)
@@ -164,7 +164,7 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
     if own and own[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
         return own[0].code, own[0]
     lost = (lexeme.text for lexeme in before if lexeme.kind is WORD and lexeme.text not in new)
-    foreign = next((each for each in lost if meant_by(each) in new - words), "")
+    foreign = next((item for item in lost if meant_by(item) in new - words), "")
     translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
     if translated and (foreign or not own):
         is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
@@ -200,26 +200,26 @@ def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
 # -- what was found, where a code knows better than the first difference ------------------------
 
 
-def _foreign(slip: Slip) -> Slip:
+def _foreign_words(slip: Slip) -> Slip:
     """A word of another language, with what belongs to it: `bot.forward`, FOR of `FOR I = 1 TO`."""
-    old, start, found, right = slip.old, slip.start, slip.found, slip.right
-    with_next = old[start : start + len(found) + 1]
-    has_dot = texts(found[-1:]) == (".",)
+    old, start, result, right = slip.old, slip.start, slip.found, slip.right
+    with_next = old[start : start + len(result) + 1]
+    has_dot = texts(result[-1:]) == (".",)
     if has_dot and not right:
-        found, right = with_next, slip.new[start : start + 1]
+        result, right = with_next, slip.new[start : start + 1]
     elif not right and start and old[start - 1].text != "|":
-        found, right = [old[start - 1], *found], [old[start - 1]]
+        result, right = [old[start - 1], *result], [old[start - 1]]
     elif has_dot:
-        found = with_next
-    cut = next((k for k, it in enumerate(found) if it.text in ("=", "(")), len(found))
-    is_set = cut < len(found) and found[cut].text == "="
-    found = found[: cut - is_set] or found
-    if any(lexeme.kind is NUMBER for lexeme in found):  # PARA of `PARA I DE 1 A 4`
-        found = [*takewhile(_is_counting, found)] or found
-    if right and found and all(said_of(lexeme.text, "filler") for lexeme in found):
+        result = with_next
+    cut = next((k for k, it in enumerate(result) if it.text in ("=", "(")), len(result))
+    is_set = cut < len(result) and result[cut].text == "="
+    result = result[: cut - is_set] or result
+    if any(lexeme.kind is NUMBER for lexeme in result):  # PARA of `PARA I DE 1 A 4`
+        result = [*takewhile(_is_counting, result)] or result
+    if right and result and all(said_of(lexeme.text, "filler") for lexeme in result):
         named = [lexeme for lexeme in old if meant_by(lexeme.text) == right[0].text]
-        found = named[:1] or found  # `oi robô, anda`
-    return slip._replace(found=found, right=right)
+        result = named[:1] or result  # `oi robô, anda`
+    return slip._replace(found=result, right=right)
 
 
 def _is_counting(token: Lexeme) -> bool:
@@ -227,7 +227,7 @@ def _is_counting(token: Lexeme) -> bool:
     return meant_by(token.text) == "LOOP" or bool(said_of(token.text, "count", "each"))
 
 
-def _torn(slip: Slip) -> Slip:
+def _split_number(slip: Slip) -> Slip:
     """A number in two pieces: the sign that goes, and the piece after it."""
     end = slip.start + len(slip.found)
     return slip if slip.right else slip._replace(found=slip.old[end - 1 : end + 1])
@@ -265,7 +265,7 @@ def _whole_sign(slip: Slip) -> Slip:
 
 
 _EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
-    codes.OTHER_LANGUAGE: _foreign, codes.BAD_NUMBER: _torn, codes.UNIT: _measured,
+    codes.OTHER_LANGUAGE: _foreign_words, codes.BAD_NUMBER: _split_number, codes.UNIT: _measured,
     codes.QUESTION_AFTER: _header, codes.OTHER_ASSIGNMENT: _sign_alone,
     codes.OTHER_SIGN: _whole_sign,
 }  # fmt: skip
@@ -277,7 +277,7 @@ _EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
 def found_in(slip: Slip) -> str:
     """Return what is wrong, as it was written: all of the instruction where a sign is missing."""
     code, found = slip.code, slip.found
-    if _lacks_after(slip):
+    if _has_gap(slip):
         return written(slip.old[slip.start : slip.start + 1])
     is_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
     is_all = code is codes.REPEATED or (code is codes.OTHER_SIGN and not slip.right)
@@ -291,7 +291,7 @@ def found_in(slip: Slip) -> str:
     return was
 
 
-def _lacks_after(slip: Slip) -> bool:
+def _has_gap(slip: Slip) -> bool:
     """Whether something is missing between two words, which are named."""
     is_between = slip.code in (codes.MISSING_VALUE, codes.MISSING_SIGN)
     return is_between and not slip.found and slip.start > 0
@@ -299,7 +299,7 @@ def _lacks_after(slip: Slip) -> bool:
 
 def right_of(slip: Slip) -> str:
     """Return how that is written in TiniScript."""
-    shown = _shown(slip)
+    shown = _changed_text(slip)
     now = laid_out(slip.right) or shown
     now = shown if now == SOME_END and shown in ENDED else now  # of a block, whose end is known
     if slip.code is codes.OTHER_LANGUAGE:
@@ -317,16 +317,18 @@ def _word_in(text: str) -> str:
 
 def before_it(slip: Slip) -> str:
     """Return what is right of the instruction before the slip."""
-    if _lacks_after(slip):
+    if _has_gap(slip):
         return written(slip.old[slip.start - 1 : slip.start])
-    kept = written(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
-    if slip.code is codes.HEADER_SEPARATOR and (not kept or lexemes(kept)[0].text not in OF_BLOCKS):
+    result = written(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
+    if slip.code is codes.HEADER_SEPARATOR and (
+        not result or lexemes(result)[0].text not in OF_BLOCKS
+    ):
         begun = (part for part in without_setup(slip.line) if part[0].text in OF_BLOCKS)
-        return laid_out(next(begun)) if kept else slip.now[0].text  # `CADA VEZ QUE … S`
-    return kept
+        return laid_out(next(begun)) if result else slip.now[0].text  # `CADA VEZ QUE … S`
+    return result
 
 
-def _shown(slip: Slip) -> str:
+def _changed_text(slip: Slip) -> str:
     """Return the instructions that a change makes."""
     return ";".join(laid_out(part) for part in slip.parts) or laid_out(slip.line)
 
@@ -334,7 +336,7 @@ def _shown(slip: Slip) -> str:
 def fix_of(slip: Slip) -> str:
     """Return what is offered: those instructions, or `SI|` alone where its sign was another."""
     right = right_of(slip) if slip.code is codes.OTHER_SIGN else ""
-    return f"{right}|" if right in ("SI", "SB") else _shown(slip)
+    return f"{right}|" if right in ("SI", "SB") else _changed_text(slip)
 
 
 def _word(slip: Slip) -> str:
@@ -345,15 +347,15 @@ def _word(slip: Slip) -> str:
 
 
 def _first_word(slip: Slip) -> str:
-    return _known(slip.now)
+    return _known_word(slip.now)
 
 
-def _known(tokens: Sequence[Lexeme]) -> str:
+def _known_word(tokens: Sequence[Lexeme]) -> str:
     words = [token.text for token in tokens if token.kind is WORD]
     return next((word for word in words if word in WORDS), "".join(words[:1]))
 
 
-def _called(slip: Slip) -> str:
+def _called_word(slip: Slip) -> str:
     """The word before the empty brackets."""
     after = texts(slip.old[slip.start :])
     if "(" not in after[slip.start == 0 :]:
@@ -368,7 +370,7 @@ def _grouping(slip: Slip) -> str:
     return next((lexeme.text for lexeme in slip.new if lexeme.text in ("LOOP", "WHILE", "IF")), "")
 
 
-def _accented(slip: Slip) -> str:
+def _accented_word(slip: Slip) -> str:
     """The word of the language that has an accent, nothing for a name."""
     return next((lexeme.text for lexeme in slip.old[slip.start :][:1] if lexeme.text in WORDS), "")
 
@@ -381,29 +383,32 @@ def _opened(slip: Slip) -> str:
     return _first_word(slip)
 
 
-def _from_there(slip: Slip) -> str:
-    return _known(slip.old[slip.start :])
+def _rest_of_line(slip: Slip) -> str:
+    message = slip.old[slip.start :]
+    return _known_word(message[2:] if texts(message[1:2]) == ("=",) else message)  # `Y = SIDE(3)`
 
 
 _WORD_OF: dict[Code, Callable[[Slip], str]] = {
-    codes.EMPTY_BRACKETS: _called, codes.GROUPED: _grouping, codes.BAD_NAME: _accented,
-    codes.MISSING_OPEN: _opened, codes.NO_VALUE: _from_there, codes.NO_BRACKETS_HERE: _from_there,
+    codes.EMPTY_BRACKETS: _called_word, codes.GROUPED: _grouping, codes.BAD_NAME: _accented_word,
+    codes.MISSING_OPEN: _opened, codes.NO_VALUE: _rest_of_line,
+    codes.NO_BRACKETS_HERE: _rest_of_line,
 }  # fmt: skip
 
 
 def _usage(slip: Slip) -> str:
+    """Return how the word is written, nothing for one of the program or a DEF: names of its own."""
     word = _word(slip)
-    return WORDS[word].usage if word in WORDS else ""
+    return WORDS[word].usage if word in WORDS and word != "DEF" else ""
 
 
 def _letter(slip: Slip) -> str:
     """Return the letter that stands in a number in the place of a digit."""
     was, now = found_in(slip), right_of(slip)
-    letters = {each for each in was if each.isalpha()} - {*now} if len(was) == len(now) else set()
+    letters = {item for item in was if item.isalpha()} - {*now} if len(was) == len(now) else set()
     return letters.pop() if len(letters) == 1 else ""
 
 
-def _takes(slip: Slip) -> str:
+def _usage_if_longer(slip: Slip) -> str:
     """Return the usage, where what is offered has more numbers than were written."""
     given, needed = (sum(lexeme.kind is NUMBER for lexeme in it) for it in (slip.was, slip.now))
     word = WORDS.get(right_of(slip))  # `avanza 2 s 3 veces`: F
@@ -413,7 +418,7 @@ def _takes(slip: Slip) -> str:
 
 _VALUES: dict[str, Callable[[Slip], str]] = {
     "found": found_in, "right": right_of, "before": before_it, "word": _word, "usage": _usage,
-    "fix": fix_of, "example": fix_of, "letter": _letter, "takes": _takes,
+    "fix": fix_of, "example": fix_of, "letter": _letter, "takes": _usage_if_longer,
 }  # fmt: skip
 
 
@@ -445,15 +450,15 @@ def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
 
     A separator in brackets parts nothing, where all brackets of the line are closed.
     """
-    found: list[list[Lexeme]] = [[]]
+    lexemeses: list[list[Lexeme]] = [[]]
     depth, is_closed = 0, texts(tokens).count("(") == texts(tokens).count(")")
     for token in tokens:
         depth += (token.text == "(") - (token.text == ")")
         if token.text == ";" and not (is_closed and depth > 0):
-            found.append([])
+            lexemeses.append([])
         else:
-            found[-1].append(token)
-    return found
+            lexemeses[-1].append(token)
+    return lexemeses
 
 
 def without_setup(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:

@@ -130,12 +130,12 @@ class _Reader:
             return float(token.text), k + 1
         if token.kind is not WORD or token.text in self.names.known.values:
             return None
-        said = said_of(token.text, "number")
-        is_told = after in (",", ")") or said_of(after, "unit") or self._is_and_a_half(k + 1)
-        is_one = said == ("1",) and not is_told
-        if said and self.command and not is_one:
-            number, k = self._sum(float(said[0]), k + 1)
-            self.is_sure = self.is_sure and said != ("1",)
+        text = said_of(token.text, "number")
+        is_told = after in (",", ")") or said_of(after, "unit") or self._is_half(k + 1)
+        is_one = text == ("1",) and not is_told
+        if text and self.command and not is_one:
+            number, k = self._sum(float(text[0]), k + 1)
+            self.is_sure = self.is_sure and text != ("1",)
             return number, k
         is_first = self.text(k - 1) == "(" and after == "," and self.command != "M"
         unit = k + 1 + (after == "A")  # `half a second`
@@ -150,19 +150,19 @@ class _Reader:
         """Return a number with the smaller ones after it: `cuatrocientos cuarenta y cinco`."""
         while number % 10 == 0:
             place = k + bool(said_of(self.text(k), "and"))
-            said = said_of(self.text(place), "number")
-            if not said or number % 10 ** len(said[0]):
+            text = said_of(self.text(place), "number")
+            if not text or number % 10 ** len(text[0]):
                 break
-            number, k = number + float(said[0]), place + 1
+            number, k = number + float(text[0]), place + 1
         return number, k
 
     def _number(self, k: int) -> int | None:
         """Read a number with its unit; return where to read on, None where none is here."""
-        found = self._value_of_words(k)
-        if found is None:
+        result = self._value_of_words(k)
+        if result is None:
             return None
-        number, k = found
-        if self._is_and_a_half(k):
+        number, k = result
+        if self._is_half(k):
             number, k, self.is_sure = number + 0.5, k + 2, False
         unit, thousandths = self.mark, 1000.0
         if said_of(self.text(k), "by") and said_of(self.text(k + 1), "number") == ("100",):
@@ -175,7 +175,7 @@ class _Reader:
                 return None  # `R 1 50 S`: an order of its own
             is_comma = self.words[k].text == rows.COMMA_KEY and self._is_number(k + 1)
             self.is_sure, k = self.is_sure and not (is_stop or is_comma), k + 1
-            if self._is_and_a_half(k):
+            if self._is_half(k):
                 number, k, self.is_sure = number + 0.5, k + 2, False
         elif said_of(self.text(k), "of") and (marked := said_of(self.text(k + 1), "value")):
             unit, k = marked[0], k + 2
@@ -184,13 +184,13 @@ class _Reader:
                 return None
             self.times = number_text(number)
             return k
-        self._take(number_text(number * thousandths / 1000), unit)
+        self._add_value(number_text(number * thousandths / 1000), unit)
         return k
 
     def _is_number(self, k: int) -> bool:
         return 0 <= k < len(self.words) and self.words[k].kind is NUMBER
 
-    def _is_and_a_half(self, k: int) -> bool:
+    def _is_half(self, k: int) -> bool:
         is_and = bool(said_of(self.text(k), "and"))
         return is_and and said_of(self.text(k + 1), "power") == ("50",)
 
@@ -199,7 +199,7 @@ class _Reader:
         is_minus = sign == "-" and self._is_number(k + 1)
         if is_minus and self.command in ("M", "SHOW"):
             self.is_sure = self.is_sure and not (self.values and before != ",")
-            self._take("-" + number_text(float(self.text(k + 1))), self.mark)
+            self._add_value("-" + number_text(float(self.text(k + 1))), self.mark)
             return k + 2
         if is_minus and (before in ("(", ",") or self._is_glued(k)):
             is_back = self.command in MOVES and not self.is_back and not self.values
@@ -222,8 +222,8 @@ class _Reader:
         word, after = self.text(k), self.text(k + 1)
         names, marked = self.names, said_of(word, "value")
         is_command = word in names.actuators or (word in DONE and word != "BREAK")
-        said = [word] if is_command else [meaning.concept for meaning in names.meanings(word)]
-        meant = next((each for each in said if is_command or each in CALLED or each == "S"), None)
+        text = [word] if is_command else [meaning.concept for meaning in names.meanings(word)]
+        meant = next((item for item in text if is_command or item in CALLED or item == "S"), None)
         is_before_number = self._is_number(k + 1) or after in ("=", ":")
         if self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]
@@ -240,7 +240,7 @@ class _Reader:
             else:
                 self.mark = marked[0]
         elif word in names.known.values and self.command:
-            self._take(word, marked[0] if marked else self.mark)
+            self._add_value(word, marked[0] if marked else self.mark)
         elif (
             self.command == "BEEP"
             and (note := said_of(word, "note") or said_of(word + "4", "note"))
@@ -249,10 +249,10 @@ class _Reader:
             self.values.append(_Value(note[0], "Hz"))
             self.is_sure = self.is_sure and len(word) > 1  # `C`
         elif names.meant(word) == "FOREVER" and self.command in MOVES and self._is_said():
-            self._take("FOREVER", "s")
+            self._add_value("FOREVER", "s")
             self.is_sure = False
         elif said_of(word, "power") and self.command:
-            self._take(said_of(word, "power")[0], "%")
+            self._add_value(said_of(word, "power")[0], "%")
             self.is_sure = False
         elif meant:
             is_again = after in ("", ",") and meant == self.command and meant in MOVES
@@ -279,7 +279,7 @@ class _Reader:
             return False
         return self.command == "M" or marked[0] not in _SIDES
 
-    def _take(self, text: str, unit: str | None) -> None:
+    def _add_value(self, text: str, unit: str | None) -> None:
         self.values.append(_Value(text, unit))
         self.mark = None
 
@@ -317,14 +317,14 @@ class _Reader:
         texts: list[str] = []
         samples: list[str] = []
         for value, its in zip(slots, word.arguments, strict=True):
-            own = value.text if value else self._own(its)
+            own = value.text if value else self._matching_variable(its)
             samples += [] if own else [f"{its.sample} {its.unit}"]
             texts.append(own or its.sample)
         call = f"{word.text}({','.join(texts)})".replace(",", f" {self.way},", 1)
         tokens = [made(lexeme.text) for lexeme in lexemes(call)]
         return Filled(tokens, self.cost, self.is_sure, self.times, tuple(samples))
 
-    def _own(self, argument: Argument) -> str:
+    def _matching_variable(self, argument: Argument) -> str:
         """Return the one variable that is called what an argument is: VELOCIDAD for `F(2)`."""
         own = [
             it

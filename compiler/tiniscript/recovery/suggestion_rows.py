@@ -357,9 +357,6 @@ SUGGESTIONS = """
     | SB|SI|F(2,80) => found=SI|
 # blocks: branch
 ^ TS024 | = | *=unended | DEF A - => word=DEF
-^ TS115
-    | = | skipped={skipped}
-    | IF(DISTANCE < 10)⏎BREAK⏎ENDIF⏎F(1, 60) => skipped=IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 ^ TS025 | = | part={part} | SI|WHEN(DISTANCE < 15)⏎B(1, 60)⏎ELSE⏎F(1, 60)⏎END_WHEN => part=ELSE
 ^ TS120 | TS120 | *=button | SHOW(boton) => asked=boton
 ^ TS029 | = | example={asked_behind?} | until distance < 10 forward => word=UNTIL
@@ -389,6 +386,7 @@ SUGGESTIONS = """
 ^ TS042 | TS007 | found={note} | /* hola */ F(2,80) => found=/*
 ^ TS046 | TS039 | word={sensor}; right={sensor} | IF(DISTANCE(cm) < 10);S;ENDIF => word=DISTANCE
 ^ TS046 | TS068 | ?={input} | X = input()⏎F(X, 80) => TS068
+^ TS009 | TS122 | lamp={lamp_here} | LÂMPADA(1) => lamp=LÂMPADA
 ^ TS009
     | TS102 | found={plain_letters}; right={letters_mean}; usage={letters_usage?}
     | W(5) Útil(BUTTON) => found=UTIL

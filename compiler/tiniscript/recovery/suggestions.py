@@ -37,7 +37,7 @@ from tiniscript.recovery.slots import filled
 from tiniscript.recovery.trailing_tokens import Around, Trailing, whole, width
 from tiniscript.recovery.worded import sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
-from tiniscript.syntax.free_names import for_a_number
+from tiniscript.syntax.free_names import free_number_name
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.operators import COMPARISONS
 
@@ -98,14 +98,14 @@ class Suggestion(NamedTuple):
 
 @cache
 def rows() -> tuple[Row, ...]:
-    found = []
+    matches = []
     for pattern, code, values, example in rewrites.cells(suggestion_rows.SUGGESTIONS):
-        named = dict(each.split("=", 1) for each in values.split("; ") if each)
+        named = dict(item.split("=", 1) for item in values.split("; ") if item)
         wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
         compiled = rewrites.compiled(pattern, suggestion_rows.PARTS)
         number, *how = code.split()
-        found.append(Row(compiled, CODES.get(number), how, named, (wrong, right)))
-    return tuple(found)
+        matches.append(Row(compiled, CODES.get(number), how, named, (wrong, right)))
+    return tuple(matches)
 
 
 @cache
@@ -117,7 +117,7 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
     """Return what is told of words behind each instruction of a text, or in place of one."""
     bodies = [without_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
-    found: list[Suggestion] = []
+    suggestions: list[Suggestion] = []
     above: list[str | None] = []
     start = depth = 0
     left = MOST
@@ -128,22 +128,22 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
         if "~" not in body and not is_right:
             for part in islice(_parts(body, start, Around(text, names, depth, above)), left):
                 left -= 1
-                each = _told(part)
+                each = _suggestion_for(part)
                 if each and not (told and overlap([told[-1].passed], [each.passed])):
                     told.append(each)
-        found += told
+        suggestions += told
         if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
             bare = _COUNTED.sub("", body)  # `2. S`
             is_right = is_right or (bare != body and lines.is_right(lexemes(bare), names))
             above.append(_as_orders(bare.partition("|")[2] or bare, is_right))
         depth += sum((word.text in BLOCK_ENDS) - (word.text in ENDED) for word in words)
         start += len(line) + 1
-    return found
+    return suggestions
 
 
 def _as_orders(line: str, is_right: bool) -> str | None:
     """Return a line of orders, "" for another one, None for one that begins a block."""
-    heads = [each[0].text for each in map(lexemes, line.split(";")) if each]
+    heads = [item[0].text for item in map(lexemes, line.split(";")) if item]
     if heads and heads[-1] in _BEGIN_BODY:
         return None
     is_right = is_right and not {*heads} & {*_BEGIN_BODY, *ENDED}
@@ -162,14 +162,14 @@ def _parts(body: str, start: int, around: Around) -> Iterator[_Words]:
         while 0 < len(tokens) <= lines.LONGEST:
             size = whole(tokens, names)
             rest = tokens[size:]
-            if not size and (found := _said_call(tokens, names)):
+            if not size and (found := _spoken_call(tokens, names)):
                 yield _Words(around, at, tokens, found[0], before, found[1])
                 break
             if not size or not rest:
                 yield _Words(around, at, tokens, 0, before)
                 break
             if any(token.text in ASKING for token in tokens[:size]):
-                is_ended = all(said_of(each.text, "do") for each in rest)  # by a THEN
+                is_ended = all(said_of(item.text, "do") for item in rest)  # by a THEN
                 yield _Words(around, at, tokens if is_ended else tokens[:size], 0, before)
             if not whole(rest, names) or rest[0].text in ("IF", "WHILE"):
                 yield _Words(around, at, tokens, size, before)
@@ -191,7 +191,7 @@ def holding(place: Place) -> Iterator[tuple[Row, Gaps]]:
                 yield row, gaps
 
 
-def _told(part: _Words) -> Suggestion | None:
+def _suggestion_for(part: _Words) -> Suggestion | None:
     if len(part.row) > LONGEST or not part.is_aside():
         return None
     for row, gaps in holding(part):
@@ -204,8 +204,8 @@ def _is_read_surely(part: Trailing) -> bool:
     """Whether a repair of the whole instruction can mean nothing else."""
     if part.own == "DEF":
         return False  # it may be called by its first word
-    found = lines.read([*part.tokens, *part.row], part.names, is_quick=True)
-    return bool(found) and found[0].is_sure and len(found[0].items or ()) == 1
+    result = lines.read([*part.tokens, *part.row], part.names, is_quick=True)
+    return bool(result) and result[0].is_sure and len(result[0].items or ()) == 1
 
 
 class _Words(Trailing):
@@ -222,7 +222,7 @@ class _Words(Trailing):
         return {"before": shortened(self.call), "words": shortened(self.words), "fix": ""}
 
     def several(self, name: str, gaps: Gaps) -> Mapping[str, str]:
-        return _worded(gaps)
+        return _worded_condition(gaps)
 
 
 def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
@@ -238,18 +238,18 @@ def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
     assert code is not None
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
-    found = Diagnostic(code, span, values, place)
+    result = Diagnostic(code, span, values, place)
     if "h" in named:
         place = Span(part.spans[gaps.span("h")[0]].start, part.behind.end)
         condition = values.get("asked") or values.get("question") or "TRUE"
-        return Suggestion(found, Edit(place, f"{gaps['head']}({condition})"))
+        return Suggestion(result, Edit(place, f"{gaps['head']}({condition})"))
     if part.is_said:
-        return Suggestion(found, Edit(part.place, values["fix"] or part.call))
+        return Suggestion(result, Edit(part.place, values["fix"] or part.call))
     fix = "" if part.tokens else values["fix"]
-    return Suggestion(found, Edit(part.behind, fix or " " * (part.behind.end - part.behind.start)))
+    return Suggestion(result, Edit(part.behind, fix or " " * (part.behind.end - part.behind.start)))
 
 
-def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
+def _spoken_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
     """Return the call that words before a condition say, and how many they are."""
     meant = [names.meant(token.text, NEAR) for token in tokens]
     asks = next((k for k in range(1, len(tokens)) if meant[k] in ("IF", "WHILE")), 0)
@@ -290,10 +290,10 @@ class Gaps(dict[str, str]):
 
     def __missing__(self, name: str) -> str:
         gap = name.rstrip("?")
-        found = self.place.gaps[gap](self) if gap in self.place.gaps else self.captured(gap)
-        if not found and gap == name:
+        result = self.place.gaps[gap](self) if gap in self.place.gaps else self.captured(gap)
+        if not result and gap == name:
             raise NoGap
-        return found
+        return result
 
     def span(self, name: str) -> tuple[int, int]:
         """Return where a capture stands: from which token on, and before which."""
@@ -325,39 +325,39 @@ class Gaps(dict[str, str]):
     def number(self, k: int) -> str:
         """Return the number at a place in the unit of an instruction: `0.5` for `500 ms`."""
         number = self.part.number(k) or ""
-        said = said_of(self.part.row[k + 1].text, "unit") if k + 1 < len(self.part.row) else ()
-        if said[:1] == ("s",) and said[1] != "1000":
-            return f"{float(number) * int(said[1]) / 1000:g}"
+        text = said_of(self.part.row[k + 1].text, "unit") if k + 1 < len(self.part.row) else ()
+        if text[:1] == ("s",) and text[1] != "1000":
+            return f"{float(number) * int(text[1]) / 1000:g}"
         return number
 
 
-def _all(gaps: Gaps, times: str) -> str:
+def _loop_over_all(gaps: Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
-    part, before = gaps.part, [each for each in gaps.part.before if each]
+    part, before = gaps.part, [item for item in gaps.part.before if item]
     is_known = len(before) == len(part.before) <= _FARTHEST
     if not is_known or part.is_in_block or times in ("", "0", "1"):
         return ""
-    told = [each.strip() for line in (*before, part.call) for each in line.split(";")]
-    orders = [each for each in told if each.upper() not in ("", "START")]
-    said = "".join(f"{order};" for order in orders)
-    if once := _ONCE.fullmatch("".join(said.split()).upper()):  # F and L of `F; L; F; L`
+    messages = [item.strip() for line in (*before, part.call) for item in line.split(";")]
+    orders = [item for item in messages if item.upper() not in ("", "START")]
+    text = "".join(f"{order};" for order in orders)
+    if once := _ONCE.fullmatch("".join(text.split()).upper()):  # F and L of `F; L; F; L`
         orders = orders[: once[1].count(";")]
     if not 0 < len(orders) <= _MOST_BEFORE:
         return ""
     return ";".join((f"LOOP({times})", *orders, BLOCK_ENDS["LOOP"]))
 
 
-def _worded(gaps: Gaps) -> dict[str, str]:
+def _worded_condition(gaps: Gaps) -> dict[str, str]:
     """What the words of a condition ask."""
     row, names = gaps.tokens("s"), gaps.part.names
-    is_bare = [each.text for each in gaps.from_on("s")[len(row) :][:1]] != [")"]
+    is_bare = [item.text for item in gaps.from_on("s")[len(row) :][:1]] != [")"]
     is_order = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
-    is_order |= is_bare and any("|@start|" in names.label(each) for each in row)
-    is_read = is_order or bool(_asked(gaps, "s"))
-    found = None if is_read else worded(row, names)
-    if found is None:
+    is_order |= is_bare and any("|@start|" in names.label(item) for item in row)
+    is_read = is_order or bool(_condition_tokens(gaps, "s"))
+    result = None if is_read else worded(row, names)
+    if result is None:
         raise NoGap
-    return found
+    return result
 
 
 def _sensor(gaps: Gaps, k: int) -> str:
@@ -372,19 +372,21 @@ def _measured(gaps: Gaps) -> str:
     return (worded(words, gaps.part.names) or {}).get("asked", "") if is_said else ""
 
 
-def _alone(gaps: Gaps) -> str:
+def _lone_condition(gaps: Gaps) -> str:
     """A condition that stands alone, and sets nothing."""
     signs = {token.text for token in gaps.tokens("s")}
-    return laid_out(_asked(gaps, "s")) if signs & {*COMPARISONS} - {"="} else ""
+    return laid_out(_condition_tokens(gaps, "s")) if signs & {*COMPARISONS} - {"="} else ""
 
 
-def _then(gaps: Gaps) -> str:
+def _consequence(gaps: Gaps) -> str:
     """What is done: the words from a capture on where they are right, else the orders they say."""
     words, names = gaps.from_on("w"), gaps.part.names
-    return _rest(gaps, "w") if lines.is_right(words, names) else written(orders(words, names))
+    return (
+        _rest_of_words(gaps, "w") if lines.is_right(words, names) else written(orders(words, names))
+    )
 
 
-def _free(gaps: Gaps) -> str:
+def _free_name(gaps: Gaps) -> str:
     """A name that may get the value before it, which is no other name."""
     names, name = gaps.part.names, plain(gaps["x"])
     is_name = all(token.kind is WORD for token in gaps.tokens("v"))
@@ -394,16 +396,16 @@ def _free(gaps: Gaps) -> str:
 
 def _choice(gaps: Gaps, is_exact: bool = False) -> str:
     """An IF that asks RANDOM which of two orders or more is done; `is_exact`: by no example."""
-    said = f"{gaps.part.call},{gaps['l']}".lstrip(",")
+    text = f"{gaps.part.call},{gaps['l']}".lstrip(",")
     orders = []
-    for match in map(_CHOICE.fullmatch, re.split(r",(?![^(]*\))", said)):
+    for match in map(_CHOICE.fullmatch, re.split(r",(?![^(]*\))", text)):
         known = WORDS.get(gaps.part.means(plain(match[1]))) if match else None
         if match is None or known is None or not known.role.is_instruction:
             return ""
         if is_exact and known.arguments and not match[2]:
             return ""
         orders.append(known.text + match[2] if match[2] else known.example)
-    name, count = for_a_number(gaps.part.text), len(orders)
+    name, count = free_number_name(gaps.part.text), len(orders)
     drawn, asked = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
     if count == 2:
         drawn, asked = "", ["RANDOM(1, 2) = 1"]
@@ -417,7 +419,7 @@ def _loop(gaps: Gaps) -> str:
     return f"LOOP({number});{gaps.part.call};{BLOCK_ENDS['LOOP']}" if is_often else ""
 
 
-def _with(gaps: Gaps, value: re.Match[str] | None, new: str) -> str:
+def _with_value(gaps: Gaps, value: re.Match[str] | None, new: str) -> str:
     """The call with another value, of which the old one is a part; nothing where it is the same."""
     new = value.expand(new) if value else ""
     if value is None or value[1] == new:
@@ -425,18 +427,18 @@ def _with(gaps: Gaps, value: re.Match[str] | None, new: str) -> str:
     return f"{gaps.part.call[: value.start(1)]}{new}{gaps.part.call[value.end(1) :]}"
 
 
-def _paced(gaps: Gaps) -> str:
+def _with_power(gaps: Gaps) -> str:
     """The call with another power."""
     number = gaps["n"]
-    return _with(gaps, gaps.part.power, number) if 9 < float(number) <= 100 else ""
+    return _with_value(gaps, gaps.part.power, number) if 9 < float(number) <= 100 else ""
 
 
-def _asked(gaps: Gaps, name: str = "q") -> list[Lexeme]:
+def _condition_tokens(gaps: Gaps, name: str = "q") -> list[Lexeme]:
     """The condition that words ask, in words of the language; nothing where they ask none."""
     return [] if gaps.part.is_asked else condition_in(gaps.tokens(name), gaps.part.names)
 
 
-def _shown(gaps: Gaps) -> str:
+def _shown_word(gaps: Gaps) -> str:
     """A word to show, which is no letter and like no name of the program."""
     word = gaps["s"]
     names = gaps.part.names
@@ -444,7 +446,7 @@ def _shown(gaps: Gaps) -> str:
     return "" if is_name or plain(word) in names.in_brackets else word
 
 
-def _rest(gaps: Gaps, name: str) -> str:
+def _rest_of_words(gaps: Gaps, name: str) -> str:
     """The words from a capture on."""
     start, end = gaps.span(name)
     return gaps.part.text[gaps.part.spans[start].start : gaps.part.place.end] if start < end else ""
@@ -452,14 +454,14 @@ def _rest(gaps: Gaps, name: str) -> str:
 
 def _calls(part: Trailing) -> list[Order]:
     """The orders that the words say, nothing where a turn of them says no way."""
-    found = orders(part.row, part.names)
-    return [] if any(each.is_side_free or each.is_repeated for each in found) else found
+    result = orders(part.row, part.names)
+    return [] if any(item.is_side_free or item.is_repeated for item in result) else result
 
 
 def _orders(gaps: Gaps) -> str:
     """The instruction, and those that the words behind it say."""
-    found = _calls(gaps.part)
-    return f"{gaps.part.call};{written(found)}" if found else ""
+    result = _calls(gaps.part)
+    return f"{gaps.part.call};{written(result)}" if result else ""
 
 
 def _note(gaps: Gaps) -> str:
@@ -471,31 +473,34 @@ def _note(gaps: Gaps) -> str:
 
 _GAPS: dict[str, Callable[[Gaps], str]] = {
     "above": lambda gaps: ["", *gaps.part.before][-1] or "",
-    "all": lambda gaps: _all(gaps, gaps["n?"]), "often": lambda gaps: _all(gaps, "4"),
-    "endless": lambda gaps: _all(gaps, "FOREVER"),
-    "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)),
+    "all": lambda gaps: _loop_over_all(gaps, gaps["n?"]),
+    "often": lambda gaps: _loop_over_all(gaps, "4"),
+    "endless": lambda gaps: _loop_over_all(gaps, "FOREVER"),
+    "more": lambda gaps: _loop_over_all(gaps, str(int(gaps["n"]) + 1)),
     "said": lambda gaps: gaps.part.words.strip(" ,:"),
     "head": lambda gaps: gaps.meant("h"), "called": lambda gaps: gaps.meant("w"),
     "block": lambda gaps: gaps.meant("g"), "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
     "choice": lambda gaps: _choice(gaps, is_exact=True).replace("; ", ";"),
-    "choices": _choice, "number": lambda gaps: for_a_number(gaps.part.text),
+    "choices": _choice, "number": lambda gaps: free_number_name(gaps.part.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "next": lambda gaps: WORDS[plain(gaps["s"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
-    "measured": _measured, "alone": _alone, "then": _then, "free": _free, "loop": _loop,
-    "by_way": lambda gaps: _with(gaps, gaps.part.time, rf"\1 {UNIT_OF[gaps.part.own]}"),
+    "measured": _measured, "alone": _lone_condition, "then": _consequence, "free": _free_name,
+    "loop": _loop,
+    "by_way": lambda gaps: _with_value(gaps, gaps.part.time, rf"\1 {UNIT_OF[gaps.part.own]}"),
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
-    "end": lambda gaps: "" if _asked(gaps, "s") else BLOCK_ENDS[gaps.meant("g")],
-    "shown": _shown, "note": _note,
+    "end": lambda gaps: "" if _condition_tokens(gaps, "s") else BLOCK_ENDS[gaps.meant("g")],
+    "shown": _shown_word, "note": _note,
     "other": lambda gaps: re.sub(r"^\w+", OTHER_WAY[gaps.part.own], gaps.part.call),
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
-    "longer": lambda gaps: _with(gaps, gaps.part.time, gaps["n"]), "paced": _paced,
-    "question": lambda gaps: laid_out(_asked(gaps)),
-    "contrary": lambda gaps: laid_out(rewrites.negated(it)) if (it := _asked(gaps)) else "",
+    "longer": lambda gaps: _with_value(gaps, gaps.part.time, gaps["n"]), "paced": _with_power,
+    "question": lambda gaps: laid_out(_condition_tokens(gaps)),
+    "contrary": lambda gaps:
+        laid_out(rewrites.negated(it)) if (it := _condition_tokens(gaps)) else "",
     "made_up": lambda gaps: made_up(_calls(gaps.part)),
-    "until": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),
-    "behind": lambda gaps: _rest(gaps, "w"), "orders": _orders,
+    "until": lambda gaps: f" {_rest_of_words(gaps, 't')}".rstrip(),
+    "behind": lambda gaps: _rest_of_words(gaps, "w"), "orders": _orders,
     "sensors": lambda gaps: ", ".join(gaps.part.names.measuring),
     "distance": lambda gaps: "DISTANCE" if "DISTANCE" in gaps.part.names.sensors else "",
 }  # fmt: skip

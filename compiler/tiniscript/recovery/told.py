@@ -24,11 +24,13 @@ from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
-from tiniscript.recovery.findings import meant_in
+from tiniscript.recovery.given_back import given_back
 from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
-from tiniscript.recovery.leftovers import leftovers, of_its_frame
+from tiniscript.recovery.leftovers import leftovers, setup_and_end_leftovers
+from tiniscript.recovery.meant import meant_in
+from tiniscript.recovery.notes import noted
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
 from tiniscript.recovery.setup import SEAL, beginning, other_word
@@ -49,11 +51,13 @@ class Findings(NamedTuple):
 
 
 class Wrong:
-    """A wrong text: `found` is what the parser and the checker, which `check` asks, say of it."""
+    """A wrong text: `diagnostics` is what parser and checker, which `check` asks, say of it."""
 
-    def __init__(self, source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) -> None:
+    def __init__(
+        self, source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
+    ) -> None:
         self.source = source
-        self.found = found
+        self.diagnostics = diagnostics
         self.check = check
         self.kit = kit
 
@@ -66,45 +70,50 @@ class Wrong:
         return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own=to == text))
 
     def _mistakes(self, text: str, is_own: bool) -> list[Code]:
-        found = self.found if is_own else self.check(text)
-        return [each.code for each in found if each.is_mistake]
+        diagnostics = self.diagnostics if is_own else self.check(text)
+        return [diagnostic.code for diagnostic in diagnostics if diagnostic.is_mistake]
 
 
 def told_of(
-    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
+    source: Source, diagnostics: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
-    """Return what is told of a wrong text, of which the parser and the checker say `found`.
+    """Return what is told of a wrong text, of which the parser and the checker say `diagnostics`.
 
     The readers know one end of a line that is a character: what the text has instead takes as much.
     """
     text = _CR_ALONE.sub("\n", source.text)
     source = Source(text, source.name)
-    told = _read(Wrong(source, found, check, kit), ROUNDS)
-    told = [bracketed(each, text, kit, is_offered=True) for each in told]
-    told = without_wrong(told, text, check)  # what is offered is right
-    told = conserving(told, text, kit)  # what is made keeps what was written
-    told = [bracketed(each, text, kit, is_offered=False) for each in told]
-    told = with_sample(told, text, kit)  # of a distance that nobody wrote it says: an example
-    told = [invisible(each, text) for each in told]
-    return codes.in_order([pointed(each, source) for each in told])
+    message = _read(Wrong(source, diagnostics, check, kit), ROUNDS)
+    message = [bracketed(item, text, kit, is_offered=True) for item in message]
+    message = without_wrong(message, text, check)  # what is offered is right
+    message = conserving(message, text, kit)  # what is made keeps what was written
+    message = [bracketed(item, text, kit, is_offered=False) for item in message]
+    message = with_sample(message, text, kit)  # of a distance that nobody wrote it says: an example
+    message = [invisible(item, text) for item in message]
+    return codes.in_order([pointed(item, source) for item in message])
 
 
 def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
     """Return what the readers say of a text, and then of what their edits leave wrong."""
     findings = (reader(wrong) for reader in READERS if rounds)
-    told, edits = next((each for each in findings if each.told), Findings([], []))
-    if not told:
-        told = with_usage(wrong.found, wrong.source, wrong.kit)
-    elif len(told) <= ENOUGH:
+    message, edits = next((each for each in findings if each.told), Findings([], []))
+    if not message:
+        message = with_usage(wrong.diagnostics, wrong.source, wrong.kit)
+    elif len(message) <= ENOUGH:
         rest = applied(wrong.source.text, edits)
         left = wrong.check(rest)
         if any(each.is_mistake for each in left):  # else its warnings come when it is repaired
             later = _read(Wrong(Source(rest), left, wrong.check, wrong.kit), rounds - 1)
-            told = [*told, *(moved_back(each, edits, wrong.source) for each in later)]
-    return dedupe(told, wrong.source)
+            message = [*message, *(moved_back(each, edits, wrong.source) for each in later)]
+    return dedupe(message, wrong.source)
 
 
 # -- readers --------------------------------------------------------------------------------------
+
+
+def _notes(wrong: Wrong) -> Findings:
+    """Return notes that begin with another sign: nothing in them is read (`notes`)."""
+    return _with_edits(noted(wrong.source))
 
 
 def _labels(wrong: Wrong) -> Findings:
@@ -117,19 +126,24 @@ def _keys(wrong: Wrong) -> Findings:
 
     The rest is read with a key that exists.
     """
-    told = asked_keys(wrong.source, wrong.kit)
-    edits = _with_edits(told).edits
-    return Findings(told, edits + [Edit(it.span, KEYS[0]) for it in told if not it.repair])
+    message = asked_keys(wrong.source, wrong.kit)
+    edits = _with_edits(message).edits
+    return Findings(message, edits + [Edit(it.span, KEYS[0]) for it in message if not it.repair])
 
 
 def _beginning(wrong: Wrong) -> Findings:
     """Return what is wrong with the lines before the program, and with its `SI|` (`setup`)."""
-    return _with_edits(beginning(wrong.source, wrong.found, wrong.check, wrong.kit))
+    return _with_edits(beginning(wrong.source, wrong.diagnostics, wrong.check, wrong.kit))
 
 
 def _calls(wrong: Wrong) -> Findings:
     """Return what is wrong with calls that have all their values in another form (`calls`)."""
     return _with_edits(misplaced_values(wrong.source))
+
+
+def _given_back(wrong: Wrong) -> Findings:
+    """Return what is wrong with DEFs that give a value back (`given_back`)."""
+    return Findings(*given_back(wrong.source))
 
 
 def _counters(wrong: Wrong) -> Findings:
@@ -139,7 +153,7 @@ def _counters(wrong: Wrong) -> Findings:
 
 def _frame(wrong: Wrong) -> Findings:
     """Return what begins a program once more, or ends it, which needs no word (`leftovers`)."""
-    return _with_edits(of_its_frame(wrong.source, wrong.kit))
+    return _with_edits(setup_and_end_leftovers(wrong.source, wrong.kit))
 
 
 def _leftovers(wrong: Wrong) -> Findings:
@@ -147,37 +161,37 @@ def _leftovers(wrong: Wrong) -> Findings:
     return _with_edits(leftovers(wrong.source, wrong.kit))
 
 
-def _other_beginning(wrong: Wrong) -> Findings:
+def _wrong_start(wrong: Wrong) -> Findings:
     """Return that another word stands in the place of `SI|` (`setup`); the rest is read with SI."""
-    begun = other_word(wrong.source, wrong.found)
+    begun = other_word(wrong.source, wrong.diagnostics)
     if begun is None:
         return Findings([], [])
-    told = with_usage([begun], wrong.source, wrong.kit)
-    return Findings(told, [Edit(begun.span, "SI")])
+    message = with_usage([begun], wrong.source, wrong.kit)
+    return Findings(message, [Edit(begun.span, "SI")])
 
 
-def _meant_surely(wrong: Wrong) -> Findings:
-    """Return what is wrong with a text that is read wholly and surely (`search`, `findings`)."""
+def _sure_findings(wrong: Wrong) -> Findings:
+    """Return what is wrong with a text that is read wholly and surely (`search`, `meant`)."""
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])
-    return _with_edits(meant_in(wrong.source, wrong.found, recovery, is_sure=True))
+    return _with_edits(meant_in(wrong.source, wrong.diagnostics, recovery, is_sure=True))
 
 
 def _words_after(wrong: Wrong) -> Findings:
     """Return what words say after instructions, or in the place of one (`suggestions`)."""
     after = suggested(wrong.source.text, wrong.kit)
     if recovery := wrong.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
-        after = [each for each in after if not recovery.has_signs(each.passed.span.start)]
-    return Findings([each.diagnostic for each in after], [each.passed for each in after])
+        after = [item for item in after if not recovery.has_signs(item.passed.span.start)]
+    return Findings([item.diagnostic for item in after], [item.passed for item in after])
 
 
-def _guessed(wrong: Wrong) -> Findings:
-    """Return what is wrong with the lines that are read, if not surely (`search`, `findings`)."""
+def _likely_findings(wrong: Wrong) -> Findings:
+    """Return what is wrong with the lines that are read, if not surely (`search`, `meant`)."""
     recovery = wrong.recovery
     if recovery is None:
         return Findings([], [])
-    return _with_edits(meant_in(wrong.source, wrong.found, recovery, is_sure=False))
+    return _with_edits(meant_in(wrong.source, wrong.diagnostics, recovery, is_sure=False))
 
 
 def _words_of_blocks(wrong: Wrong) -> Findings:
@@ -185,44 +199,48 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
     Else what is inside would be told of as well.
     """
-    told = [each for each in wrong.found if each.code is codes.UNKNOWN_WORD
+    messages = [each for each in wrong.diagnostics if each.code is codes.UNKNOWN_WORD
             and each.values.get("near") in slips.OF_BLOCKS]  # fmt: skip
-    return Findings(told, [Edit(each.span, each.values["near"]) for each in told])
+    return Findings(messages, [Edit(each.span, each.values["near"]) for each in messages])
 
 
 # Laws of their own come before what a search finds surely, and what it guesses comes last.
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _labels, _beginning, _keys, _calls, _counters, _frame, _other_beginning, _meant_surely,
-    _leftovers, _words_after, _guessed, _words_of_blocks,
+    _notes, _labels, _given_back, _beginning, _keys, _calls, _counters, _frame, _wrong_start,
+    _sure_findings, _leftovers, _words_after, _likely_findings, _words_of_blocks,
 )  # fmt: skip
 
 
-def _with_edits(told: list[Diagnostic]) -> Findings:
-    return Findings(told, [edit for each in told if each.repair for edit in each.repair.edits])
+def _with_edits(diagnostics: list[Diagnostic]) -> Findings:
+    return Findings(
+        diagnostics, [edit for item in diagnostics if item.repair for edit in item.repair.edits]
+    )
 
 
 # -- places ---------------------------------------------------------------------------------------
 
 
-def moved_back(found: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
+def moved_back(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
     """Return a diagnostic of the text with these edits, as one of the text without them.
 
     A condition that nobody can read is shown as it is written, and not what it was passed over for.
     """
-    values = dict(found.values)
+    values = dict(diagnostic.values)
     for edit in edits:
         if edit.text.endswith("(TRUE)") and "TRUE" not in (was := source[edit.span].strip()):
             values = {name: text.replace(edit.text, was) for name, text in values.items()}
-    place = found.place and _before(found.place, edits)
-    repair = found.repair
+    place = diagnostic.place and _original_span(diagnostic.place, edits)
+    repair = diagnostic.repair
     if repair is not None:
-        own = tuple(Edit(_before(edit.span, edits), edit.text) for edit in repair.edits)
+        own = tuple(Edit(_original_span(edit.span, edits), edit.text) for edit in repair.edits)
         passed = [edit for edit in edits if edit.text.isspace()]  # words that nothing may drop
         repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
-    return Diagnostic(found.code, _before(found.span, edits), values, place, repair)
+    return Diagnostic(
+        diagnostic.code, _original_span(diagnostic.span, edits), values, place, repair
+    )
 
 
-def _before(span: Span, edits: Sequence[Edit]) -> Span:
+def _original_span(span: Span, edits: Sequence[Edit]) -> Span:
     """Return where a span of the text with edits stood before them; all of one it begins in."""
     start = end = shift = 0
     for edit in sorted(edits):

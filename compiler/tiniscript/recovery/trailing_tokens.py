@@ -220,20 +220,20 @@ class Trailing:
             return token.text
         if token.text in self.names.known.values:
             return None
-        said = said_of(token.text, "number") or said_of(token.text, "often")
-        if said:
-            return said[0]
+        text = said_of(token.text, "number") or said_of(token.text, "often")
+        if text:
+            return text[0]
         return token.text[1:] if re.fullmatch("X[0-9]+", token.text) else None
 
     def _is_paced(self, k: int) -> bool:
         text = self.row[k].text
         if self.power is None:
             return False
-        said = said_of(text, "power")
-        is_fast = said[:1] == ("100",)
+        sentence = said_of(text, "power")
+        is_fast = sentence[:1] == ("100",)
         is_changed = bool(k and said_of(self.row[k - 1].text, "extra"))
         is_other = (int(self.power[1]) >= _HALF) is not is_fast
-        return said_of(text, "pace") != () or bool(said and (is_changed or is_other))
+        return said_of(text, "pace") != () or bool(sentence and (is_changed or is_other))
 
     def _is_told(self, k: int) -> bool:
         """Whether a token says nothing that the instruction does not."""

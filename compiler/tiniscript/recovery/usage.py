@@ -71,12 +71,11 @@ _DOTS = re.compile(
 )
 _MANY_BELOW = 6  # instructions that an example takes into a block
 _ENDS = re.compile(rf"\b{words_of('end')}")
-_BREAK = re.compile(r"(?i)\b(IF[ \t]*\([^\n;]*\))[\s;]*(?P<here>BREAK)[\s;]*END_?IF\b")
 _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
 _TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
-_CALL = re.compile(r"(\w{3,})\s*\([^()]*\w[^()]*\)")
+_CALL = re.compile(r"([^\W\d]\w*)\s*\((?=\W{0,40}\w).*\)", re.DOTALL)
 _LONG_HEAD = 100  # characters of a DEF before the name of a value
 _TAUGHT = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
 _OWN = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
@@ -92,27 +91,30 @@ _BEGINS = (";", "newline", "|")  # what an instruction begins behind
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
 _MOST_OF_END = 4  # words: `fin del bucle`
-_NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
+_NO_CALLS = ("leaves", "again", "etc", "end")
+_NO_NAMES = (*_NO_CALLS, "filler", "same")  # without values
 
 
-def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
+def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is wrong with a text, in words that say how it is written."""
     text = _Text(source, kit)
-    text.lacks_loop = [it.values["right"] for it in found if it.code is codes.NOT_OPEN] == ["LOOP"]
-    found = text.with_name(found)
+    text.lacks_loop = [it.values["right"] for it in diagnostics if it.code is codes.NOT_OPEN] == [
+        "LOOP"
+    ]
+    diagnostics = text.with_name(diagnostics)
     told: list[Diagnostic] = []
-    for each in found[:_MANY]:
-        told.append((_told(Found(text, each)) if each.repair is None else None) or each)
+    for item in diagnostics[:_MANY]:
+        told.append((_usage_diagnostic(Usage(text, item)) if item.repair is None else None) or item)
     parts = [it for it in told if it.values.get("part")]
-    if parts and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
+    if parts and any(item.code is codes.TASK_NOT_TOP for item in told):  # rather an IF
         part = {"part": parts[0].values["part"]}
         told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
-    if any("usage" in each.values for each in told if each.code is codes.OUT_OF_RANGE):
+    if any("usage" in item.values for item in told if item.code is codes.OUT_OF_RANGE):
         told += text.turned()
     return [
-        each
-        for each in (*told, *found[_MANY:])
-        if not (each.code in _OF_NAMES and text.is_in_wrong_def(each, told))
+        item
+        for item in (*told, *diagnostics[_MANY:])
+        if not (item.code in _OF_NAMES and text.is_in_wrong_def(item, told))
     ]
 
 
@@ -128,21 +130,21 @@ class _Text:
         """Whether any block has an end."""
         return _ENDS.search(plain(self.source.text)) is not None
 
-    def is_in_wrong_def(self, found: Diagnostic, told: Sequence[Diagnostic]) -> bool:
+    def is_in_wrong_def(self, diagnostic: Diagnostic, told: Sequence[Diagnostic]) -> bool:
         """Whether a name is in the body of a DEF that names no values in its brackets."""
         starts = (it.span.end for it in told if it.code is codes.PARAMETER_NEEDS_NAME)
-        start = max((it for it in starts if it <= found.span.start), default=-1)
-        return start >= 0 and not _DEF_END.search(self.source.text, start, found.span.start)
+        start = max((it for it in starts if it <= diagnostic.span.start), default=-1)
+        return start >= 0 and not _DEF_END.search(self.source.text, start, diagnostic.span.start)
 
     def turned(self) -> list[Diagnostic]:
         """Return moves with the power before the time, as another call of the text has them."""
-        found: list[Diagnostic] = []
-        for each in _TURNED.finditer(self.source.text):
-            if LONG_S <= float(each[1]) <= MOST_POWER and 0 < float(each[2]) < LONG_S:
-                fix = f"{each[0][0].upper()}({each[2]}, {each[1]})"
-                values = {"time": each[1], "power": each[2], "fix": fix}
-                found.append(Diagnostic(codes.SWAPPED, Span(*each.span()), values))
-        return found
+        diagnostics: list[Diagnostic] = []
+        for match in _TURNED.finditer(self.source.text):
+            if LONG_S <= float(match[1]) <= MOST_POWER and 0 < float(match[2]) < LONG_S:
+                fix = f"{match[0][0].upper()}({match[2]}, {match[1]})"
+                values = {"time": match[1], "power": match[2], "fix": fix}
+                diagnostics.append(Diagnostic(codes.SWAPPED, Span(*match.span()), values))
+        return diagnostics
 
     def end_at(self, place: int) -> str:
         """Return the end of the innermost block that is open at a place, "" for none."""
@@ -157,41 +159,49 @@ class _Text:
                     ends.pop()
         return "".join(ends[-1:])
 
-    def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
+    def with_name(self, diagnostics: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
-        nameless = [each for each in found if each.code is codes.DEF_NEEDS_NAME]
-        unknown = (each for each in found if each.code is codes.UNKNOWN_WORD)
+        nameless = [
+            diagnostic for diagnostic in diagnostics if diagnostic.code is codes.DEF_NEEDS_NAME
+        ]
+        unknown = (
+            diagnostic for diagnostic in diagnostics if diagnostic.code is codes.UNKNOWN_WORD
+        )
         wholes = ((it, self.source[instruction_at(it.span, self.source)]) for it in unknown)
         called = (it.values["found"] for it, whole in wholes if len(lexemes(whole)) == 1)
         name = next(called, "") if len(nameless) == 1 else ""
         if not name:
-            return found
+            return diagnostics
         own, end = nameless[0], nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
-        said = own._replace(values={"name": name}, repair=repair)
-        return [said if each is own else each for each in found if each.values.get("found") != name]
+        text = own._replace(values={"name": name}, repair=repair)
+        return [
+            text if diagnostic is own else diagnostic
+            for diagnostic in diagnostics
+            if diagnostic.values.get("found") != name
+        ]
 
 
-def _told(place: Found) -> Diagnostic | None:
+def _usage_diagnostic(place: Usage) -> Diagnostic | None:
     """Return what the first row that holds tells of a place, None where there is none."""
     return next((place.told(row, gaps) for row, gaps in holding(place)), None)
 
 
-class Found:
+class Usage:
     """What was found wrong, and the instruction around its place.
 
     `row` are the tokens of the instruction; before them rows have what was found.
     """
 
-    def __init__(self, text: _Text, found: Diagnostic) -> None:
+    def __init__(self, text: _Text, diagnostic: Diagnostic) -> None:
         self.around = text
         self.source = text.source
         self.text = text.source.text
         self.names = text.names
-        self.found = found
-        self.piece = instruction_at(found.span, text.source)
-        self.is_first = found.span.start == self.piece.start
-        self.behind_it = self.text[found.span.end :]
+        self.found = diagnostic
+        self.piece = instruction_at(diagnostic.span, text.source)
+        self.is_first = diagnostic.span.start == self.piece.start
+        self.behind_it = self.text[diagnostic.span.end :]
         self.row = lexemes(self.source[self.piece])
         self.words = [token.text for token in self.row if token.kind is WORD]
         self.signs = [token.text for token in self.row]
@@ -201,12 +211,12 @@ class Found:
         spans = (
             Span(end - len(it.source or ""), end) for it, end in zip(self.row, ends, strict=True)
         )
-        self.spans = [found.span, *spans]
+        self.spans = [diagnostic.span, *spans]
 
     def matched(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of a pattern whose part `here` begins at the place."""
-        found = pattern.finditer(self.text)
-        return next((it for it in found if it.start("here") == self.found.span.start), None)
+        result = pattern.finditer(self.text)
+        return next((it for it in result if it.start("here") == self.found.span.start), None)
 
     # -- classes ----------------------------------------------------------------------------------
 
@@ -218,7 +228,7 @@ class Found:
         code, here = self.found.code, self.source[self.found.span]
         is_strange = code is codes.UNKNOWN_WORD and self.is_first and bool(self.row)
         is_strange = is_strange and not self.found.values.get("near")
-        said = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
+        text = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
         are_sentence = len(self.words) > 1 and len(self.source[self.piece]) <= _LONGEST
         labels: dict[str, object] = {
             code.number: True,
@@ -242,7 +252,7 @@ class Found:
                 "@strange": True,
                 "@pressed": self._is_pressed(),
                 "@instead": said_instead(self.signs[0]),
-                "@switched": any(said_of(each, "on", "off") for each in said),
+                "@switched": any(said_of(each, "on", "off") for each in text),
                 "@button": any(map(self.is_button, self.words)) and self.signs[1:2] != ["("],
                 "@turned": any(said_of(each, "turn", "lap") for each in self.words),
                 "@sentence": are_sentence and not {*self.signs} & {*COMPARISONS, "(", "="},
@@ -252,7 +262,7 @@ class Found:
     def _is_pressed(self) -> bool:
         """Whether parts of one word say that a button is pressed: `onButtonPressed(…)`."""
         parted = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
-        return len(parted) > 1 and any(self.is_button(plain(each)) for each in parted)
+        return len(parted) > 1 and any(self.is_button(plain(item)) for item in parted)
 
     def _label_of(self, k: int) -> str:
         text, span = self.row[k].text, self.spans[k + 1]
@@ -271,19 +281,19 @@ class Found:
     def told(self, row: Row, gaps: Gaps) -> Diagnostic:
         """Return what a row tells: of the place, or where its words say."""
         values, fix = gaps.filled, gaps.filled.get("fix", "")
-        span = next((_PLACES[each](self) for each in row.how if each in _PLACES), self.found.span)
+        span = next((_PLACES[item](self) for item in row.how if item in _PLACES), self.found.span)
         code = row.code or self.found.code
         if row.code is None:
             values = {**self.found.values, **values}
         place = self.piece if {*row.how} & {"offered", "whole"} else None
         repair = Repair((Edit(self.piece, fix),), False) if "offered" in row.how else None
         if "everywhere" in row.how:
-            edits = (Edit(each, values["right"]) for each in self.renamed())
+            edits = (Edit(item, values["right"]) for item in self.renamed())
             repair = Repair(tuple(edits), False)
-        told = Diagnostic(code, span, values, place, repair)
+        diagnostic = Diagnostic(code, span, values, place, repair)
         if "again" not in row.how:
-            return told
-        return _told(Found(self.around, told)) or told
+            return diagnostic
+        return _usage_diagnostic(Usage(self.around, diagnostic)) or diagnostic
 
     def values(self) -> dict[str, str]:
         """Return what is said before the gaps of a row are filled."""
@@ -291,10 +301,10 @@ class Found:
 
     def several(self, name: str, gaps: Gaps) -> Mapping[str, str]:
         """Return values that come together."""
-        found = _SEVERAL[name](self, gaps.filled.get("word", ""))
-        if not found:
+        result = _SEVERAL[name](self, gaps.filled.get("word", ""))
+        if not result:
             raise NoGap
-        return found
+        return result
 
     # -- what its words say -----------------------------------------------------------------------
 
@@ -313,9 +323,9 @@ class Found:
         is_ended = word in BLOCK_ENDS and self.around.is_ended
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
-        found = lines.read(self.row, self.names) if word == "LOOP" else []  # else a guess
-        is_head = bool(found) and [each.kind for each in found[0].items or ()] == ["open"]
-        head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
+        result = lines.read(self.row, self.names) if word == "LOOP" else []  # else a guess
+        is_head = bool(result) and [item.kind for item in result[0].items or ()] == ["open"]
+        head = laid_out(result[0].tokens).strip("; ") if is_head else _usage(word)
         return head if is_ended else f"{head}; ...; {BLOCK_ENDS[word]}"
 
     def question(self, word: str) -> str:
@@ -324,16 +334,16 @@ class Found:
         Nothing where no number is asked for.
         """
         asked = self.asked(word)
-        if not any(each.kind is NUMBER for each in asked):
+        if not any(item.kind is NUMBER for item in asked):
             return ""
-        said = laid_out(condition_in(asked, self.names))
-        return f"{word}({said})" if said else WORDS[word].usage
+        text = laid_out(condition_in(asked, self.names))
+        return f"{word}({text})" if text else WORDS[word].usage
 
     def asked(self, word: str) -> list[Lexeme]:
         """Return what stands behind a header, up to what is done."""
         behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.row)][1:]
         begun = DONE - {"L", "R"}  # `pared a la derecha`
-        meant = [_is_over(each) or self.names.meant(each.text) in begun for each in behind]
+        meant = [_is_over(item) or self.names.meant(item.text) in begun for item in behind]
         return behind[: [*meant, True].index(True)]
 
     def is_button(self, word: str) -> bool:
@@ -364,10 +374,10 @@ class Found:
     @cached_property
     def turn(self) -> _Turn:
         """A turn that says no way, or no number."""
-        said = (*self.words, "_".join(self.words[:2]))
+        text = (*self.words, "_".join(self.words[:2]))
         way = next((it for it in map(self.names.meant, self.words) if it in ("L", "R")), "")
         degrees = {"half": "180", "whole": "360"}
-        halves = (it for it in degrees if any(said_of(each, it) for each in said))
+        halves = (it for it in degrees if any(said_of(each, it) for each in text))
         angle = degrees.get(next(halves, ""), "")
         is_timed = any(said_of(each, "unit")[:1] not in ((), ("turns",)) for each in self.words)
         numbers = [token.text for token in self.row if token.kind is NUMBER]
@@ -393,7 +403,7 @@ class Found:
         given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
         if not name or number or len({*given}) > 1:  # seconds, or how often: who writes it knows
             call = _CALL.fullmatch(piece)
-            is_other = call is None or self.names.meant(call[1]) or said_of(call[1], *_NO_NAMES)
+            is_other = call is None or said_of(call[1], *_NO_CALLS)
             is_often = bool(number and self.around.lacks_loop)
             return _Own("", "" if is_other or call is None else call[1], is_often, 0, False)
         if self.names.meant(name):
@@ -429,14 +439,14 @@ class Found:
         is_word = found.isidentifier() and found not in WORDS and not self.names.is_name(found)
         if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
             return None
-        at = min(sum(each.text == "," for each in before), len(word.arguments) - 1)
+        at = min(sum(item.text == "," for item in before), len(word.arguments) - 1)
         argument = word.arguments[at]
         unit = said_of(found, "unit")
         way = UNIT_OF.get(word.text, "")
         is_of_way = bool(way) and unit == (WAYS[way].unit, "1000")
-        said = f"{before[-1].text} {way}" if is_of_way else ""
+        text = f"{before[-1].text} {way}" if is_of_way else ""
         return (
-            _NoValue(word, argument, before[-1].text, here, unit[0] if unit else "", said)
+            _NoValue(word, argument, before[-1].text, here, unit[0] if unit else "", text)
             if (argument.unit in _WANTED)
             else None
         )
@@ -450,8 +460,8 @@ class Found:
 
     def in_words(self, word: str) -> dict[str, str]:
         """A question in words without brackets: `IF BRIGHT THEN STOP`."""
-        said = worded(self.asked(word), self.names) or {}
-        return said if said.get("asked") or said.get("question") else {}
+        text = worded(self.asked(word), self.names) or {}
+        return text if text.get("asked") or text.get("question") else {}
 
     def in_brackets(self, word: str) -> dict[str, str]:
         """A question in words in the brackets of a header: what they ask, else an example."""
@@ -471,8 +481,8 @@ class Found:
         called = (match["name"] or "").upper()
         rest = self.text[match.end() :] if end == right else ""
         below = _row(rest) or (_before_blocks(rest, called) if called else [])
-        calls = [each for each in below if _calls(each, called)]
-        if inside := [each for each in below if each not in calls]:
+        calls = [item for item in below if _calls(item, called)]
+        if inside := [item for item in below if item not in calls]:
             values["example"] = "; ".join((head, *inside, right, *calls))
         return values
 
@@ -481,7 +491,7 @@ class Found:
         rows = self.text.splitlines()
         k = self.source.position(self.found.span.start)[0] - 1
         behind = without_note(self.behind_it[: len(rows[k])])[0]
-        rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]
+        rest = [item.strip() for item in behind.split("\n")[0].split(";") if _WORD.search(item)]
         below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
             begun = self.source[Span(self.found.span.start, self.piece.end)]
@@ -506,16 +516,16 @@ class Found:
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
         is_taught = _TAUGHT.search(text[max(0, start - _LONG_HEAD) : start])
         right = in_place_of(text, word) if is_set or is_taught else ""
-        near = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
+        suggestion = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
         is_clock = bool(is_set and word == "TIME" and not is_set[1])
-        is_everywhere = bool(right) and (word in SINCE or not (near or is_clock))
-        return _OtherName(word, right, near, is_taught is not None, is_set, is_everywhere)
+        is_everywhere = bool(right) and (word in SINCE or not (suggestion or is_clock))
+        return _OtherName(word, right, suggestion, is_taught is not None, is_set, is_everywhere)
 
     def renamed(self) -> list[Span]:
         """Return each place where a word is meant as a name: S of `F(S, 80)`, not S alone."""
         word, _, _, is_def, _, _ = self.other_name
         tokens = scan(self.text).tokens
-        places = range(len(tokens)) if word in SINCE else _meant_as_name(tokens, word, is_def)
+        places = range(len(tokens)) if word in SINCE else _words_as_names(tokens, word, is_def)
         return [
             tokens[k].span for k in places
             if tokens[k].text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
@@ -562,13 +572,13 @@ class _NoValue(NamedTuple):
 class _OtherName(NamedTuple):
     word: str
     right: str
-    near: str
+    suggestion: str
     is_def: bool
     is_set: re.Match[str] | None
     is_everywhere: bool
 
 
-def _meant_as_name(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
+def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
     """Give the places where a word of the language is meant as the name of a DEF, or a variable.
 
     A DEF is called where its name stands alone, but not in its own body.
@@ -604,16 +614,16 @@ def _is_over(token: Lexeme) -> bool:
 def _row(text: str) -> list[str]:
     """Return the instructions of a text, nothing where they are many, or a block is among them."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
-    found = [each.strip() for row in rows for each in row if each.strip()]
-    is_long = len(found) > _MANY_BELOW or any(map(_IS_BLOCK.match, found))
-    return [] if is_long else found
+    matches = [item.strip() for row in rows for item in row if item.strip()]
+    is_long = len(matches) > _MANY_BELOW or any(map(_IS_BLOCK.match, matches))
+    return [] if is_long else matches
 
 
 def _before_blocks(text: str, name: str) -> list[str]:
     """Return the instructions before the first block of a text, and before a call of a name."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
-    found = (each.strip() for row in rows for each in row if each.strip())
-    inside = [*takewhile(lambda it: not _IS_BLOCK.match(it) and not _calls(it, name), found)]
+    result = (item.strip() for row in rows for item in row if item.strip())
+    inside = [*takewhile(lambda it: not _IS_BLOCK.match(it) and not _calls(it, name), result)]
     return inside if len(inside) <= _MANY_BELOW else []
 
 
@@ -632,59 +642,59 @@ def _usage(word: str) -> str:
 # -- gaps -----------------------------------------------------------------------------------------
 
 
-def _named_by(gaps: Gaps) -> str:
+def _intended_word(gaps: Gaps) -> str:
     """The word that means what is written in its place."""
-    return _found(gaps).named(_right(gaps), _found(gaps).meant)
+    return _usage_at(gaps).named(_offered_word(gaps), _usage_at(gaps).meant)
 
 
-def _right(gaps: Gaps) -> str:
+def _offered_word(gaps: Gaps) -> str:
     """The word that what is offered begins with."""
     return re.split("[(;]", gaps.filled["fix"])[0]
 
 
 def _block(gaps: Gaps) -> str:
     """The block that words say."""
-    found = _found(gaps)
-    below = found.text[found.piece.end :].lstrip("; \t\r\n").upper()
+    usage = _usage_at(gaps)
+    below = usage.text[usage.piece.end :].lstrip("; \t\r\n").upper()
     is_open = bool(re.match(r"SI ?NO\b|ELSE", below))
-    return block(found.row, found.names, is_open)
+    return block(usage.row, usage.names, is_open)
 
 
 def _order(gaps: Gaps) -> str:
     """The one order that words say."""
-    said = _found(gaps).orders
-    return said[0].text if len(said) == 1 and not said[0].is_side_free else ""
+    text = _usage_at(gaps).orders
+    return text[0].text if len(text) == 1 and not text[0].is_side_free else ""
 
 
-def _several(gaps: Gaps, is_sided: bool) -> str:
+def _spoken_orders(gaps: Gaps, is_sided: bool) -> str:
     """The orders that words say; `is_sided`: of one nobody says which way it turns."""
-    said = _found(gaps).orders
-    is_free = any(each.is_side_free for each in said)
-    return written(said) if len(said) > 1 and is_free is is_sided else ""
+    text = _usage_at(gaps).orders
+    is_free = any(item.is_side_free for item in text)
+    return written(text) if len(text) > 1 and is_free is is_sided else ""
 
 
 def _other_orders(gaps: Gaps) -> set[str]:
     """Orders beside a turn, which it alone would lose."""
-    said = _found(gaps).ordered.items()
-    return {its for word, its in said if not said_of(word, "right")} - {"L", "R", "B", "S"}
+    text = _usage_at(gaps).ordered.items()
+    return {its for word, its in text if not said_of(word, "right")} - {"L", "R", "B", "S"}
 
 
-def _endless(gaps: Gaps) -> str:
+def _forever_word(gaps: Gaps) -> str:
     """The word for FOREVER, where words say no order."""
-    found = _found(gaps)
-    endless = (each for each in found.words if found.names.meant(each) == "FOREVER")
-    return "" if found.meant else next(endless, "")
+    usage = _usage_at(gaps)
+    endless = (word for word in usage.words if usage.names.meant(word) == "FOREVER")
+    return "" if usage.meant else next(endless, "")
 
 
-def _word_said(gaps: Gaps) -> str:
+def _foreign_word(gaps: Gaps) -> str:
     """The word of another language that begins an instruction, or says one."""
-    found = _found(gaps)
-    return next(filter(found.names.meant, (*found.words[:1], found.meant)), "")
+    usage = _usage_at(gaps)
+    return next(filter(usage.names.meant, (*usage.words[:1], usage.meant)), "")
 
 
 def _concept(gaps: Gaps) -> str:
     """The word of the language that it means."""
-    found, word = _found(gaps), _word_said(gaps)
+    found, word = _usage_at(gaps), _foreign_word(gaps)
     concept = found.names.meant(word)
     is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
     is_among = concept == "S" and {*found.ordered.values()} != {"S"}  # `ve para adelante`
@@ -693,10 +703,10 @@ def _concept(gaps: Gaps) -> str:
 
 def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
     """The same of one without values, alone or with a number, which it would lose."""
-    concept, row = _concept(gaps), _found(gaps).row
+    concept, row = _concept(gaps), _usage_at(gaps).row
     if not concept or WORDS[concept].arguments:
         return ""
-    has_number = any(each.kind is NUMBER for each in row)
+    has_number = any(item.kind is NUMBER for item in row)
     return concept if (has_number if is_numbered else len(row) == 1) else ""
 
 
@@ -705,200 +715,192 @@ def _asking(word: str) -> str:
 
 
 def _variable(gaps: Gaps) -> str:
-    found = _found(gaps)
-    return next((each for each in found.words if each in found.names.variables), "")
+    usage = _usage_at(gaps)
+    return next((word for word in usage.words if word in usage.names.variables), "")
 
 
 def _own_example(gaps: Gaps) -> str:
     """The instruction with its unit where that goes, if that makes it right."""
-    found = _found(gaps)
-    example = own_example(found.source[found.piece])
-    return example if lines.is_right(lexemes(example.split("; ")[-1]), found.names) else ""
+    usage = _usage_at(gaps)
+    example = own_example(usage.source[usage.piece])
+    return example if lines.is_right(lexemes(example.split("; ")[-1]), usage.names) else ""
 
 
-def _often(gaps: Gaps) -> str:
+def _loop_of_repeated(gaps: Gaps) -> str:
     """The loop of a word that stands several times."""
-    own = _found(gaps).own
+    own = _usage_at(gaps).own
     return f"LOOP({own.times});{own.name};END_LOOP" if own.times > 1 else ""
 
 
 def _own_name(gaps: Gaps) -> str:
-    own = _found(gaps).own
+    own = _usage_at(gaps).own
     return "" if own.is_taught or said_of(own.name, *_NO_NAMES) else own.name
 
 
 def _end(gaps: Gaps) -> str:
     """The end that words say, or that of the block which is open."""
-    found = _found(gaps)
-    named = (BLOCK_ENDS.get(found.names.meant(word), "") for word in found.words[1:])
-    return next(named, "") or found.around.end_at(found.piece.start)
+    usage = _usage_at(gaps)
+    named = (BLOCK_ENDS.get(usage.names.meant(word), "") for word in usage.words[1:])
+    return next(named, "") or usage.around.end_at(usage.piece.start)
 
 
-def _done(gaps: Gaps) -> str:
+def _method_call(gaps: Gaps) -> str:
     """What a part of a thing does, if that is a call: WRITE of `servo.write`."""
-    thing, _, done = plain(gaps.place.text[slice(*_member(_found(gaps)))]).rpartition(".")
+    thing, _, done = plain(gaps.place.text[slice(*_member(_usage_at(gaps)))]).rpartition(".")
     right = "" if said_of(thing, "device") else gaps.place.names.meant(done)
     return right if gaps.place.names.takes(right) else ""
 
 
-def _member(found: Found) -> Span:
-    match = _MEMBER.match(found.text, found.found.span.start)
+def _member(usage: Usage) -> Span:
+    match = _MEMBER.match(usage.text, usage.found.span.start)
     return Span(*match.span()) if match else Span(0, 0)
 
 
 def _unit_behind(gaps: Gaps) -> str:
     """A unit behind a calculation: `F(RANDOM(1, 3) sec, 50)`."""
-    found = _found(gaps)
-    here = found.source[found.found.span]
-    end = _end_of_value(found)
-    return here if said_of(plain(here), "unit") and found.text[end - 1] == ")" else ""
+    usage = _usage_at(gaps)
+    here = usage.source[usage.found.span]
+    end = _end_of_value(usage)
+    return here if said_of(plain(here), "unit") and usage.text[end - 1] == ")" else ""
 
 
-def _end_of_value(found: Found) -> int:
-    return len(found.text[: found.found.span.start].rstrip())
+def _end_of_value(usage: Usage) -> int:
+    return len(usage.text[: usage.found.span.start].rstrip())
 
 
 def _without_seconds(gaps: Gaps) -> str:
     """The instruction without a word for seconds."""
-    found = _found(gaps)
-    span, piece, source = found.found.span, found.piece, found.source
+    usage = _usage_at(gaps)
+    span, piece, source = usage.found.span, usage.piece, usage.source
     if said_of(plain(source[span]), "unit") != ("s", "1000"):
         return ""
-    return source[Span(piece.start, _end_of_value(found))] + source[Span(span.end, piece.end)]
+    return source[Span(piece.start, _end_of_value(usage))] + source[Span(span.end, piece.end)]
 
 
-def _no_value(gaps: Gaps, is_unit: bool) -> _NoValue | None:
-    found = _found(gaps).no_value
-    return found if found and bool(found.unit) is is_unit else None
+def _missing_value(gaps: Gaps, is_unit: bool) -> _NoValue | None:
+    result = _usage_at(gaps).no_value
+    return result if result and bool(result.unit) is is_unit else None
 
 
 def _number_said(gaps: Gaps) -> str:
     """A number with a unit that values have, or with that of a way."""
-    said = _no_value(gaps, is_unit=True)
-    is_own = said is not None and (said.unit == said.argument.unit or bool(said.right))
-    here = _found(gaps).source[_found(gaps).found.span]
-    return f"{said.number} {here}" if said and is_own else ""
+    text = _missing_value(gaps, is_unit=True)
+    is_own = text is not None and (text.unit == text.argument.unit or bool(text.right))
+    here = _usage_at(gaps).source[_usage_at(gaps).found.span]
+    return f"{text.number} {here}" if text and is_own else ""
 
 
-def _way_said(gaps: Gaps) -> str:
-    said = _no_value(gaps, is_unit=True)
-    return said.right if said and said.unit != said.argument.unit else ""
+def _spoken_direction(gaps: Gaps) -> str:
+    text = _missing_value(gaps, is_unit=True)
+    return text.right if text and text.unit != text.argument.unit else ""
 
 
-def _foreign(gaps: Gaps) -> str:
+def _other_robots_word(gaps: Gaps) -> str:
     """A word with values that this robot does not have: whoever writes it wants the word."""
-    found = _found(gaps)
-    word = "".join(found.words[:1])
-    is_other = found.names.meant(word) or found.names.is_name(word)
-    return "" if found.signs[:2] != [word, "("] or is_other else word
+    usage = _usage_at(gaps)
+    word = "".join(usage.words[:1])
+    is_other = usage.names.meant(word) or usage.names.is_name(word)
+    return "" if usage.signs[:2] != [word, "("] or is_other else word
 
 
 def _in_words(gaps: Gaps) -> str:
     """The header with a question in words in its brackets."""
-    found = _found(gaps)
-    own = {*WORDS, *found.names.known.values} - {"SI"}
-    return "" if {*found.words} <= own else found.header()
+    usage = _usage_at(gaps)
+    own = {*WORDS, *usage.names.known.values} - {"SI"}
+    return "" if {*usage.words} <= own else usage.header()
 
 
-def _in_dark(gaps: Gaps) -> str:
+def _worded_header(gaps: Gaps) -> str:
     """The header of a name that asks something in words: DARK of `X > 5 OR DARK`."""
-    found = _found(gaps)
-    name = plain(found.source[found.found.span])
+    usage = _usage_at(gaps)
+    name = plain(usage.source[usage.found.span])
     is_asked = bool(said_of(name, "light", "ahead"))
-    return found.header() if is_asked and found.before()[-1].text not in COMPARISONS else ""
+    return usage.header() if is_asked and usage.before()[-1].text not in COMPARISONS else ""
 
 
 def _endless_move(gaps: Gaps) -> str:
     """A move with FOREVER as its time, and an UNTIL."""
-    found = _found(gaps)
-    is_endless = found.names.meant(plain(found.source[found.found.span])) == "FOREVER"
-    if not is_endless or not found.signs or found.signs[0] not in MOVES:
+    usage = _usage_at(gaps)
+    is_endless = usage.names.meant(plain(usage.source[usage.found.span])) == "FOREVER"
+    if not is_endless or not usage.signs or usage.signs[0] not in MOVES:
         return ""
-    start, end = (place - found.piece.start for place in found.found.span)
-    said = found.source[found.piece]
-    return f"{said[:start]}FOREVER{said[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
+    start, end = (place - usage.piece.start for place in usage.found.span)
+    text = usage.source[usage.piece]
+    return f"{text[:start]}FOREVER{text[end:]} UNTIL({WORDS['UNTIL'].arguments[0].sample})"
 
 
-def _forever_first(gaps: Gaps) -> str:
+def _swapped_forever(gaps: Gaps) -> str:
     """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
-    match = _FOREVER_BEHIND.fullmatch(_found(gaps).source[_found(gaps).piece])
+    match = _FOREVER_BEHIND.fullmatch(_usage_at(gaps).source[_usage_at(gaps).piece])
     if match is None:
         return ""
     until = match[3] or f" UNTIL({WORDS['UNTIL'].arguments[0].sample})"
     return f"{match[1].upper()}(FOREVER, {match[2].strip()}){until}"
 
 
-def _asked_behind(gaps: Gaps) -> str:
+def _until_with_move(gaps: Gaps) -> str:
     """An UNTIL with the move that it lacks."""
-    found = _found(gaps)
-    asked = re.match(r"\s*(\([^()\n]+\))", found.text[found.found.span.start + 5 :])
-    return f"F(2, 80) UNTIL{asked[1]}" if asked else ""
+    usage = _usage_at(gaps)
+    match = re.match(r"\s*(\([^()\n]+\))", usage.text[usage.found.span.start + 5 :])
+    return f"F(2, 80) UNTIL{match[1]}" if match else ""
 
 
 def _arm(gaps: Gaps) -> str:
     """`si no`, alone."""
-    found = _found(gaps)
-    arm = found.names.meant("_".join(found.words[:2]))
-    return arm if arm == "ELSE" and len(found.row) == 2 else ""
+    usage = _usage_at(gaps)
+    arm = usage.names.meant("_".join(usage.words[:2]))
+    return arm if arm == "ELSE" and len(usage.row) == 2 else ""
 
 
-def _begun_again(gaps: Gaps) -> str:
+def _second_start(gaps: Gaps) -> str:
     """A beginning in the midst of a program, with its bar."""
-    found = _found(gaps)
-    is_bar = found.behind_it.lstrip()[:1] == "|"
-    return found.source[found.found.span].upper() + "|" * is_bar
+    usage = _usage_at(gaps)
+    is_bar = usage.behind_it.lstrip()[:1] == "|"
+    return usage.source[usage.found.span].upper() + "|" * is_bar
 
 
 def _question_begun(gaps: Gaps) -> str:
     """IF, where SI has no bar behind it."""
-    return "IF" if _begun_again(gaps) == "SI" else ""
+    return "IF" if _second_start(gaps) == "SI" else ""
 
 
 def _saying_button(gaps: Gaps) -> str:
     """A word before the bar that says the button, or looks like it."""
-    word = _found(gaps).found.values["found"]
+    word = _usage_at(gaps).found.values["found"]
     return word if word == "S8" or concept_of(word) == "BUTTON" else ""
-
-
-def _skipped(gaps: Gaps) -> str:
-    """An IF that leaves out what follows its BREAK, which no loop is around."""
-    found = _found(gaps)
-    match = found.matched(_BREAK)
-    rest = _row(found.text[match.end() :]) if match else []
-    return ";".join((match[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"])) if match and rest else ""
 
 
 def _part_of_when(gaps: Gaps) -> str:
     """An ELSE in a WHEN."""
-    found = _found(gaps)
-    before = found.text[: found.found.span.start]
+    usage = _usage_at(gaps)
+    before = usage.text[: usage.found.span.start]
     is_open = re.search(r"(?is)\bWHEN\b(?!.*\bEND_?WHEN\b)", before)
-    return found.found.values["found"] if is_open else ""
+    return usage.found.values["found"] if is_open else ""
 
 
 def _two_digits(gaps: Gaps) -> str:
     """A colon between digits, and these."""
-    start, end = _found(gaps).found.span
-    around = _found(gaps).text[max(0, start - 1) : end + 1]
+    start, end = _usage_at(gaps).found.span
+    around = _usage_at(gaps).text[max(0, start - 1) : end + 1]
     return around if re.fullmatch("[0-9]:[0-9]", around) else ""
 
 
-def _quoted(found: Found) -> Span:
+def _quoted_span(usage: Usage) -> Span:
     """Return the place from a quotation mark to the next one of its line."""
-    start, end = found.found.span
-    closed = re.compile(rf"[^\n]*?{found.text[start:end]}").match(found.text, end)
+    start, end = usage.found.span
+    closed = re.compile(rf"[^\n]*?{usage.text[start:end]}").match(usage.text, end)
     return Span(start, closed.end() if closed else end)
 
 
-def _dotted(found: Found) -> Span:
-    match = found.matched(_DOTS)
-    return Span(*match.span("here")) if match else found.found.span
+def _dotted_span(usage: Usage) -> Span:
+    match = usage.matched(_DOTS)
+    return Span(*match.span("here")) if match else usage.found.span
 
 
 def _rows_of_name(gaps: Gaps) -> list[str]:
     """The lines in which a word is meant as a name."""
-    found = _found(gaps)
-    return [str(found.source.position(each.start)[0]) for each in found.renamed()]
+    usage = _usage_at(gaps)
+    return [str(usage.source.position(item.start)[0]) for item in usage.renamed()]
 
 
 def _other_rows(gaps: Gaps) -> list[str]:
@@ -907,16 +909,16 @@ def _other_rows(gaps: Gaps) -> list[str]:
 
 def _later_rows(gaps: Gaps) -> list[str]:
     """The lines in which TIME stands behind the first place."""
-    found = _found(gaps)
-    places = [each.start() for each in re.finditer(r"(?i)\bTIME\b", found.text)][1:]
-    return [str(found.source.position(place)[0]) for place in places]
+    usage = _usage_at(gaps)
+    places = [match.start() for match in re.finditer(r"(?i)\bTIME\b", usage.text)][1:]
+    return [str(usage.source.position(place)[0]) for place in places]
 
 
-def _one(lines: Sequence[str]) -> str:
+def _single_line(lines: Sequence[str]) -> str:
     return lines[0] if len(lines) == 1 else ""
 
 
-def _many(lines: Sequence[str]) -> str:
+def _line_list(lines: Sequence[str]) -> str:
     return "" if len(lines) == 1 else ", ".join(lines)
 
 
@@ -927,139 +929,153 @@ def _times_in_line(gaps: Gaps) -> str:
 
 def _words_behind(gaps: Gaps) -> str:
     """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
-    found = _found(gaps)
-    said = found.source[_behind(found)]
-    right = lines.right(lexemes(said), found.names)
-    return shortened(said) if isinstance(right, Failure) and right.at == 0 else ""
+    usage = _usage_at(gaps)
+    text = usage.source[_following_span(usage)]
+    right = lines.right(lexemes(text), usage.names)
+    return shortened(text) if isinstance(right, Failure) and right.at == 0 else ""
 
 
-def _behind(found: Found) -> Span:
-    return Span(found.found.span.start, found.piece.end)
+def _following_span(usage: Usage) -> Span:
+    return Span(usage.found.span.start, usage.piece.end)
 
 
-def _plain_letters(gaps: Gaps) -> str:
+def _unaccented_name(gaps: Gaps) -> str:
     """A name in the letters that a name has, which the language knows."""
-    right, concept = _found(gaps).letters
-    return right if concept in WORDS or _found(gaps).names.has(concept) else ""
+    right, concept = _usage_at(gaps).letters
+    return right if concept in WORDS or _usage_at(gaps).names.has(concept) else ""
 
 
-def _called_here(gaps: Gaps) -> str:
-    found = _found(gaps)
-    is_call = found.behind_it.lstrip(" ").startswith("(")
-    return found.source[found.found.span].upper() if is_call else ""
+def _called_name(gaps: Gaps) -> str:
+    usage = _usage_at(gaps)
+    is_call = usage.behind_it.lstrip(" ").startswith("(")
+    return usage.source[usage.found.span].upper() if is_call else ""
 
 
-def _said_first(gaps: Gaps) -> str:
+def _lamp_here(gaps: Gaps) -> str:
+    """A word for a lamp with an accent, where the kit has no lamp."""
+    usage = _usage_at(gaps)
+    has_lamp = "LED" in usage.names.actuators
+    word = usage.source[usage.found.span].upper()
+    return word if usage.is_first and not has_lamp and concept_of(plain(word)) == "LED" else ""
+
+
+def _leading_filler(gaps: Gaps) -> str:
     """A word that says nothing, or the button, and begins an instruction."""
-    found, right = _found(gaps), _found(gaps).letters[0]
+    found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     is_said = said_of(right, "filler") or found.is_button(right)
     return right if found.is_first and is_said else ""
 
 
-def _cased(gaps: Gaps) -> str:
-    found, right = _found(gaps), _found(gaps).letters[0]
+def _in_capitals(gaps: Gaps) -> str:
+    found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     return right if found.source[found.found.span].isupper() else right.capitalize()
 
 
-def _amount_place(found: Found) -> Span:
-    start = found.text.index(found.amount["amount"], found.piece.start)
-    return Span(start, start + len(found.amount["amount"]))
+def _amount_place(usage: Usage) -> Span:
+    start = usage.text.index(usage.amount["amount"], usage.piece.start)
+    return Span(start, start + len(usage.amount["amount"]))
 
 
-def _found(gaps: Gaps) -> Found:
-    assert isinstance(gaps.place, Found)
+def _usage_at(gaps: Gaps) -> Usage:
+    assert isinstance(gaps.place, Usage)
     return gaps.place
 
 
-def _of(get: Callable[[Found], str | None]) -> Callable[[Gaps], str]:
-    return lambda gaps: get(_found(gaps)) or ""
+def _gap_of(get: Callable[[Usage], str | None]) -> Callable[[Gaps], str]:
+    return lambda gaps: get(_usage_at(gaps)) or ""
 
 
 # Where a row tells what it says, but where it was found.
-_PLACES: dict[str, Callable[[Found], Span]] = {
-    "here": lambda it: it.piece, "behind": _behind, "member": _member, "quoted": _quoted,
-    "dots": _dotted,
+_PLACES: dict[str, Callable[[Usage], Span]] = {
+    "here": lambda it: it.piece, "behind": _following_span, "member": _member,
+    "quoted": _quoted_span,
+    "dots": _dotted_span,
     "first": lambda it: Span(it.piece.start, it.piece.start + len(it.words[0])),
     "amount": _amount_place,
 }  # fmt: skip
 # Values that come together, of a place and the word that is told of.
-_SEVERAL: dict[str, Callable[[Found, str], Mapping[str, str]]] = {
+_SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "amount": lambda it, _: it.amount, "button": lambda it, _: it.button(),
     "dots": lambda it, _: it.dots(), "unended": lambda it, _: it.unended(),
-    "instead": lambda it, _: said_instead(it.signs[0]), "in_words": Found.in_words,
-    "in_brackets": Found.in_brackets,
+    "instead": lambda it, _: said_instead(it.signs[0]), "in_words": Usage.in_words,
+    "in_brackets": Usage.in_brackets,
     "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
 }  # fmt: skip
 GAPS: dict[str, Callable[[Gaps], str]] = {
-    "said": _of(lambda it: it.source[it.piece]), "here": _of(lambda it: it.source[it.found.span]),
-    "first": _of(lambda it: it.signs[0]), "sign": _of(lambda it: it.signs[1]),
-    "step": _of(lambda it: it.signs[1][0]), "number": _of(lambda it: it.number),
-    "found": _of(lambda it: it.found.values["found"]),
-    "word": _of(lambda it: it.found.values["word"]),
-    "right": _right, "named": _named_by,
-    "named_first": lambda gaps: _found(gaps).named(_right(gaps), _found(gaps).signs[0]),
-    "usage": lambda gaps: _usage(_right(gaps)),
-    "takes": lambda gaps: _usage(_right(gaps)) if _found(gaps).orders[0].samples else "",
-    "block": _block, "order": _order, "sided": lambda gaps: _several(gaps, is_sided=True),
-    "several": lambda gaps: _several(gaps, is_sided=False),
-    "made_up": _of(lambda it: made_up(it.orders)), "endless": _endless,
+    "said": _gap_of(lambda it: it.source[it.piece]),
+    "here": _gap_of(lambda it: it.source[it.found.span]),
+    "first": _gap_of(lambda it: it.signs[0]), "sign": _gap_of(lambda it: it.signs[1]),
+    "step": _gap_of(lambda it: it.signs[1][0]), "number": _gap_of(lambda it: it.number),
+    "found": _gap_of(lambda it: it.found.values["found"]),
+    "word": _gap_of(lambda it: it.found.values["word"]),
+    "right": _offered_word, "named": _intended_word,
+    "named_first": lambda gaps: _usage_at(gaps).named(_offered_word(gaps),
+        _usage_at(gaps).signs[0]),
+    "usage": lambda gaps: _usage(_offered_word(gaps)),
+    "takes": lambda gaps: _usage(_offered_word(gaps)) if _usage_at(gaps).orders[0].samples else "",
+    "block": _block, "order": _order, "sided": lambda gaps: _spoken_orders(gaps, is_sided=True),
+    "several": lambda gaps: _spoken_orders(gaps, is_sided=False),
+    "made_up": _gap_of(lambda it: made_up(it.orders)), "endless": _forever_word,
     "others": lambda gaps: ", ".join(_other_orders(gaps)),
-    "way": _of(lambda it: it.turn.way), "angle": _of(lambda it: it.turn.angle),
-    "side": _of(lambda it: {"L": "left", "R": "right"}.get(it.turn.way)),
-    "turned": _of(lambda it: it.turn.values), "way_usage": _of(lambda it: _usage(it.turn.way)),
-    "word_said": _word_said, "concept": _concept, "asking": lambda gaps: _asking(_concept(gaps)),
+    "way": _gap_of(lambda it: it.turn.way), "angle": _gap_of(lambda it: it.turn.angle),
+    "side": _gap_of(lambda it: {"L": "left", "R": "right"}.get(it.turn.way)),
+    "turned": _gap_of(lambda it: it.turn.values),
+    "way_usage": _gap_of(lambda it: _usage(it.turn.way)),
+    "word_said": _foreign_word, "concept": _concept, "asking": lambda gaps: _asking(_concept(gaps)),
     "concept_alone": lambda gaps: _concept_alone(gaps, is_numbered=False),
     "concept_numbered": lambda gaps: _concept_alone(gaps, is_numbered=True),
-    "concept_usage": lambda gaps: _found(gaps).usage(_concept(gaps)), "variable": _variable,
-    "often_taught": _of(lambda it: "LOOP" * it.own.is_often),
-    "taught": _of(lambda it: it.own.taught),
-    "untaught": _of(lambda it: it.own.name * it.own.is_taught), "often": _often,
-    "likely": _of(lambda it: likely_word(it.signs[0], it.source[it.piece])),
-    "plus": _of(lambda it: "-" if f"-{it.number}" in "".join(it.signs) else "+"),
+    "concept_usage": lambda gaps: _usage_at(gaps).usage(_concept(gaps)), "variable": _variable,
+    "often_taught": _gap_of(lambda it: "LOOP" * it.own.is_often),
+    "taught": _gap_of(lambda it: it.own.taught),
+    "untaught": _gap_of(lambda it: it.own.name * it.own.is_taught), "often": _loop_of_repeated,
+    "likely": _gap_of(lambda it: likely_word(it.signs[0], it.source[it.piece])),
+    "plus": _gap_of(lambda it: "-" if f"-{it.number}" in "".join(it.signs) else "+"),
     "own_example": _own_example,
-    "own": _own_name, "end": _end, "done": _done,
-    "done_usage": lambda gaps: _found(gaps).usage(_done(gaps)),
-    "member": _of(lambda it: it.text[slice(*_member(it))]),
-    "bare_asking": _of(lambda it: _asking(it.found.values["word"])),
-    "bare_example": _of(lambda it: WORDS[it.meant].example
+    "own": _own_name, "end": _end, "done": _method_call,
+    "done_usage": lambda gaps: _usage_at(gaps).usage(_method_call(gaps)),
+    "member": _gap_of(lambda it: it.text[slice(*_member(it))]),
+    "bare_asking": _gap_of(lambda it: _asking(it.found.values["word"])),
+    "bare_example": _gap_of(lambda it: WORDS[it.meant].example
                         if len(it.row) == 1 and it.meant in WORDS and WORDS[it.meant].arguments
                         else ""),
-    "bare_usage": _of(lambda it: it.usage(it.found.values["word"])),
-    "first_usage": _of(lambda it: it.usage(it.signs[0])),
+    "bare_usage": _gap_of(lambda it: it.usage(it.found.values["word"])),
+    "first_usage": _gap_of(lambda it: it.usage(it.signs[0])),
     "unit": _unit_behind, "without_seconds": _without_seconds, "number_said": _number_said,
-    "way_said": _way_said,
-    "value_name": lambda gaps: it.argument.name if (it := _no_value(gaps, True)) else "",
-    "wanted": lambda gaps: _WANTED[it.argument.unit] if (it := _no_value(gaps, True)) else "",
-    "extra": lambda gaps: it.found if (it := _no_value(gaps, False)) else "",
-    "value_found": _of(lambda it: it.no_value and it.no_value.found),
-    "value_word": _of(lambda it: it.no_value and it.no_value.word.text),
-    "value_usage": _of(lambda it: it.no_value and it.no_value.word.usage),
-    "foreign": _foreign, "in_words": _in_words, "in_dark": _in_dark,
-    "amount": _of(lambda it: it.amount.get("amount")),
-    "endless_move": _endless_move, "forever_first": _forever_first, "asked_behind": _asked_behind,
-    "arm": _arm, "begun_again": _begun_again, "question_begun": _question_begun,
-    "twice": lambda gaps: _begun_again(gaps) if _found(gaps).around.begun == "SB" else "",
-    "named_endless": lambda gaps: _found(gaps).named("LOOP", _endless(gaps)),
-    "instead": _of(lambda it: it.around.begun), "saying_button": _saying_button,
-    "skipped": _skipped, "part": _part_of_when, "two_digits": _two_digits,
-    "sign_means": _of(lambda it: concept_of(it.source[it.found.span])),
-    "sign_usage": _of(lambda it: _usage(concept_of(it.source[it.found.span]) or "")),
-    "everywhere": _of(lambda it: it.other_name.right if it.other_name.is_everywhere else ""),
-    "since": _of(lambda it: SINCE.get(it.other_name.word)),
+    "way_said": _spoken_direction,
+    "value_name": lambda gaps: it.argument.name if (it := _missing_value(gaps, True)) else "",
+    "wanted": lambda gaps: _WANTED[it.argument.unit] if (it := _missing_value(gaps, True)) else "",
+    "extra": lambda gaps: it.found if (it := _missing_value(gaps, False)) else "",
+    "value_found": _gap_of(lambda it: it.no_value and it.no_value.found),
+    "value_word": _gap_of(lambda it: it.no_value and it.no_value.word.text),
+    "value_usage": _gap_of(lambda it: it.no_value and it.no_value.word.usage),
+    "foreign": _other_robots_word, "in_words": _in_words, "in_dark": _worded_header,
+    "amount": _gap_of(lambda it: it.amount.get("amount")),
+    "endless_move": _endless_move, "forever_first": _swapped_forever,
+    "asked_behind": _until_with_move,
+    "arm": _arm, "begun_again": _second_start, "question_begun": _question_begun,
+    "twice": lambda gaps: _second_start(gaps) if _usage_at(gaps).around.begun == "SB" else "",
+    "named_endless": lambda gaps: _usage_at(gaps).named("LOOP", _forever_word(gaps)),
+    "instead": _gap_of(lambda it: it.around.begun), "saying_button": _saying_button,
+    "part": _part_of_when, "two_digits": _two_digits,
+    "sign_means": _gap_of(lambda it: concept_of(it.source[it.found.span])),
+    "sign_usage": _gap_of(lambda it: _usage(concept_of(it.source[it.found.span]) or "")),
+    "everywhere": _gap_of(lambda it: it.other_name.right if it.other_name.is_everywhere else ""),
+    "since": _gap_of(lambda it: SINCE.get(it.other_name.word)),
     "name_line": lambda gaps: "".join(_other_rows(gaps)[:1]),
-    "name_lines": lambda gaps: _many(_other_rows(gaps)), "name_times": _times_in_line,
-    "name_right": _of(lambda it: it.other_name.near or it.other_name.right),
-    "time_right": _of(lambda it: it.other_name.right
+    "name_lines": lambda gaps: _line_list(_other_rows(gaps)), "name_times": _times_in_line,
+    "name_right": _gap_of(lambda it: it.other_name.suggestion or it.other_name.right),
+    "time_right": _gap_of(lambda it: it.other_name.right
                       if it.other_name.is_set and it.other_name.is_set[1] else ""),
-    "clock": _of(lambda it: it.other_name.right
+    "clock": _gap_of(lambda it: it.other_name.right
                  if it.other_name.is_set and not it.other_name.is_set[1] else ""),
-    "time_line": lambda gaps: _one(_later_rows(gaps)),
-    "time_lines": lambda gaps: _many(_later_rows(gaps)),
-    "note": _of(lambda it: "/*" if it.text.startswith("/*", it.found.span.start) else ""),
-    "sensor": _of(lambda it: it.function if it.function in it.names.sensors else ""),
-    "input": _of(lambda it: it.function if said_of(it.function, "input") else ""),
-    "words_behind": _words_behind, "before": _of(lambda it: it.found.values["before"]),
-    "plain_letters": _plain_letters, "letters_mean": _of(lambda it: it.letters[1]),
-    "letters_usage": _of(lambda it: it.usage(it.letters[1])), "called_here": _called_here,
-    "said_first": _said_first, "cased": _cased,
+    "time_line": lambda gaps: _single_line(_later_rows(gaps)),
+    "time_lines": lambda gaps: _line_list(_later_rows(gaps)),
+    "note": _gap_of(lambda it: "/*" if it.text.startswith("/*", it.found.span.start) else ""),
+    "sensor": _gap_of(lambda it: it.function if it.function in it.names.sensors else ""),
+    "input": _gap_of(lambda it: it.function if said_of(it.function, "input") else ""),
+    "words_behind": _words_behind, "before": _gap_of(lambda it: it.found.values["before"]),
+    "plain_letters": _unaccented_name, "letters_mean": _gap_of(lambda it: it.letters[1]),
+    "letters_usage": _gap_of(lambda it: it.usage(it.letters[1])), "called_here": _called_name,
+    "lamp_here": _lamp_here,
+    "said_first": _leading_filler, "cased": _in_capitals,
 }  # fmt: skip

@@ -33,58 +33,62 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     is_compared = any(lexeme.text == "=" for lexeme in row)  # `DISTANCE = NEAR`
     row = [lexeme for lexeme in row if lexeme.text != "="]
     texts = [lexeme.text for lexeme in row]
-    if both := _compared(row, names):
+    if both := _mixed_condition(row, names):
         return both
     is_condition = any(text in ("AND", "OR") for text in texts)  # of the language itself
     has_number = any(lexeme.kind is NUMBER for lexeme in row)  # `COLOR = 3` is no `> 3`
-    if is_condition or (is_compared and (has_number or not _said(texts, names) & _ASKED)):
+    if is_condition or (
+        is_compared and (has_number or not _mentioned_words(texts, names) & _ASKED)
+    ):
         return None
-    if joint := _joint(texts, names):
+    if joint := _joining_word(texts, names):
         return {"question": "", "joint": joint}
     texts, number = _measured(row, names)
-    said = _said(texts, names)
+    sentence = _mentioned_words(texts, names)
     numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
     own = [text for text in texts if names.is_name(text) and text != number]
-    if [number] == texts != [row[-1].text] or (number and not own and said == {"little"}):
-        said.add("ahead")  # `20 cm`, `less than 10`
+    if [number] == texts != [row[-1].text] or (number and not own and sentence == {"little"}):
+        sentence.add("ahead")  # `20 cm`, `less than 10`
     is_alone = len(texts) == 1 and not (
-        said & {"light", "ahead"} and not said_of(texts[0], "sensor")
+        sentence & {"light", "ahead"} and not said_of(texts[0], "sensor")
     )
     is_button = any(concept_of(text) == "BUTTON" for text in texts)
-    if is_alone or is_button or (numbers and not said & {"ahead", "light", "none"}):
+    if is_alone or is_button or (numbers and not sentence & {"ahead", "light", "none"}):
         return None
     asked = [
-        f"{name} {_sign(name, said)} {number or _example(names.asked.get(name), name)}"
-        for name in _subjects(own, texts, said, names)
+        f"{name} {_sign(name, sentence)} {number or _example(names.asked.get(name), name)}"
+        for name in _subjects(own, texts, sentence, names)
     ]
-    if "ahead" in said and said & {"left", "right"} and asked[0].startswith("DISTANCE"):
+    if "ahead" in sentence and sentence & {"left", "right"} and asked[0].startswith("DISTANCE"):
         return {"question": "", "aside": "DISTANCE"}  # it looks ahead
-    is_asking = bool(own or said & _ASKED)
+    is_asking = bool(own or sentence & _ASKED)
     kinds = ("asked", "also") if number else ("question", "another") if is_asking else ("example",)
     return {"question": "", **dict(zip(kinds, asked, strict=False))}
 
 
 def sensors_of(word: str, names: Names) -> list[str]:
     """Return the sensors that a word for what they see may mean: both lights for `luz`."""
-    found = _lights(names) if said_of(word, "light") else ["DISTANCE"]
-    return [] if names.is_name(word) else [name for name in found if name in names.asked]
+    result = _lights(names) if said_of(word, "light") else ["DISTANCE"]
+    return [] if names.is_name(word) else [name for name in result if name in names.asked]
 
 
-def _said(texts: Sequence[str], names: Names) -> set[str]:
+def _mentioned_words(texts: Sequence[str], names: Names) -> set[str]:
     said = [text for text in texts if not names.is_name(text)]
     return {kind for kind in _KINDS for text in said if said_of(text, kind)}
 
 
-def _joint(texts: Sequence[str], names: Names) -> str:
+def _joining_word(texts: Sequence[str], names: Names) -> str:
     """Return AND or OR, if two conditions are joined and each is in words."""
     joints = [said_of(text, "and") or said_of(text, "or") for text in texts]
     places = [k for k, text in enumerate(texts) if joints[k] and not names.is_name(text)]
     pieces = [texts[a + 1 : b] for a, b in pairwise((-1, *places, len(texts)))]
-    are_asking = all(_said(piece, names) & {"ahead", "light", "none"} for piece in pieces)
+    are_asking = all(
+        _mentioned_words(piece, names) & {"ahead", "light", "none"} for piece in pieces
+    )
     return joints[places[0]][0].upper() if places and are_asking else ""
 
 
-def _compared(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
+def _mixed_condition(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
     """Return what is asked where words are joined with a comparison: `DISTANCE < 10 o hay luz`."""
     places = [k for k, lexeme in enumerate(row) if _joint_of(lexeme.text, names)]
     pieces = [row[a + 1 : b] for a, b in pairwise((-1, *places, len(row)))]
@@ -92,26 +96,26 @@ def _compared(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
     if not any(compared) or all(compared):
         return {}
     joint = _joint_of(row[places[0]].text, names)
-    told = []
+    messages = []
     for piece, is_compared in zip(pieces, compared, strict=True):
-        said = " ".join(names.meant(lexeme.text) or lexeme.text for lexeme in piece)
-        found = {"asked": said} if is_compared else worded([_NOTHING, *piece], names) or {}
-        told.append(found.get("asked") or found.get("question", ""))
-    if not all(told):
+        text = " ".join(names.meant(lexeme.text) or lexeme.text for lexeme in piece)
+        result = {"asked": text} if is_compared else worded([_NOTHING, *piece], names) or {}
+        messages.append(result.get("asked") or result.get("question", ""))
+    if not all(messages):
         return {"question": "", "joint": joint}
-    return {"question": f" {joint} ".join(told)}
+    return {"question": f" {joint} ".join(messages)}
 
 
 def _joint_of(text: str, names: Names) -> str:
     """Return AND or OR, where a word joins two questions."""
-    said = said_of(text, "and") or said_of(text, "or")
-    return "" if not said or names.is_name(text) else said[0].upper()
+    sentence = said_of(text, "and") or said_of(text, "or")
+    return "" if not sentence or names.is_name(text) else sentence[0].upper()
 
 
 def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
     """Return the words without units, and their number in centimetres or of light, "" for none."""
     texts = [lexeme.text for lexeme in row]
-    is_near = bool(_said(texts, names) & {"ahead", "none"})
+    is_near = bool(_mentioned_words(texts, names) & {"ahead", "none"})
     for k, text in enumerate(texts):
         unit = said_of(texts[k + 1], "unit") if k + 1 < len(texts) else ()
         without = [*texts[: k + 1], *texts[k + 2 :]] if unit else texts
@@ -119,9 +123,9 @@ def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
             fits = not unit or unit[0] == "cm"
             return without, _in_centimetres(text, unit) if fits else ""
         if unit[:1] == ("cm",) and is_near:
-            said = said_of(text, "number") or (("0.5",) if said_of(text, "half") else ())
-            if said:
-                return [*texts[:k], *texts[k + 2 :]], _in_centimetres(said[0], unit)
+            sentence = said_of(text, "number") or (("0.5",) if said_of(text, "half") else ())
+            if sentence:
+                return [*texts[:k], *texts[k + 2 :]], _in_centimetres(sentence[0], unit)
         is_last = k == len(texts) - 1 and k > 1 and said_of(texts[k - 1], "than")
         if is_near and text in names.variables and (is_last or unit == ("cm", "1000")):
             return without, text
@@ -136,12 +140,12 @@ def _subjects(own: Sequence[str], texts: Sequence[str], said: set[str], names: N
     """Return the sensors that are asked, or the variable."""
     named = [text for text in own if text in names.asked]
     named += [meant for text in texts if (meant := names.meant(text, NEAR)) in names.asked]
-    found = named[:1] or list(own[:1])
-    if not found and "light" in said and "ahead" not in said:
-        found = _lights(names)[:2]
+    result = named[:1] or list(own[:1])
+    if not result and "light" in said and "ahead" not in said:
+        result = _lights(names)[:2]
         turned = [f"LIGHT_{way[0].upper()}" for way in ("left", "right") if way in said]
-        found = [name for name in turned if name in found and len(turned) == 1] or found
-    return found or [*(name for name in names.asked if name == "DISTANCE"), *names.asked, "X"][:1]
+        result = [name for name in turned if name in result and len(turned) == 1] or result
+    return result or [*(name for name in names.asked if name == "DISTANCE"), *names.asked, "X"][:1]
 
 
 def _lights(names: Names) -> list[str]:

@@ -71,14 +71,14 @@ def text_of(path: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
         raise refused(("file_unreadable", values))
     try:
         with Path(path).open("rb") as file:
-            found = file.read(FILE_BYTES + 1)
+            result = file.read(FILE_BYTES + 1)
     except FileNotFoundError:
         raise refused(("file_missing", values)) from None
     except (OSError, ValueError):  # ValueError: the name is not valid for a file
         is_directory = os.path.isdir(path)  # noqa: PTH112 - Path raises for those names
         code = "file_is_directory" if is_directory else "file_unreadable"
         raise refused((code, values)) from None
-    return decoded(found, path, refused)
+    return decoded(result, path, refused)
 
 
 def decoded(found: bytes, name: str, refused: type[ProfileRefused] = ProfileRefused) -> str:

@@ -44,18 +44,18 @@ class Pins:
         self, table: Table, key: str, need: str, is_optional: bool = False, is_motor: bool = False
     ) -> int | None:
         """Return the number of the pin at `key`, or None if no usable pin is given."""
-        written = table.get(key, "" if is_optional else f"{key} = 5")
-        if written is None:
+        text = table.get(key, "" if is_optional else f"{key} = 5")
+        if text is None:
             return None
-        if type(written) not in (int, str):
-            table.expect("pin", key, written)
+        if type(text) not in (int, str):
+            table.expect("pin", key, text)
             return None
         chip = self._chip
         if chip is None:
             return None
-        pin = chip.pin_number(written)
+        pin = chip.pin_number(text)
         if pin is None:
-            table.complain("no_such_pin", key, found=shown(written), chip=chip.name)
+            table.complain("no_such_pin", key, found=shown(text), chip=chip.name)
             return None
         named = {"pin": chip.pin_name(pin), "chip": chip.name}
         before = next((use for use in self._uses if use.pin == pin), None)
@@ -170,16 +170,16 @@ def device_tables(table: Table, key: str, devices: Sequence[Device]) -> dict[str
     """Return the table `[key.NAME]` of each device that has one. The case of NAME is ignored."""
     group = table.table(key)
     known = tuple(device.name for device in devices if device.name)
-    found: dict[str, Table] = {}
-    for written in group.written():
-        name = written.upper()
+    result: dict[str, Table] = {}
+    for item in group.written():
+        name = item.upper()
         if name not in known:
-            group.not_in_kit(written, known)
-        elif name in found:
-            group.complain("name_twice", written, found=name)
+            group.not_in_kit(item, known)
+        elif name in result:
+            group.complain("name_twice", item, found=name)
         else:
-            found[name] = group.table(written)
-    return found
+            result[name] = group.table(item)
+    return result
 
 
 def _read_devices(
@@ -226,8 +226,8 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
 def _read_setting(table: Table, setting: Setting) -> int:
     key, kind, default, low, high, _ = setting
     if kind == "choice":
-        written = table.choice(key, setting.words) if table.has(key) else ""
-        return setting.words.index(written) if written else default
+        text = table.choice(key, setting.words) if table.has(key) else ""
+        return setting.words.index(text) if text else default
     if kind == "yes/no":
         return int(table.yes_no(key, bool(default)))
     read = table.number if kind == "number" else table.whole

@@ -145,8 +145,8 @@ class Plan:
     def pin(self, name: str, number: int, mode: str = "", beside: str = "") -> str:
         """Add a pin, and return what it is called."""
         note = f"  // {beside}" if beside else ""
-        written = CHIPS[self.robot.board.chip].pin_name(number)
-        self.constants.append(f"const int {name} = {written};{note}")
+        text = CHIPS[self.robot.board.chip].pin_name(number)
+        self.constants.append(f"const int {name} = {text};{note}")
         if mode:
             self.begin.append(f"pinMode({name}, {mode});")
         return name

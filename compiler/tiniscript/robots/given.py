@@ -22,12 +22,19 @@ FILE_BYTES = 200_000
 def remember(path: str, kit: int) -> None:
     """Keep the path of a profile. If the cache cannot be written, the path is not kept."""
     entry = (kit, os.path.abspath(path))  # noqa: PTH100 - Path raises for some names
-    if _known()[:1] == [entry]:
+    if _remembered_profiles()[:1] == [entry]:
         return
     with contextlib.suppress(OSError):
         _path().parent.mkdir(mode=files.OWN, parents=True, exist_ok=True)
         with files.alone(_path()):  # other commands do the same
-            kept = [entry, *(each for each in _known() if each != entry)][:KEPT]
+            kept = [
+                entry,
+                *(
+                    remembered_profile
+                    for remembered_profile in _remembered_profiles()
+                    if remembered_profile != entry
+                ),
+            ][:KEPT]
             files.keep(_path(), json.dumps(kept).encode())
 
 
@@ -38,16 +45,16 @@ def recall(kit: int) -> Robot | None:
 
 def profiles() -> list[tuple[str, Robot]]:
     """Return the profiles that still exist, with their paths, the newest first."""
-    found: list[tuple[str, Robot]] = []
-    for kit, path in _known():
+    result: list[tuple[str, Robot]] = []
+    for kit, path in _remembered_profiles():
         with contextlib.suppress(ProfileRefused):
             robot = robots.load(path)
             if robot.kit.fingerprint == kit:
-                found.append((path, robot))
-    return found
+                result.append((path, robot))
+    return result
 
 
-def _known() -> list[tuple[int, str]]:
+def _remembered_profiles() -> list[tuple[int, str]]:
     try:
         entries = json.loads(files.contents(_path(), FILE_BYTES))
         return [(int(kit), str(path)) for kit, path in entries if str(path).isprintable()]

@@ -49,4 +49,4 @@ def packed(word: str) -> bytes:
 
 def packed_range(low: int, high: int) -> bytes:
     """Return the least and the largest plain number that an argument may be."""
-    return b"".join(each.to_bytes(4, "little", signed=True) for each in (low, high))
+    return b"".join(item.to_bytes(4, "little", signed=True) for item in (low, high))

@@ -26,7 +26,7 @@ def channels_of(board: Board) -> dict[int, int]:
         (("actuators", wiring) for wiring in board.actuators),
     )
     for used_by, wiring in used:
-        for pin, need in _needs(used_by, wiring):
+        for pin, need in _pin_needs(used_by, wiring):
             if need in groups:
                 groups[need].append(pin)
     channels = {}
@@ -42,7 +42,7 @@ def timers_of(pins: int) -> int:
     return -(-pins // PER_TIMER)
 
 
-def _needs(used_by: str, wiring: Wiring) -> Iterable[tuple[int, str]]:
+def _pin_needs(used_by: str, wiring: Wiring) -> Iterable[tuple[int, str]]:
     """Return the pins of a device with what each needs."""
     for (use, name), driver in DRIVERS.items():
         if name == wiring.driver and use.split()[0] == used_by:

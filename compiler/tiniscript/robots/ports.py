@@ -51,15 +51,15 @@ EXTERNAL = 3  # the group of INT0 to INT7
 
 def _bits(*parts: str) -> dict[int, Bit]:
     """Return the pins of `"0 d0 d1"`: the number of the first pin, then the bit of each pin."""
-    found = {}
+    result = {}
     for part in parts:
         first, *bits = part.split()
         for pin, bit in enumerate(bits, int(first)):
-            found[pin] = Bit(bit[0], int(bit[1]))
-    return found
+            result[pin] = Bit(bit[0], int(bit[1]))
+    return result
 
 
-def _compares(text: str) -> dict[int, Compare]:
+def _pwm_channels(text: str) -> dict[int, Compare]:
     words = [word.split(":") for word in text.split()]
     return {int(pin): Compare(int(channel[0]), channel[1]) for pin, channel in words}
 
@@ -105,14 +105,16 @@ def _externals(bits: Mapping[int, Bit], numbers: Mapping[str, int]) -> dict[int,
 AVR_328P = Avr(
     "__AVR_ATmega328P__",
     _BITS_328P,
-    _compares("3:2b 5:0b 6:0a 9:1a 10:1b 11:2a"),
+    _pwm_channels("3:2b 5:0b 6:0a 9:1a 10:1b 11:2a"),
     _changes(_BITS_328P, _GROUPS_328P),
     _externals(_BITS_328P, _EXTERNAL_328P),
 )
 AVR_2560 = Avr(
     "__AVR_ATmega2560__",
     _BITS_2560,
-    _compares("2:3b 3:3c 4:0b 5:3a 6:4a 7:4b 8:4c 9:2b 10:2a 11:1a 12:1b 13:0a 44:5c 45:5b 46:5a"),
+    _pwm_channels(
+        "2:3b 3:3c 4:0b 5:3a 6:4a 7:4b 8:4c 9:2b 10:2a 11:1a 12:1b 13:0a 44:5c 45:5b 46:5a"
+    ),
     {**_changes(_BITS_2560, _GROUPS_2560), **_externals(_BITS_2560, _EXTERNAL_2560)},
     _externals(_BITS_2560, _EXTERNAL_2560),
 )

@@ -82,12 +82,12 @@ def _read_device(table: Table, is_actuator: bool, taken: set[str]) -> Device:
 
 
 def _read_name(table: Table, taken: set[str]) -> str:
-    written = table.text("name", 'name = "DISTANCE"')
-    if written is None:
+    text = table.text("name", 'name = "DISTANCE"')
+    if text is None:
         return ""
-    name = written.upper()
-    if not _is_name(written):
-        table.complain("name_bad", "name", found=shown(written))
+    name = text.upper()
+    if not _is_name(text):
+        table.complain("name_bad", "name", found=shown(text))
     elif len(name) > NAME_CHARACTERS:
         table.complain("name_too_long", "name", found=shown(name), most=str(NAME_CHARACTERS))
     elif name in WORDS:
@@ -156,24 +156,24 @@ def _read_labels(table: Table, kit: Kit, name: str) -> Mapping[str, Mapping[str,
     """
     devices = (*kit.sensors, *kit.actuators)
     known = [language for language in languages() if table.has(language)]
-    written = {each: _read_language(table, each, devices) for each in known}
+    written = {item: _read_language(table, item, devices) for item in known}
     table.finish()
     labels: ByLanguage[dict[str, str]] = ByLanguage()
     for language in dict.fromkeys((SOURCE, *known)):
         labels[language] = {"robot": name, **{device.name: device.name for device in devices}}
-        for each in (*known, language):
-            labels[language].update(written.get(each, {}))
+        for item in (*known, language):
+            labels[language].update(written.get(item, {}))
     return labels
 
 
 def _read_language(table: Table, language: str, devices: Sequence[Device]) -> dict[str, str]:
     labels = table.table(language)
     known = {device.name: device.name for device in devices}
-    found = {}
+    result = {}
     for key in labels.written():
         name = "robot" if key == "robot" else known.get(key.upper())
         if name is None:
             labels.not_in_kit(key, tuple(known))
         elif (label := labels.label(key, LABEL_CHARACTERS)) is not None:
-            found[name] = label
-    return found
+            result[name] = label
+    return result

@@ -30,11 +30,11 @@ def describe(refused: ProfileRefused, lang: str) -> list[str]:
                 for key, word in words.items()
             }
         key = f"{code}/near" if words.get("near") else code
-        said = (
+        text = (
             languages.found(CATALOGUE, f"{kind}/{key}", lang)
             for kind in (*refused.kinds, "profile")
         )
-        sentences.append(next(filter(None, said)).format_map(words))
+        sentences.append(next(filter(None, text)).format_map(words))
     return sentences
 
 
@@ -53,7 +53,7 @@ def _causes(reasons: Sequence[Reason]) -> list[Reason]:
     causes = []
     for code, values in reasons:
         path = values.get("path", "")
-        is_meant = any(path == each or path.startswith(f"{each}.") for each in meant)
+        is_meant = any(path == item or path.startswith(f"{item}.") for item in meant)
         is_device = code == "missing" and DEVICE.fullmatch(path) is not None
         if code == "missing" and is_meant:
             continue

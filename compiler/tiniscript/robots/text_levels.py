@@ -20,6 +20,14 @@ def _block_words(*blocks: str) -> frozenset[str]:
 
 OF_TASKS_AND_WAYS = _block_words(*TASKS) | WAYS.keys()
 
+# The roles of the instructions that a reader knows, by `codegen/text/memory.py` and in
+# `vm_arduino/src/text/`. No level reads others: their names are taken, and no more.
+READ = frozenset(("move", "wait", "motors", "beep", "show", "stop"))
+_INSTRUCTIONS = (word for word in WORDS.values() if word.role.is_instruction)
+_OTHERS = [word for word in _INSTRUCTIONS if word.role.name not in READ]
+OF_NO_LEVEL = frozenset(word.text for word in _OTHERS if not word.stands_for)
+UNREAD = frozenset(word.text for word in _OTHERS)  # also those that `line` writes out
+
 
 class Level(NamedTuple):
     """`lacks` are words of the language that this level's reader does not read.
@@ -50,18 +58,14 @@ def _program_bytes(board: str) -> int:
 LEVELS = {
     level.name: level
     for level in (
-        Level("uno", "uno", 2, _block_words("DEF") | OF_TASKS_AND_WAYS),
-        Level("mega", "mega", 4),
-        Level("esp32", "esp32dev", 4),
+        Level("uno", "uno", 2, _block_words("DEF") | OF_TASKS_AND_WAYS | OF_NO_LEVEL),
+        Level("mega", "mega", 4, OF_NO_LEVEL),
+        Level("esp32", "esp32dev", 4, OF_NO_LEVEL),
     )
 }
 
 # A robot that reads no text, and so no word.
 NO_TEXT = Level("none", "uno", 0, frozenset((*WORDS, *ALIASES)))
-
-# Words that no level reads: a robot knows that their names are taken, and no more. `line` writes
-# these out.
-UNREAD = frozenset(word.text for word in WORDS.values() if word.stands_for)
 
 
 def level_of(chip: str, has_discs: bool = False) -> Level:

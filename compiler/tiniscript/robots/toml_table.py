@@ -41,10 +41,10 @@ def parse_toml(text: str) -> dict[str, object] | Reason:
 @contextmanager
 def root_of(text: str, refused: type[ProfileRefused]) -> Iterator[Table]:
     """Yield the table of a whole file. Raises `refused` with all that has been complained of."""
-    found = parse_toml(text)
-    if isinstance(found, tuple):
-        raise refused(found)
-    root = Table(found, "", [])
+    result = parse_toml(text)
+    if isinstance(result, tuple):
+        raise refused(result)
+    root = Table(result, "", [])
     yield root
     root.finish()
     if root.reasons:
@@ -140,14 +140,14 @@ class Table:
         if not isinstance(value, list) or len(value) != 2:
             self.expect("pair", key, value)
             return 0, 0
-        first, second = (self._thousandths(key, each, LOWEST, HIGHEST) for each in value)
+        first, second = (self._thousandths(key, item, LOWEST, HIGHEST) for item in value)
         return first, second
 
     def pairs(self, key: str, low: int, high: int, example: str) -> list[tuple[int, int]] | None:
         """Return the thousandths of `[[x, y], ...]`, each from `low` to `high`; None: no list."""
         value = self.get(key, example)
         if not isinstance(value, list) or not all(
-            isinstance(each, list) and len(each) == 2 for each in value
+            isinstance(item, list) and len(item) == 2 for item in value
         ):
             self.expect("pairs", key, value)
             return None
@@ -193,15 +193,15 @@ class Table:
             self.complain("wrong_type", key, wanted=wanted, found=_type_of(value))
 
     def not_in_kit(self, key: str, known: Sequence[str]) -> None:
-        near = nearest(key.upper(), list(known)) or ""
-        self.complain("not_in_kit", key, name=shown(key), near=near)
+        suggestion = nearest(key.upper(), list(known)) or ""
+        self.complain("not_in_kit", key, name=shown(key), near=suggestion)
 
     def finish(self) -> None:
         """Complain about every key that was never read."""
         for key in self._values:
             if key not in self._asked:
-                near = nearest(key, self._asked) or ""
-                self.complain("unknown_key", key, near=near, known=", ".join(self._asked))
+                suggestion = nearest(key, self._asked) or ""
+                self.complain("unknown_key", key, near=suggestion, known=", ".join(self._asked))
 
     def _thousandths(self, key: str, value: object, low: int, high: int) -> int:
         if isinstance(value, Written):

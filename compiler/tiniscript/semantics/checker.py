@@ -83,7 +83,7 @@ class _Checker(Scope):
         self.procedures: list[ir.Procedure] = []
         self.facts: list[_Procedure] = []
         self.tasks: list[ir.Task] = []
-        self.has_tasks = any(isinstance(each, ast.Task) for each in parsed.body)
+        self.has_tasks = any(isinstance(item, ast.Task) for item in parsed.body)
         self.beside_blocks = 0  # open at once in the other tasks, all of them together,
         self.beside_calls = 0  # and their calls
         self.inside: str | None = None  # the DEF whose body is being checked
@@ -112,30 +112,30 @@ class _Checker(Scope):
         return WrongCalls(self)
 
     def body(self, instructions: Sequence[ast.Instruction]) -> ir.Body:
-        made: list[Statement] = []
+        statements: list[Statement] = []
         for instruction in instructions:
-            _CHECKS[type(instruction)](self, instruction, made)
-        return tuple(made)
+            _CHECKS[type(instruction)](self, instruction, statements)
+        return tuple(statements)
 
     # -- readings -----------------------------------------------------------------------------
 
     def take(self, values: Sequence[Value], span: Span, made: list[Statement]) -> int:
         """Add the readings that come before an instruction; return them as bits."""
-        taken = 0
+        result = 0
         for sensor in self.missing(values, self.surely_read):
             made.append(ir.Read(sensor, span))
-            taken |= 1 << sensor
-        return taken
+            result |= 1 << sensor
+        return result
 
     @staticmethod
     def missing(values: Sequence[Value], read: int) -> tuple[int, ...]:
         """Return the sensors in `values`, each once, in order, that `read` does not hold."""
-        wanted: list[int] = []
+        expected: list[int] = []
         for value in values:
             for sensor in value.sensors:
-                if not read >> sensor & 1 and sensor not in wanted:
-                    wanted.append(sensor)
-        return tuple(wanted)
+                if not read >> sensor & 1 and sensor not in expected:
+                    expected.append(sensor)
+        return tuple(expected)
 
     # -- instructions -------------------------------------------------------------------------
 
@@ -193,22 +193,22 @@ class _Checker(Scope):
         forever = word.role.lasts and arguments[0].expression[0].op == "FOREVER"
         if forever and node.until is None and not self.has_tasks:
             self.wrong.forever(arguments[0].span, word, span)
-        wanted, way = word.arguments, arguments[0].unit if word.role.is_move else None
+        expected, way = word.arguments, arguments[0].unit if word.role.is_move else None
         if way is not None:
             self.way(node, way)
             arguments = (arguments[0]._replace(unit=None), *arguments[1:])
-            wanted = (WAYS[UNIT_OF[word.text]], *wanted[1:])
-        said = len(self.diagnostics)
+            expected = (WAYS[UNIT_OF[word.text]], *expected[1:])
+        text = len(self.diagnostics)
         values = [
             self.types.value(argument)
             if its is VALUE
             else self.number(argument, its, word.text, (node, word))
-            for argument, its in zip(arguments[forever:], wanted[forever:], strict=True)
+            for argument, its in zip(arguments[forever:], expected[forever:], strict=True)
         ]
-        if len(self.diagnostics) > said:
-            self.wrong.values(node, word, said)
+        if len(self.diagnostics) > text:
+            self.wrong.values(node, word, text)
         if word.stands_for:
-            if len(self.diagnostics) == said:
+            if len(self.diagnostics) == text:
                 self.spelled_out(word, arguments, span, made)
             return
         self.stack_fits(values, span)
@@ -226,10 +226,10 @@ class _Checker(Scope):
         self, word: Word, arguments: Sequence[ast.Argument], span: Span, made: list[Statement]
     ) -> None:
         """Make what the instructions make that a word stands for, with these values."""
-        names = [its.name.upper() for its in word.arguments]
+        names = [argument.name.upper() for argument in word.arguments]
         given = dict(zip(names, arguments, strict=True))
         for instruction in parse(Source(word.stands_for)).program.body:
-            _CHECKS[type(instruction)](self, _placed(instruction, span, given), made)
+            _CHECKS[type(instruction)](self, _relocated(instruction, span, given), made)
 
     def way(self, node: ast.Command, unit: ast.Part) -> None:
         """Check the unit of a move, and whether the robot's speed is known."""
@@ -270,9 +270,9 @@ class _Checker(Scope):
         return value
 
     def wants_condition(self, argument: ast.Argument, by: str) -> None:
-        found = self.source[argument.span]
-        values = self.types.wrong.condition(found)
-        self.report(codes.WANTS_CONDITION, argument.span, None, by=by, found=found, **values)
+        result = self.source[argument.span]
+        values = self.types.wrong.condition(argument.span)
+        self.report(codes.WANTS_CONDITION, argument.span, None, by=by, found=result, **values)
 
     def stack_fits(self, values: Sequence[Value], span: Span) -> None:
         if any(value.depth + i > STACK_VALUES for i, value in enumerate(values)):
@@ -342,12 +342,12 @@ class _Checker(Scope):
             names = [self.variables[k] for k in procedure.values]
             if names_one(node, names) and self.wrong.named_values(node, names):
                 return
-        values = [self.types.value(each) for each in arguments]
+        values = [self.types.value(item) for item in arguments]
         for argument, value, number in zip(arguments, values, procedure.values, strict=True):
-            wanted = self.types.of_variables[number]
-            if ANY not in (wanted, value.type) and wanted != value.type:
+            expected = self.types.of_variables[number]
+            if ANY not in (expected, value.type) and expected != value.type:
                 self.report(codes.CALL_KIND, argument.span, name=self.variables[number],
-                            word=node.word, old="@" + wanted, new="@" + value.type)  # fmt: skip
+                            word=node.word, old="@" + expected, new="@" + value.type)  # fmt: skip
         self.stack_fits(values, node.span)
         self.take(values, node.span, made)
         for value, number in zip(values, procedure.values, strict=True):
@@ -361,10 +361,10 @@ class _Checker(Scope):
         self.deepest = max(self.deepest, self.depth)
         if self.depth + self.beside_blocks == BLOCKS + 1:  # what is alone too deep is not here
             self.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
-        made = self.body(instructions)
+        body = self.body(instructions)
         self.depth -= 1
         self.loops -= is_loop
-        return made
+        return body
 
     def repeated(self, node: ast.Loop | ast.While) -> ir.Body:
         """Check a body in which no turn surely finds what was read before it."""
@@ -416,7 +416,7 @@ class _Checker(Scope):
 
     def break_(self, node: ast.Break, made: list[Statement]) -> None:
         if not self.loops:
-            self.report(codes.BREAK_OUTSIDE, node.span)
+            self.wrong.break_outside(node)
         made.append(ir.Break(node.span))
 
     def def_(self, node: ast.Def, made: list[Statement]) -> None:
@@ -483,9 +483,9 @@ class _Checker(Scope):
         """Check that a machine has room for what each task has of its own."""
         from tiniscript.semantics.task_copies import excess
 
-        found = excess(program)
-        if found is not None:
-            self.wrong.too_many_copies(program, found)
+        result = excess(program)
+        if result is not None:
+            self.wrong.too_many_copies(program, result)
 
     def apart(self) -> _Outside:
         """Begin a DEF or a task, in which nothing is surely read or open; return what was."""
@@ -499,7 +499,7 @@ class _Checker(Scope):
         self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls = was
 
 
-def _placed(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
+def _relocated(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
     """Return a part of a tree at another place, with what was given for the names in it."""
     if isinstance(node, Span):
         return span
@@ -508,7 +508,7 @@ def _placed(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
     if isinstance(node, ast.Argument) and node.expression[0].value in given:
         return given[str(node.expression[0].value)]
     if isinstance(node, tuple):
-        parts = [_placed(part, span, given) for part in node]
+        parts = [_relocated(part, span, given) for part in node]
         return type(node)(*parts) if hasattr(node, "_fields") else tuple(parts)
     return node
 

@@ -74,9 +74,9 @@ def is_between(device: Device, number: int) -> bool:
     return is_fine and device.low < number < device.high and not is_rest
 
 
-def answer_of(compared: Comparison) -> str:
+def answer_of(comparison: Comparison) -> str:
     """Return the answer that a comparison always has, as a term; nothing where it may change."""
-    device, op, number = compared
+    device, op, number = comparison
     if device.is_yes_no:
         return ""
     is_never = {
@@ -127,13 +127,13 @@ def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
     """
     left = sum(term.op == "SENSOR" and is_distance(kit.readings[term.value]) for term in condition)
     is_sure = all(term.op != "NOT" for term in condition)
-    for compared in _parts(condition, kit):
-        if answer_of(compared) or (compared.op == "EQ" and is_between(*compared[::2])):
+    for part in _parts(condition, kit):
+        if answer_of(part) or (part.op == "EQ" and is_between(*part[::2])):
             return False
-        if is_distance(compared.device):
-            left -= looks_ahead(compared.device)
-            if is_sure and looks_ahead(compared.device):
-                if compared.op not in _COMES.get(direction, (compared.op,)):
+        if is_distance(part.device):
+            left -= looks_ahead(part.device)
+            if is_sure and looks_ahead(part.device):
+                if part.op not in _COMES.get(direction, (part.op,)):
                     return False
     return True if is_sure and (not left or direction not in _COMES) else None
 

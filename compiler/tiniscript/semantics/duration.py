@@ -36,13 +36,13 @@ def duration(program: ir.Program, kit: Kit) -> Duration:
     Of several tasks it is known how long they run where no more than one moves: a move waits for
     the motors, and S ends one.
     """
-    made = _Durations(program, kit)
+    result = _Durations(program, kit)
     bodies = (program.body, *(task.body for task in program.tasks))
-    durations = [made.of(body) for body in bodies]
+    durations = [result.of(body) for body in bodies]
     least = max(one.least for one in durations)
     if any(task.look is not None for task in program.tasks):
         return Duration(least, None, True)
-    if sum(made.drives(body) for body in bodies) > 1:
+    if sum(result.drives(body) for body in bodies) > 1:
         return Duration(0, None)
     bounds = [one.most for one in durations if one.most is not None]
     most = max(bounds) if len(bounds) == len(durations) else None

@@ -222,7 +222,7 @@ _YES_NO = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ",
 
 def are_yes_no(program: Program, kit: Kit) -> list[bool]:
     """Return for each variable of a program whether it is a yes/no."""
-    found = [False] * len(program.variables)
+    result = [False] * len(program.variables)
     copies: list[Assign] = []  # the value is another variable
     for statement in every(program):
         if not isinstance(statement, Assign):
@@ -231,15 +231,15 @@ def are_yes_no(program: Program, kit: Kit) -> list[bool]:
         if last.op == "VARIABLE":
             copies.append(statement)
         elif last.op == "SENSOR":
-            found[statement.variable] = kit.readings[last.value].is_yes_no
+            result[statement.variable] = kit.readings[last.value].is_yes_no
         else:
-            found[statement.variable] = last.op in _YES_NO
+            result[statement.variable] = last.op in _YES_NO
     known = -1
-    while known < sum(found):  # a DEF may copy a variable that is set below it
-        known = sum(found)
+    while known < sum(result):  # a DEF may copy a variable that is set below it
+        known = sum(result)
         for copy in copies:
-            found[copy.variable] |= found[copy.value[-1].value]
-    return found
+            result[copy.variable] |= result[copy.value[-1].value]
+    return result
 
 
 # The fields of statements that are expressions: whoever adds a statement names them so.

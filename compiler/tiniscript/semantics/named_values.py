@@ -6,11 +6,11 @@ from tiniscript.base.words import POWER, TIME, Argument, names, said_of
 
 
 def is_time(name: str) -> bool:
-    return _says(name, TIME)
+    return _names_argument(name, TIME)
 
 
 def is_power(name: str) -> bool:
-    return _says(name, POWER) or any(said_of(part, "power") for part in _parts(name))
+    return _names_argument(name, POWER) or any(said_of(part, "power") for part in _parts(name))
 
 
 def value_of(name: str) -> str:
@@ -32,7 +32,7 @@ def use_of(name: str) -> str:
     return f"F({name}, 80)" if is_time(name) else f"SHOW({name})"
 
 
-def _says(name: str, argument: Argument) -> bool:
+def _names_argument(name: str, argument: Argument) -> bool:
     """Whether a part of a name is what such a value is called."""
     return any(names(part, argument) for part in _parts(name))
 

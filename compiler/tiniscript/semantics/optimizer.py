@@ -62,7 +62,7 @@ def fold(expression: ir.Expression) -> ir.Expression:
             continue
         if op in ("AND", "OR"):
             right, left = stack.pop(), stack.pop()
-            stack.append(_decided(op, left, right))
+            stack.append(_simplified(op, left, right))
         elif op in _UNARY:
             terms, is_safe_so_far = stack.pop()
             folded = _calculated(op, terms, None) if _is_constant(terms) else None
@@ -140,7 +140,7 @@ def _calculated(op: str, left: list[ir.Term], right: list[ir.Term] | None) -> li
     return [ir.Term("YES_NO" if op in _YES_NO else "NUMBER", int(value))]
 
 
-def _decided(op: str, left: _Operand, right: _Operand) -> _Operand:
+def _simplified(op: str, left: _Operand, right: _Operand) -> _Operand:
     """Return `left op right`, without the side that a constant makes needless."""
     decides = 0 if op == "AND" else 1
     (terms, left_safe), (right_terms, right_safe) = left, right
@@ -158,12 +158,12 @@ def _decided(op: str, left: _Operand, right: _Operand) -> _Operand:
 
 
 def _body(body: ir.Body) -> ir.Body:
-    made: list[ir.Statement] = []
+    statements: list[ir.Statement] = []
     for statement in body:
-        made += _statement(statement)
-        if made and not ir.goes_on(tuple(made[-1:])):
+        statements += _statement(statement)
+        if statements and not ir.goes_on(tuple(statements[-1:])):
             break
-    return tuple(made)
+    return tuple(statements)
 
 
 def _task(task: ir.Task) -> ir.Task:
@@ -175,7 +175,7 @@ def _task(task: ir.Task) -> ir.Task:
 
 def _statement(statement: ir.Statement) -> tuple[ir.Statement, ...]:
     if isinstance(statement, ir.If):
-        return _if(statement)
+        return _optimize_if(statement)
     if isinstance(statement, ir.Loop):
         return _loop(statement)
     if isinstance(statement, ir.While):
@@ -186,7 +186,7 @@ def _statement(statement: ir.Statement) -> tuple[ir.Statement, ...]:
     return (statement._replace(**folded) if folded else statement,)
 
 
-def _if(statement: ir.If) -> tuple[ir.Statement, ...]:
+def _optimize_if(statement: ir.If) -> tuple[ir.Statement, ...]:
     arms: list[ir.Arm] = []
     otherwise = _body(statement.otherwise)
     for arm in statement.arms:
@@ -207,7 +207,7 @@ def _if(statement: ir.If) -> tuple[ir.Statement, ...]:
     if arms[0].reads:  # an ELSEIF that has become the IF: its readings come first
         reads = tuple(ir.Read(sensor, arms[0].span) for sensor in arms[0].reads)
         rest = ir.If((arms[0]._replace(reads=()), *arms[1:]), otherwise, statement.span)
-        return (*reads, *_if(rest))
+        return (*reads, *_optimize_if(rest))
     if not otherwise and not any(arm.body or arm.reads for arm in arms):
         if all(is_safe(arm.condition) for arm in arms):
             return ()

@@ -38,9 +38,9 @@ class Kinds:
 
     def of(self, node: ast.Def) -> list[str]:
         """Return NUMBER or YES_NO for each value of a DEF."""
-        return [self._of(self._given(node, k)) for k in range(len(node.parameters))]
+        return [self._kind_of(self._parameter_place(node, k)) for k in range(len(node.parameters))]
 
-    def _of(self, place: _Place | None) -> str:
+    def _kind_of(self, place: _Place | None) -> str:
         """Follow a name to what it gets its kind from; in a circle it is a number."""
         seen: set[tuple[str, str]] = set()
         while place is not None:
@@ -54,14 +54,14 @@ class Kinds:
                 break
             seen.add(key)
             if around is not None and k is not None:
-                place = self._given(around, k)
+                place = self._parameter_place(around, k)
             elif name in self._sensors:
                 return YES_NO
             else:
                 place = self._set.get(name)
         return NUMBER
 
-    def _given(self, node: ast.Def, k: int) -> _Place | None:
+    def _parameter_place(self, node: ast.Def, k: int) -> _Place | None:
         """Return what the first call gives to a value of a DEF."""
         call, around = self._calls.get(node.name, (None, None))
         arguments = () if call is None else call.arguments or ()

@@ -55,17 +55,17 @@ class Scope:
         }
         self.set_somewhere = self._first.keys()
         self.parsed = parsed
-        self.def_names = {each.name for each in parsed.body if isinstance(each, ast.Def)}
+        self.def_names = {item.name for item in parsed.body if isinstance(item, ast.Def)}
         self.wanted: dict[str, list[str]] = {}  # the names in a DEF that nothing gives a value
 
     def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
         self.diagnostics.append(Diagnostic(code, span, values, place))
 
-    def report_used(self, name: str, used: Span, near: str) -> None:
+    def report_used(self, name: str, used: Span, suggestion: str) -> None:
         """Say that `name` is used before it has a value, and how it gets one first."""
         said = self._line_to_move_up(name, used)
         body = self.parsed.body
-        around = next((each for each in body if each.span.end > used.start), body[0])
+        around = next((item for item in body if item.span.end > used.start), body[0])
         row = self.source.position(around.span.start)[0]
         if said["line"] and row < self.source.position(used.start)[0]:
             said = {**said, "row": str(row)}  # inside a block it would be done again and again
@@ -75,7 +75,7 @@ class Scope:
         edits = [Edit(Span(begin, begin), value + between)]
         if said["line"]:
             edits.append(Edit(self.source.line_span(int(said["line"])), ""))
-        values = {"name": name, "near": near, **said}
+        values = {"name": name, "near": suggestion, **said}
         repair = Repair(tuple(edits), False)
         self.diagnostics.append(Diagnostic(codes.USED_BEFORE_SET, used, values, None, repair))
 

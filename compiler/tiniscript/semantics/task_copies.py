@@ -16,7 +16,7 @@ from tiniscript.semantics import ir
 
 def separated(program: ir.Program) -> ir.Program:
     """Return a program that does the same, in which no two tasks share a DEF's values."""
-    reached = _reached(program)
+    reached = _reachable_defs(program)
     owns = _owning(program)
     procedures: list[ir.Procedure] = []
     variables = list(program.variables)
@@ -27,7 +27,7 @@ def separated(program: ir.Program) -> ir.Program:
             for its in maps:
                 its.calls[k] = len(procedures)
             # one that no task shares keeps its variables, and calls what its task calls
-            procedures.append(_copied(procedure, maps[its_tasks[0] if its_tasks else 0]))
+            procedures.append(_copy_procedure(procedure, maps[its_tasks[0] if its_tasks else 0]))
             continue
         for task in its_tasks:
             its = maps[task]
@@ -36,7 +36,7 @@ def separated(program: ir.Program) -> ir.Program:
                     its.variables[variable] = len(variables)
                     variables.append(program.variables[variable])
             its.calls[k] = len(procedures)
-            procedures.append(_copied(procedure, its))
+            procedures.append(_copy_procedure(procedure, its))
         for its in maps:  # of a DEF that nobody calls: it calls the first copy
             its.calls.setdefault(k, maps[its_tasks[0]].calls[k])
     main, *others = maps
@@ -51,10 +51,10 @@ def separated(program: ir.Program) -> ir.Program:
 
 
 class Excess(NamedTuple):
-    """More copies than a machine takes, of this DEF, for so many tasks."""
+    """More copies than a machine takes, of this DEF, for these tasks: 0 is the main one."""
 
     procedure: int
-    tasks: int
+    tasks: tuple[int, ...]
     what: str  # "variables" or "defs"
     total: int  # with all copies
     limit: int
@@ -62,23 +62,24 @@ class Excess(NamedTuple):
 
 def excess(program: ir.Program) -> Excess | None:
     """Return the DEF whose copies a machine has no room for, if there is one."""
-    owns, counts = _owning(program), users(program)
+    owns, reached = _owning(program), _reachable_defs(program)
     variables, defs = len(program.variables), len(program.procedures)
-    for k, (procedure, count) in enumerate(zip(program.procedures, counts, strict=True)):
-        if owns[k] and count > 1:
-            variables += (count - 1) * len(procedure.values)
-            defs += count - 1
+    for k, procedure in enumerate(program.procedures):
+        its_tasks = tuple(task for task, found in enumerate(reached) if k in found)
+        if owns[k] and len(its_tasks) > 1:
+            variables += (len(its_tasks) - 1) * len(procedure.values)
+            defs += len(its_tasks) - 1
             if variables > VARIABLES:
-                return Excess(k, count, "variables", variables, VARIABLES)
+                return Excess(k, its_tasks, "variables", variables, VARIABLES)
             if defs > DEFS:
-                return Excess(k, count, "defs", defs, DEFS)
+                return Excess(k, its_tasks, "defs", defs, DEFS)
     return None
 
 
 def users(program: ir.Program) -> list[int]:
     """Return how many tasks reach each DEF."""
-    reached = _reached(program)
-    return [sum(k in found for found in reached) for k in range(len(program.procedures))]
+    reached = _reachable_defs(program)
+    return [sum(k in item for item in reached) for k in range(len(program.procedures))]
 
 
 class _Numbers(NamedTuple):
@@ -88,55 +89,57 @@ class _Numbers(NamedTuple):
     variables: dict[int, int]
 
 
-def _reached(program: ir.Program) -> list[set[int]]:
+def _reachable_defs(program: ir.Program) -> list[set[int]]:
     """Return the DEFs that each task reaches, the main task first."""
-    found = []
+    result = []
     for body in (program.body, *(task.body for task in program.tasks)):
         called: set[int] = set()
         for _ in ir.with_calls(body, program.procedures, called):
             pass
-        found.append(called)
-    return found
+        result.append(called)
+    return result
 
 
 def _owning(program: ir.Program) -> list[bool]:
     """Return for each DEF whether it has values, or calls one that has."""
-    found: list[bool] = []
+    result: list[bool] = []
     for procedure in program.procedures:
         calls = [call.procedure for call in ir.walk(procedure.body) if isinstance(call, ir.Call)]
-        found.append(bool(procedure.values) or any(found[k] for k in calls))
-    return found
+        result.append(bool(procedure.values) or any(result[k] for k in calls))
+    return result
 
 
-def _copied(procedure: ir.Procedure, its: _Numbers) -> ir.Procedure:
-    values = tuple(its.variables.get(value, value) for value in procedure.values)
-    return procedure._replace(body=_body(procedure.body, its), values=values)
+def _copy_procedure(procedure: ir.Procedure, numbers: _Numbers) -> ir.Procedure:
+    values = tuple(numbers.variables.get(value, value) for value in procedure.values)
+    return procedure._replace(body=_body(procedure.body, numbers), values=values)
 
 
-def _body(body: ir.Body, its: _Numbers) -> ir.Body:
-    return tuple(_statement(each, its) for each in body)
+def _body(body: ir.Body, numbers: _Numbers) -> ir.Body:
+    return tuple(_statement(item, numbers) for item in body)
 
 
-def _statement(statement: ir.Statement, its: _Numbers) -> ir.Statement:
+def _statement(statement: ir.Statement, numbers: _Numbers) -> ir.Statement:
     new: dict[str, Any] = {
-        name: _expression(value, its.variables) for name, value in ir.values_of(statement).items()
+        name: _expression(value, numbers.variables)
+        for name, value in ir.values_of(statement).items()
     }
     if isinstance(statement, ir.Call):
-        new["procedure"] = its.calls[statement.procedure]
+        new["procedure"] = numbers.calls[statement.procedure]
     elif isinstance(statement, ir.Assign):
-        new["variable"] = its.variables.get(statement.variable, statement.variable)
+        new["variable"] = numbers.variables.get(statement.variable, statement.variable)
     elif isinstance(statement, ir.If):
         new["arms"] = tuple(
             arm._replace(
-                condition=_expression(arm.condition, its.variables), body=_body(arm.body, its)
+                condition=_expression(arm.condition, numbers.variables),
+                body=_body(arm.body, numbers),
             )
             for arm in statement.arms
         )
-        new["otherwise"] = _body(statement.otherwise, its)
+        new["otherwise"] = _body(statement.otherwise, numbers)
     elif isinstance(statement, (ir.Loop, ir.While)):
-        new["body"] = _body(statement.body, its)
+        new["body"] = _body(statement.body, numbers)
     elif isinstance(statement, ir.Move) and statement.until is not None:
-        condition = _expression(statement.until.condition, its.variables)
+        condition = _expression(statement.until.condition, numbers.variables)
         new["until"] = statement.until._replace(condition=condition)
     return statement._replace(**new)
 

@@ -91,9 +91,9 @@ class Types:
             value_type = YES_NO if self.readings[name.number].is_yes_no else NUMBER
             term = Term("SENSOR", name.number)
         else:
-            said = {"device": part.value} if name.what == "actuator" else {}
+            text = {"device": part.value} if name.what == "actuator" else {}
             span = Span(part.start, part.end)
-            scope.report(codes.NO_VALUE, span, None, word=part.value, **said)
+            scope.report(codes.NO_VALUE, span, None, word=part.value, **text)
         stack.append(Operand(value_type, 1, part.start, part.end))
         return term
 

@@ -10,14 +10,24 @@ import re
 from collections.abc import Set as AbstractSet
 from itertools import chain, takewhile
 
-from tiniscript.base.words import BLOCK_ENDS, WORDS, Word, names, shortened
+from tiniscript.base.words import (
+    BLOCK_ENDS,
+    WORDS,
+    Word,
+    concept_of,
+    names,
+    said_of,
+    shortened,
+)
 from tiniscript.diagnostics import codes
-from tiniscript.semantics.named_values import value_of
+from tiniscript.semantics.named_values import value_of, yes_no_of
 from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.syntax import ast
 from tiniscript.syntax.lexer import WORD, scan
 
 _DIGITS = "0123456789"
+_LAMP = "LED"  # in the kits that have one
+_SWITCHED = {"TRUE": "TRUE", "1": "TRUE", "FALSE": "FALSE", "0": "FALSE"}
 MANY_TIMES = 20  # that a DEF is done by hand in a class
 
 
@@ -30,24 +40,46 @@ def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
         scope.report(codes.CALL_BEFORE_DEF, span, name=word)
     elif word in scope.set_somewhere:
         scope.report(codes.VARIABLE_ALONE, span, name=word)
-    else:
+    elif not _report_lamp(scope, node):
         _report_unknown_word(scope, node)
+
+
+def _report_lamp(scope: Scope, node: ast.Command) -> bool:
+    """Report `LAMP(1)`, `LIGHT(ON)`: what a kit calls its lamp, or that it has none.
+
+    LED is the word of other kits, and a light that is not switched may be a sensor. Return whether
+    that is meant.
+    """
+    word, arguments = node.word, node.arguments or ()
+    given = [scope.source[argument.span].upper() for argument in arguments]
+    answers = [yes_no_of(each) or _SWITCHED.get(each, "") for each in given]
+    is_light = said_of(word, "stem")[:1] == ("LIGHT",) and len(answers) == 1 and bool(answers[0])
+    if word == _LAMP or not (concept_of(word) == _LAMP or is_light):
+        return False
+    said = {"lamp": word}
+    if any(device.name == _LAMP and device.is_yes_no for device in scope.kit.actuators):
+        answer = answers[0] if len(answers) == 1 and answers[0] else "TRUE"
+        said |= {"switch": _LAMP, "fix": f"{_LAMP}({answer})"}
+    scope.report(codes.SWITCH_WHAT, node.word_span, node.span, **said)
+    return True
 
 
 def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     word, span = node.word, node.word_span
     begins = (word for word in WORDS.values() if word.role.begins)
     commands = [begin.text for begin in begins if begin.text not in ("FOREVER", "SEND")]
-    near = whole_name(scope, word, scope.def_names) if node.arguments is None else ""
-    near = near or scope.near(word, chain(commands, scope.names, scope.def_names))
-    is_own = near in scope.set_somewhere or near in scope.def_names
-    if is_own and near.rstrip(_DIGITS) == word.rstrip(_DIGITS):
-        near = ""  # `PASO2`, where there is a DEF PASO1
+    suggestion = whole_name(scope, word, scope.def_names) if node.arguments is None else ""
+    suggestion = suggestion or scope.near(word, chain(commands, scope.names, scope.def_names))
+    is_own = suggestion in scope.set_somewhere or suggestion in scope.def_names
+    if is_own and suggestion.rstrip(_DIGITS) == word.rstrip(_DIGITS):
+        suggestion = ""  # `PASO2`, where there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
     letters = [word[0]] if is_held and word[0] in WORDS else shortened(word)
     count = len(node.arguments or ())
-    near = next((letter for letter in letters if len(WORDS[letter].arguments) == count), near)
-    scope.report(codes.UNKNOWN_WORD, span, None, found=scope.source[span].upper(), near=near)
+    suggestion = next(
+        (letter for letter in letters if len(WORDS[letter].arguments) == count), suggestion
+    )
+    scope.report(codes.UNKNOWN_WORD, span, None, found=scope.source[span].upper(), near=suggestion)
 
 
 def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
@@ -79,8 +111,8 @@ def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
     """
     if part in names or len(scope.diagnostics) >= ENOUGH:
         return ""
-    found = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
-    return found[0] if len(found) == 1 else ""
+    matches = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
+    return matches[0] if len(matches) == 1 else ""
 
 
 def _is_shortened(one: str, other: str) -> bool:
@@ -104,12 +136,12 @@ def report_not_callable(scope: Scope, node: ast.Command) -> None:
     if re.search(rf"(?i)\bDEF\s+{node.word}[ \t]*\([^)\n]*\w", scope.source.text):
         return  # what is wrong in the brackets of the DEF has been said
     texts = [scope.source[argument.span] for argument in node.arguments or ()]
-    said = {"named": node.word} if node.word in scope.def_names else {}
+    text = {"named": node.word} if node.word in scope.def_names else {}
     fix, names = "", _wanted(scope, node.word)
-    if said and texts and len(names) == len(texts):
-        said["head"] = f"DEF {node.word}({', '.join(names)})"
-    elif said and len(texts) == 1 and texts[0].isdecimal() and 1 < int(texts[0][:9]) <= MANY_TIMES:
-        said["times"] = texts[0]
+    if text and texts and len(names) == len(texts):
+        text["head"] = f"DEF {node.word}({', '.join(names)})"
+    elif text and len(texts) == 1 and texts[0].isdecimal() and 1 < int(texts[0][:9]) <= MANY_TIMES:
+        text["times"] = texts[0]
         fix = f"LOOP({texts[0]});{node.word};{BLOCK_ENDS['LOOP']}"
-    place = node.span if "times" in said else None
-    scope.report(codes.NOT_CALLABLE, node.span, place, name=node.word, fix=fix, **said)
+    place = node.span if "times" in text else None
+    scope.report(codes.NOT_CALLABLE, node.span, place, name=node.word, fix=fix, **text)

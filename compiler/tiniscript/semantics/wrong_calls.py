@@ -8,15 +8,28 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING
 
 from tiniscript.base.fixed_point import HIGHEST, as_text
-from tiniscript.base.source import Source, Span
-from tiniscript.base.words import OTHER_WAY, POWER, TIME, UNIT_OF, VALUE, WORDS, Argument, Word
+from tiniscript.base.kit import Device
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import (
+    OTHER_WAY,
+    POWER,
+    TIME,
+    UNIT_OF,
+    VALUE,
+    WORDS,
+    Argument,
+    Word,
+)
 from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
+from tiniscript.semantics.left_out import left_out
 from tiniscript.semantics.named_values import yes_no_of
 from tiniscript.semantics.symbols import ENOUGH, Name, Scope
 from tiniscript.semantics.unknown_words import (
@@ -25,6 +38,7 @@ from tiniscript.semantics.unknown_words import (
     report_unknown,
     report_words_shown,
 )
+from tiniscript.semantics.wrong_values import value_of_def
 from tiniscript.syntax import ast
 from tiniscript.syntax.free_names import numbered
 
@@ -44,7 +58,9 @@ _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
 _NAMED = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
-_NEAR = 500  # characters after a value for a sensor in which its use is looked for
+# By the unit of a sensor, the unit of a move that goes as far, and how many of it one is.
+_WAY_OF = {"cm": ("CM", Fraction(1)), "mm": ("CM", Fraction(1, 10)), "m": ("CM", Fraction(100)),
+           "°": ("DEG", Fraction(1)), "deg": ("DEG", Fraction(1))}  # fmt: skip
 
 
 class WrongCalls:
@@ -67,15 +83,19 @@ class WrongCalls:
         self.scope.report(codes.CALL_VALUES, node.span, name=node.word, usage=usage,
                           wanted=str(len(names)), found=str(len(node.arguments or ())))  # fmt: skip
 
-    def too_many_copies(self, program: ir.Program, found: Excess) -> None:
+    def too_many_copies(self, program: ir.Program, excess: Excess) -> None:
         """A DEF with values is compiled once for each task that reaches it."""
-        procedure = program.procedures[found.procedure]
+        procedure = program.procedures[excess.procedure]
         span = Span(procedure.span.start, procedure.span.start + len("DEF"))
+        begin = [program.body[0].span, *(task.span for task in program.tasks)]
+        lines = [self.scope.source.position(begin[k].start)[0] for k in excess.tasks]
         values = {
-            "count": str(found.tasks),
-            found.what: str(found.total),
-            "limit": str(found.limit),
+            "count": str(len(lines)),
+            excess.what: str(excess.total),
+            "limit": str(excess.limit),
         }
+        if len({*lines}) > 1:
+            values["lines"] = ", ".join(map(str, sorted({*lines})))
         self.scope.report(codes.TOO_MANY_COPIES, span, None, name=procedure.name, **values)
 
     def until_not_here(self, node: ast.Command, until: ast.Argument, word: Word | None) -> None:
@@ -84,10 +104,22 @@ class WrongCalls:
         call = source[Span(node.span.start, start)].rstrip()
         own = self.scope.names.get(node.word)
         role = word.role.name if word else own.what if own else "def"
-        said = _ENDED.get(role, "F(5, 60) UNTIL({c})")
-        example = said.format(call=call, c=source[until.span])
+        text = _ENDED.get(role, "F(5, 60) UNTIL({c})")
+        example = text.format(call=call, c=source[until.span])
         place = Span(start, node.span.end)
         self.scope.report(codes.UNTIL_NOT_HERE, place, word=node.word, example=example)
+
+    def break_outside(self, node: ast.Break) -> None:
+        """BREAK as the last of a branch of an IF: the other branch has what it leaves out."""
+        found = left_out(self.scope.source, self.scope.parsed, node)
+        if found is None:
+            self.scope.report(codes.BREAK_OUTSIDE, node.span)
+            return
+        values = {"fix": found.shown}
+        repair = Repair((found.edit,), False)
+        self.scope.diagnostics.append(
+            Diagnostic(codes.BREAK_OUTSIDE, node.span, values, None, repair)
+        )
 
     def forever(self, span: Span, word: Word, call: Span) -> None:
         """FOREVER at `span` in a move without UNTIL."""
@@ -101,7 +133,7 @@ class WrongCalls:
         values = {
             "usage": word.usage,
             "example": "" if texts else word.example,
-            **_said_of_count(texts, word, _UNTIL.search(source[span])),
+            **_count_values(texts, word, _UNTIL.search(source[span])),
             **self._as_way(texts, word),
             "wanted": str(len(word.arguments)),
             "found": str(len(arguments)),
@@ -110,10 +142,9 @@ class WrongCalls:
 
     def _as_way(self, texts: Sequence[str], word: Word) -> dict[str, str]:
         """`R(90)`, `F(30)`: what the one value is, if it is no power."""
-        kit, unit = self.scope.kit, UNIT_OF.get(word.text, "")
-        has_ways = kit.turn if unit == "DEG" else kit.speed
+        unit = UNIT_OF.get(word.text, "")
         is_one = len(texts) == 1 and _NUMBER.fullmatch(texts[0]) and float(texts[0]) >= _LONG_TIME_S
-        if not (unit and has_ways and is_one):
+        if not (unit and self._has_way(unit) and is_one):
             return {}
         way = f"{word.text}({texts[0]} {unit}, {POWER.sample})"
         return {"number": texts[0], "turn" if unit == "DEG" else "way": way}
@@ -149,11 +180,11 @@ class WrongCalls:
     ) -> None:  # fmt: skip
         """`number`, in thousandths, is a value of the command `of`, if of one."""
         low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
-        said = {} if of is None else meant(self.scope.source, *of)
-        said |= {"low": low, "high": high, "found": as_text(number)}
+        text = {} if of is None else meant(self.scope.source, *of)
+        text |= {"low": low, "high": high, "found": as_text(number)}
         place = None if of is None else _without_until(self.scope.source, of[0])
         self.scope.report(codes.OUT_OF_RANGE, span, place, word=word, name=its.name,
-                          unit=its.unit, **said)  # fmt: skip
+                          unit=its.unit, **text)  # fmt: skip
 
     def no_number(self, span: Span, word: str) -> None:
         """A yes or no where `word` takes a number."""
@@ -161,7 +192,8 @@ class WrongCalls:
         fix = f"W(FOREVER) UNTIL({text})" if word == "W" and set(text) & set("<>=") else ""
         if word == "LOOP":
             fix = "LOOP(FOREVER)" if text.upper() == "TRUE" else f"WHILE({text})"
-        self.scope.report(codes.WANTS_NUMBER, span, by=word, found=text, fix=fix)
+        own = value_of_def(self.scope, span)
+        self.scope.report(codes.WANTS_NUMBER, span, None, by=word, found=text, fix=fix, **own)
 
     def device_set(self, node: ast.Assign, device: Name) -> None:
         """`DISTANCE = 20`, `LED = TRUE`: a number for a distance may be where to stop."""
@@ -172,14 +204,45 @@ class WrongCalls:
             said["value"] = (is_yes_no and yes_no_of(value.upper())) or value
             self.scope.report(codes.ACTUATOR_SET, node.name_span, None, **said)
             return
-        if value.isdecimal() and looks_ahead(self.scope.kit.readings[device.number]):
+        sensor = self.scope.kit.readings[device.number]
+        if _NUMBER.fullmatch(value) and (travel := self._travel(node, sensor, value)):
+            self.scope.diagnostics.append(travel)
+            return
+        if value.isdecimal() and looks_ahead(sensor):
             until = f"UNTIL({node.name} < {value})"
             said |= {"until": until, "example": f"F(5, 60) {until}"}
-            after = self.scope.source.text[node.span.end : node.span.end + _NEAR]
-            used = re.search(rf"(?i)\b([FBLR])\s*\(\s*{node.name}\s*,[^)\n]*\)", after)
-            if used:  # `DISTANCE = 90;F(DISTANCE, 80)`
-                said |= {"word": used[1].upper(), "used": used[0]}
         self.scope.report(codes.SENSOR_SET, node.name_span, None, **said)
+
+    def _travel(self, node: ast.Assign, sensor: Device, value: str) -> Diagnostic | None:
+        """`DISTANCE = 90;F(DISTANCE, 80)`: so many centimetres are driven, F(90 CM, 80).
+
+        A move that goes by another unit, or a robot that knows none, gets its own number.
+        """
+        text, end = self.scope.source.text, node.span.end
+        again = re.compile(rf"(?i)(?:^|[;|\n])[ \t]*{node.name}[ \t]*=").search(text, end)
+        last = again.start() if again else len(text)
+        pattern = re.compile(rf"(?i)\b([FBLR])[ \t]*\([ \t]*({node.name})[ \t]*,[^()\n]*\)")
+        uses = [*pattern.finditer(text, end, last)]
+        unit, factor = _WAY_OF.get(sensor.unit.lower(), ("", Fraction()))
+        if not uses or not unit:
+            return None
+        said = {"name": node.name, "value": value, "used": uses[0][0]}
+        words = {use[1].upper() for use in uses}
+        other = min((word for word in words if UNIT_OF[word] != unit), default="")
+        if other or not self._has_way(unit):
+            said |= {"word": other or min(words), "unit": unit}
+            if other and self._has_way(UNIT_OF[other]):
+                use = next(use for use in uses if use[1].upper() == other)
+                said |= {"used": use[0], "other": _with_first(use, f"{value} {UNIT_OF[other]}")}
+            return Diagnostic(codes.SENSOR_SET, node.name_span, said)
+        way = f"{as_text(int(Fraction(value) * factor * 1000))} {unit}"
+        edits = [Edit(_with_separator(self.scope.source, node.span), "")]
+        edits += [Edit(Span(*use.span(2)), way) for use in uses]
+        said["way"] = _with_first(uses[0], way)
+        return Diagnostic(codes.SENSOR_SET, node.name_span, said, None, Repair((*edits,), False))
+
+    def _has_way(self, unit: str) -> bool:
+        return bool(self.scope.kit.speed if unit == "CM" else self.scope.kit.turn)
 
     def named_values(self, node: ast.Command, names: Sequence[str]) -> bool:
         """Report `SIDE(size=20)`, which names a value of the DEF; return whether it does."""
@@ -221,6 +284,18 @@ class WrongCalls:
         )  # these got one already
         found += islice(others, max(0, k + 1 - len(found)))
         return found[k]
+
+
+def _with_first(use: re.Match[str], value: str) -> str:
+    """Return a call with this value in place of the group 2."""
+    start, end = (place - use.start() for place in use.span(2))
+    return use[0][:start] + value + use[0][end:]
+
+
+def _with_separator(source: Source, span: Span) -> Span:
+    """Return where an instruction is, with the `;` or the line end after it."""
+    match = re.compile(r"[ \t]*(?:;[ \t]*|\r?\n|$)").match(source.text, span.end)
+    return Span(span.start, match.end()) if match else span
 
 
 def _start_of_until(source: Source, node: ast.Command, until: ast.Argument) -> int:
@@ -295,30 +370,30 @@ def _is_note(text: str) -> bool:
     return _is_whole(text) >= _LOW_TONE and _is_whole(text) % _ROUND != 0
 
 
-def _said_of_count(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
+def _count_values(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
     """Return what is said of a wrong number of values: `power` of F(80) is F(2, 80), `spare` of
     F(2, 80, 5) is F(2, 80).
 
     `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL the time may be FOREVER.
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
-    said = {"power": "", "spare": "", "kept": ""}
+    result = {"power": "", "spare": "", "kept": ""}
     if word.role.is_move and len(texts) == 1 and _LONG_TIME_S <= numbers[0] <= _MOST_POWER:
-        said["power"] = _call(word, [TIME.sample, texts[0]])
+        result["power"] = _call(word, [TIME.sample, texts[0]])
         if until is not None:
-            said["endless"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
-        said["number"] = texts[0]
+            result["endless"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
+        result["number"] = texts[0]
     elif len(texts) > len(word.arguments) and min(numbers) >= 0:
         is_sound = word.role.name == "beep" and numbers[1] > _LOWEST_HERTZ
         if is_sound or len(word.arguments) == 1:
-            said["spare"] = _call(word, texts[: len(word.arguments)])
+            result["spare"] = _call(word, texts[: len(word.arguments)])
         if word.role.is_move and numbers[0] < _LONG_TIME_S <= numbers[1] <= _MOST_POWER:
-            said["spare"] = _call(word, texts[:2])
+            result["spare"] = _call(word, texts[:2])
         is_timed = word.role.name == "wait" and len(texts) == len(_TIME_AND_POWER)
         for first, second in (_TIME_AND_POWER, _TIME_AND_POWER[::-1]):
             if is_timed and 0 <= numbers[first] < _LONG_TIME_S <= numbers[second] <= _MOST_POWER:
-                said["kept"] = _call(word, [texts[first]])
-    return said
+                result["kept"] = _call(word, [texts[first]])
+    return result
 
 
 def _call(word: Word, texts: Sequence[str]) -> str:

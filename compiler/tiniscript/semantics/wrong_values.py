@@ -17,7 +17,7 @@ from tiniscript.semantics.comparisons import is_aside
 from tiniscript.semantics.named_values import value_of, yes_no_of
 from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
 from tiniscript.semantics.unknown_words import whole_name
-from tiniscript.syntax.ast import Part
+from tiniscript.syntax.ast import Def, Part
 from tiniscript.syntax.operators import SIGN_OF
 
 _EQUAL = frozenset(("EQ", "NE"))
@@ -56,11 +56,13 @@ class WrongValues:
         known = [each for each, its in names if its.what in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
         known += ["FOREVER"] if is_forever else []
-        near = "".join(said_of(name, "number")) or scope.near(name, known)
-        near = near or ("".join(said_of(name, "power")) if before.rstrip().endswith("=") else "")
-        near = near or whole_name(scope, name, scope.set_somewhere)
+        suggestion = "".join(said_of(name, "number")) or scope.near(name, known)
+        suggestion = suggestion or (
+            "".join(said_of(name, "power")) if before.rstrip().endswith("=") else ""
+        )
+        suggestion = suggestion or whole_name(scope, name, scope.set_somewhere)
         if (match := _COMPARED_WITH.search(before)) and scope.is_yes_no_sensor(match[1].upper()):
-            near = yes_no_of(name) or near
+            suggestion = yes_no_of(name) or suggestion
         base = name.rstrip(_DIGITS).rstrip("_")  # DISTANCE, of DISTANCE2
         stem = ("".join(said_of(base, "stem")) or base) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
@@ -70,25 +72,25 @@ class WrongValues:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
                    for diagnostic in scope.diagnostics[-ENOUGH:]):  # fmt: skip
                 return  # said once
-            scope.report_used(name, span, near)
+            scope.report_used(name, span, suggestion)
         else:
-            near = "" if which or is_variable else near
+            suggestion = "" if which or is_variable else suggestion
             only = next((sensor for sensor in sensors if name.startswith(sensor + "_")), "")
             aside = only if is_aside(name.rpartition("_")[2]) else ""
-            alike = near if near and near.rstrip(_DIGITS) == base else ""
-            near = "" if aside or alike else only or near
+            alike = suggestion if suggestion and suggestion.rstrip(_DIGITS) == base else ""
+            suggestion = "" if aside or alike else only or suggestion
             said = {"alike": alike} if alike and not which else {}
-            is_said = not (near or said or which or only or is_variable)
+            is_said = not (suggestion or said or which or only or is_variable)
             if is_said and meant in OTHER_WAY:
                 said = {"way": meant, "call": WORDS[meant].example}
             elif is_said and said_of(name + "4", "note") and _TONE_BEFORE.search(before):
                 said = {"pitch": said_of(name + "4", "note")[0]}
             elif not which and not is_variable and said_of(name, "unsensed"):
                 its_own = ", ".join(sensor.name for sensor in scope.kit.sensors)
-                said, near = {"unsensed": name, "sensors": its_own}, ""
+                said, suggestion = {"unsensed": name, "sensors": its_own}, ""
             elif is_said and said_of(name, "colour"):
                 said = {"colour": name}
-            scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
+            scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=suggestion,
                          value=value_of(name), only=only, aside=aside, **said, **which)  # fmt: skip
 
     def _amount(self, span: Span, name: str) -> dict[str, str]:
@@ -96,8 +98,8 @@ class WrongValues:
         scope = self.scope
         if not is_amount(name) and not said_of(name, "power"):
             return {}
-        said = with_number(scope.source.text, span, scope.set_somewhere)
-        return said if is_amount(name) or "(" in said.get("example", "") else {}
+        text = with_number(scope.source.text, span, scope.set_somewhere)
+        return text if is_amount(name) or "(" in text.get("example", "") else {}
 
     def _is_said(self, span: Span) -> bool:
         """Whether the example for a value of the same call has a number for this one, too."""
@@ -123,7 +125,9 @@ class WrongValues:
     def no_number(self, op: str, operand: Operand) -> None:
         span = Span(operand.start, operand.end)
         by = "-" if op == "NEG" else SIGN_OF.get(op, op)
-        self.scope.report(codes.WANTS_NUMBER, span, by=by, found=self.scope.source[span])
+        own = value_of_def(self.scope, span)
+        found = self.scope.source[span]
+        self.scope.report(codes.WANTS_NUMBER, span, None, by=by, found=found, **own)
 
     def no_yes_no(self, by: str, operand: Operand, other: Operand | None) -> None:
         """`other` is the other side of an AND or OR.
@@ -131,26 +135,27 @@ class WrongValues:
         `X = 5 OR 6` means `X = 5 OR X = 6`, and `X AND Y > 5` means `X > 5 AND Y > 5`.
         """
         span = Span(operand.start, operand.end)
-        found = self.scope.source[span]
-        values = self.condition(found)
+        result = self.scope.source[span]
+        values = self.condition(span)
         if by == "NOT" and "example" in values:  # NOT X is `X = 0`, as other languages have it
-            values = {"example": f"{found.upper()} > 0"}
+            values = {**values, "example": f"{result.upper()} > 0"}
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
             before, after = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
-            is_sensor = found.upper() in (reading.name for reading in self.scope.kit.readings)
+            is_sensor = result.upper() in (reading.name for reading in self.scope.kit.readings)
             if other.start < operand.start and before and not is_sensor:
-                values = {"fix": f"{before[0]} {found}"}
-            elif after and found.isidentifier():
-                values = {"fix": f"{found} {after[1]}"}
-        self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=found, **values)
+                values = {"fix": f"{before[0]} {result}"}
+            elif after and result.isidentifier():
+                values = {"fix": f"{result} {after[1]}"}
+        self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=result, **values)
 
-    def condition(self, found: str) -> dict[str, str]:
+    def condition(self, span: Span) -> dict[str, str]:
         """Return the yes or no that a number alone means, or an example of a condition with it."""
-        word = found.upper()
+        word = self.scope.source[span].upper()
         name = self.scope.names.get(word)
         if name is not None:
-            return {"example": f"{word} < 10" if name.what == "sensor" else f"{word} > 0"}
+            example = f"{word} < 10" if name.what == "sensor" else f"{word} > 0"
+            return {"example": example, **value_of_def(self.scope, span)}
         meant = {"0": "FALSE", "1": "TRUE"}.get(word)
         if meant or not word.isdecimal():
             return {"fix": meant} if meant else {}
@@ -162,7 +167,17 @@ class WrongValues:
         """`BUTTON = 1` is `BUTTON`, and `BUTTON = 0` is `NOT BUTTON`."""
         number, answer = (left, right) if left.type == NUMBER else (right, left)
         digit = self.scope.source[Span(number.start, number.end)]
-        found = self.scope.source[Span(answer.start, answer.end)]
-        if digit not in ("0", "1") or op not in _EQUAL or not found.isidentifier():
+        result = self.scope.source[Span(answer.start, answer.end)]
+        if digit not in ("0", "1") or op not in _EQUAL or not result.isidentifier():
             return ""
-        return found.upper() if (digit == "1") == (op == "EQ") else f"NOT {found.upper()}"
+        return result.upper() if (digit == "1") == (op == "EQ") else f"NOT {result.upper()}"
+
+
+def value_of_def(scope: Scope, span: Span) -> dict[str, str]:
+    """Return the value at `span` and its DEF, whose first call says what it is; or nothing."""
+    name = scope.source[span].upper()
+    for node in scope.parsed.body:
+        if isinstance(node, Def) and node.span.start < span.start < node.span.end:
+            is_own = any(parameter.name == name for parameter in node.parameters)
+            return {"own": name, "called": node.name} if is_own else {}
+    return {}

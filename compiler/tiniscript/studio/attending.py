@@ -67,7 +67,7 @@ class Attending:
                     self._asked.append(request)
             if self.is_latched:
                 self._void()
-            self._news = [each for each in self._news if each["number"] > seen]
+            self._news = [item for item in self._news if item["number"] > seen]
             return list(self._news)
 
     def connect_again(self) -> None:
@@ -117,15 +117,15 @@ class Attending:
 
     def tell(self, news: list[Json]) -> None:
         with self._lock:
-            for each in news:
-                self._add(each)
+            for item in news:
+                self._add(item)
 
     # -- the robot --------------------------------------------------------------------------------
 
     def attend(self, link: RobotLink, limit_s: float = LOOK_S) -> None:
         """Pass on what waits, and tell what is new."""
         if self._wants_stop:
-            self._take(link.news())  # no earlier stop confirms this one
+            self._apply_news(link.news())  # no earlier stop confirms this one
         self.stop_if_wanted(link.stop)
         with self._lock:
             asked, self._asked = self._asked, []
@@ -141,7 +141,7 @@ class Attending:
             except BadRequest:
                 self._runs.pop(request["id"], None)
                 self.tell([{"id": request["id"], "failure": "bad_request"}])
-        self._take(link.news(limit_s))
+        self._apply_news(link.news(limit_s))
         if self.is_attended:
             self._is_silent = False
         elif link.has_run and not self._is_silent:
@@ -162,14 +162,14 @@ class Attending:
         self.stops = max(self.stops, stops)
         self._wants_stop = True
 
-    def _take(self, news: list[Json]) -> None:
+    def _apply_news(self, news: list[Json]) -> None:
         with self._lock:
-            for each in news:
-                stops = self._runs.pop(each["id"], 0) if "id" in each else 0
-                if each.get("ok"):
+            for item in news:
+                stops = self._runs.pop(item["id"], 0) if "id" in item else 0
+                if item.get("ok"):
                     self.stops = max(self.stops, stops)
         if self.last_stop == ASKED and not self._wants_stop:
-            events = [each.get("event") for each in news]
+            events = [item.get("event") for item in news]
             if "STOPPED" in events:
                 self.last_stop = CONFIRMED
             elif "LOST" in events:
@@ -177,22 +177,22 @@ class Attending:
         self.tell(news)
 
     def _void(self) -> None:
-        for each in self._asked:
-            if each.get("do") != "stop":
-                self._add({"id": each["id"], **_VOID})
-        self._asked = [each for each in self._asked if each.get("do") == "stop"]
+        for item in self._asked:
+            if item.get("do") != "stop":
+                self._add({"id": item["id"], **_VOID})
+        self._asked = [item for item in self._asked if item.get("do") == "stop"]
 
     def _add(self, news: Json) -> None:
         self._count += 1
         self._news.append({**news, "number": self._count})
         while len(self._news) > KEPT:
-            missed = next((each for each in self._news if each.get("event") in _MAY_MISS), None)
+            missed = next((item for item in self._news if item.get("event") in _MAY_MISS), None)
             self._news.remove(missed or self._news[0])
 
 
 def _count(request: Json, name: str) -> int:
-    found = request.get(name)
-    return found if type(found) is int else 0
+    result = request.get(name)
+    return result if type(result) is int else 0
 
 
 def _runs(request: Json) -> bool:

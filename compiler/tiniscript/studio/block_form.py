@@ -66,7 +66,7 @@ def data_of(form: Form) -> dict[str, Any]:
 def from_data(data: dict[str, Any]) -> Form:
     """Return the blocks that the page has sent. Raises KeyError and the like where it has a bug."""
     loose = tuple(
-        Stack(_blocks_from(each["body"]), _value_from(each["value"])) for each in data["loose"]
+        Stack(_blocks_from(item["body"]), _value_from(item["value"])) for item in data["loose"]
     )
     note, is_one_line = data["note"], data["is_one_line"]
     return Form(data["start"], note, is_one_line, _blocks_from(data["body"]), loose)
@@ -94,25 +94,25 @@ def beginning(form: Form, most: int) -> Form:
     """Return a form with no more than so many blocks, and a last one that says that there were."""
     if size_of(form) <= most:
         return form
-    body, _ = _first(form.body, most - 1)
+    body, _ = _first_blocks(form.body, most - 1)
     return form._replace(body=body, loose=())
 
 
-def _first(blocks: tuple[Block, ...], most: int) -> tuple[tuple[Block, ...], int]:
+def _first_blocks(blocks: tuple[Block, ...], most: int) -> tuple[tuple[Block, ...], int]:
     """Return the first blocks and how many more may follow; -1 if some are left out."""
-    found: list[Block] = []
+    result: list[Block] = []
     for block in blocks:
         most -= _own_size(block)
         if most < 0:
-            return (*found, LEFT_OUT), -1
+            return (*result, LEFT_OUT), -1
         bodies = []
-        for each in block.bodies:
-            body, most = _first(each, most) if most >= 0 else ((), most)
+        for item in block.bodies:
+            body, most = _first_blocks(item, most) if most >= 0 else ((), most)
             bodies.append(body)
-        found.append(block._replace(bodies=tuple(bodies)))
+        result.append(block._replace(bodies=tuple(bodies)))
         if most < 0:
             break
-    return tuple(found), most
+    return tuple(result), most
 
 
 def _own_size(block: Block) -> int:
@@ -121,12 +121,12 @@ def _own_size(block: Block) -> int:
 
 def in_order(blocks: tuple[Block, ...]) -> list[Block]:
     """Return blocks with all that are in them, in the order of the text."""
-    found: list[Block] = []
+    result: list[Block] = []
     for block in blocks:
-        found.append(block)
+        result.append(block)
         for body in block.bodies:
-            found += in_order(body)
-    return found
+            result += in_order(body)
+    return result
 
 
 def _data_of_all(blocks: tuple[Block, ...]) -> list[dict[str, Any]]:
@@ -139,14 +139,14 @@ def _data_of_all(blocks: tuple[Block, ...]) -> list[dict[str, Any]]:
 def _blocks_from(data: list[dict[str, Any]]) -> tuple[Block, ...]:
     return tuple(
         Block(
-            each["kind"],
-            each["word"],
-            tuple(_value_from(value) for value in each["values"]),
-            tuple(_blocks_from(body) for body in each["bodies"]),
-            each["note"],
-            each["is_apart"],
+            item["kind"],
+            item["word"],
+            tuple(_value_from(value) for value in item["values"]),
+            tuple(_blocks_from(body) for body in item["bodies"]),
+            item["note"],
+            item["is_apart"],
         )
-        for each in data
+        for item in data
     )
 
 

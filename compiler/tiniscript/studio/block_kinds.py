@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from tiniscript.base.words import MOVES, UNIT_OF, WORDS
+from tiniscript.base.words import MOVES, UNIT_OF, WORDS, Word
 
 
 class Kind(NamedTuple):
@@ -37,21 +37,24 @@ class Kind(NamedTuple):
     says: str = ""
 
 
-def fixed_kind(count: int) -> str:
-    """Return the kind of the words that stand for others and take so many values."""
-    return f"fixed_{count}" if count else "fixed"
+def plain_kind(count: int) -> str:
+    """Return the kind of the instructions that have none of their own and take so many values."""
+    return f"plain_{count}" if count else "plain"
+
+
+def is_plain(word: Word) -> bool:
+    """Whether it is an instruction that has no kind of its own."""
+    return word.role.is_instruction and word.role.name not in KINDS
+
+
+def kind_of(word: Word) -> str:
+    """Return the kind of a word's block."""
+    return plain_kind(len(word.arguments)) if is_plain(word) else word.role.name
 
 
 # fmt: off
 SUMS = {"ADD": "+", "SUB": "−", "MUL": "×", "DIV": "÷", "MOD": "%"}
 COMPARISONS = {"EQ": "=", "NE": "≠", "LT": "<", "LE": "≤", "GT": ">", "GE": "≥"}
-# What a word that stands for others says where the catalogue has no `block/HORN`:
-# `HORN = BEEP(0.5, 440)`. Those that take as many values are of one kind.
-FIXED = {
-    word.text: f"{{{word.text}}} {word.usage.upper()} = {word.stands_for}"
-    for word in WORDS.values() if word.stands_for
-}
-
 KINDS = {kind.name: kind for kind in (
     Kind("move", "move", ("number", "number"), words=MOVES, units=UNIT_OF),
     Kind("move_until", "move", ("number", "number", "truth"), words=MOVES, units=UNIT_OF),
@@ -62,14 +65,6 @@ KINDS = {kind.name: kind for kind in (
     Kind("start", "others"),
     Kind("beep", "time", ("number", "number")),
     Kind("show", "time", ("any",)),
-    *(
-        Kind(
-            fixed_kind(count), "time", ("number",) * count,
-            words=tuple(name for name in FIXED if len(WORDS[name].arguments) == count),
-            says=" ".join(f"%{k + 1}" for k in range(count + 1)),
-        )
-        for count in sorted({0, *(len(WORDS[name].arguments) for name in FIXED)})
-    ),
     Kind("read", "sensors", field="sensor"),
     Kind("set", "sensors", ("any",), field="actuator"),
     Kind("call", "words", field="name"),
@@ -101,13 +96,29 @@ KINDS = {kind.name: kind for kind in (
     Kind("extreme", "numbers", ("number", "number"), gives="number", words=("MIN", "MAX")),
     Kind("random", "numbers", ("number", "number"), gives="number", part="RANDOM"),
 )}
+# All other instructions: those that take as many values are of one kind. What each says where the
+# catalogue has no `block/HORN`: `HORN = BEEP(0.5, 440)`, or its name.
+_PLAIN = [word for word in WORDS.values() if is_plain(word)]
+PLAIN = {
+    word.text: f"{{{word.text}}} {word.usage.upper()} = {word.stands_for}"
+    if word.stands_for else f"{{{word.text}}} {word.text}"
+    for word in _PLAIN
+}
+KINDS |= {kind.name: kind for kind in (
+    Kind(
+        plain_kind(count), "time", ("number",) * count,
+        words=tuple(word.text for word in _PLAIN if len(word.arguments) == count),
+        says=" ".join(f"%{k + 1}" for k in range(count + 1)),
+    )
+    for count in sorted({0, *(len(word.arguments) for word in _PLAIN)})
+)}
 # fmt: on
 
 # The kind of each part of an expression, and of words: of F the first one, a move without UNTIL.
 KIND_OF = {name.upper(): name for name in KINDS}
 for _kind in reversed(KINDS.values()):
     KIND_OF.update((word, _kind.name) for word in (_kind.part, *_kind.words) if word)
-SAYS = {**{kind.name: kind.says for kind in KINDS.values()}, **SUMS, **COMPARISONS, **FIXED}
+SAYS = {**{kind.name: kind.says for kind in KINDS.values()}, **SUMS, **COMPARISONS, **PLAIN}
 
 
 def data() -> dict[str, Any]:

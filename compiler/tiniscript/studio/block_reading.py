@@ -11,7 +11,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import LINE_END, Source, Span
 from tiniscript.base.words import WORDS
 from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
-from tiniscript.studio.block_kinds import KINDS, fixed_kind
+from tiniscript.studio.block_kinds import KINDS, kind_of
 from tiniscript.syntax.ast import (
     Argument,
     Assign,
@@ -78,24 +78,24 @@ class _Reader:
         self._next = 0
         self._kit = kit
         self._sensors = frozenset(device.name for device in in_program(source.text, kit).readings)
-        self._defs = {each.name for each in parsed.program.body if isinstance(each, Def)}
+        self._defs = {item.name for item in parsed.program.body if isinstance(item, Def)}
         self._grey = grey
 
     def form(self) -> Form:
         start = note = ""
         before = self._comments()
         if self._next < len(self._pieces) and self._pieces[self._next].is_setup:
-            piece = self._take()
+            piece = self._next_piece()
             start, note = piece.tokens[0].text, _note(piece)
             if start == "PING":
-                note = " // ".join(filter(None, (note, _note(self._take()))))
+                note = " // ".join(filter(None, (note, _note(self._next_piece()))))
         body = [*before, *self._body(self._program.body)]
         loose = self._loose(body)
         counted = sum(piece.is_instruction for piece in self._pieces)
         one_line = counted > 1 and is_one_line(self._pieces)
         return Form(start, note, one_line, tuple(body), tuple(loose))
 
-    def _take(self) -> Piece:
+    def _next_piece(self) -> Piece:
         self._next += 1
         return self._pieces[self._next - 1]
 
@@ -103,7 +103,7 @@ class _Reader:
         """Return the comments, and grey lines, that stand before the next instruction."""
         comments = []
         while self._next < len(self._pieces) and not self._pieces[self._next].tokens:
-            piece = self._take()
+            piece = self._next_piece()
             place = (piece.first_line + 1, 1, piece.first_line + 2, 1)
             grey = self._grey.get(piece.first_line)
             kind, word = ("comment", _note(piece)) if grey is None else ("grey", grey)
@@ -119,7 +119,7 @@ class _Reader:
 
     def _blocks(self, node: Instruction) -> list[Block]:
         """Return the block of an instruction, and the comment after its end."""
-        first = self._take()
+        first = self._next_piece()
         if isinstance(node, Command):
             block = self._command(node, first)
         elif isinstance(node, Assign):
@@ -163,14 +163,14 @@ class _Reader:
         for body in inner:
             comment = [Block("comment", after)] if after else []
             bodies.append((*comment, *self._body(body)))
-            after = _note(self._take())
+            after = _note(self._next_piece())
         return tuple(bodies), tuple(self._value(head) for head in heads)
 
     def _command(self, node: Command, piece: Piece) -> Block:
         known = WORDS.get(node.word)
         arguments = node.arguments or ()
         if known is not None:
-            kind = fixed_kind(len(known.arguments)) if known.stands_for else known.role.name
+            kind = kind_of(known)
         elif node.arguments is not None:
             kind = "call" if node.word in self._defs else "set"
         else:
@@ -213,9 +213,9 @@ class _Reader:
         if first == len(body):
             return []
         texts = "\n".join(block.word[1:].strip() for block in body[first:]).split("\n\n")
-        found = [_stack(text, self._kit) for text in texts if text.strip()]
-        stacks = [stack for stack in found if stack is not None]
-        if len(stacks) != len(found):
+        matches = [_stack(text, self._kit) for text in texts if text.strip()]
+        stacks = [stack for stack in matches if stack is not None]
+        if len(stacks) != len(matches):
             return []
         del body[first:]
         return stacks

@@ -62,20 +62,20 @@ def digest() -> str:
     """Return a digest of all that the page is made of."""
     from importlib.metadata import version
 
-    found = hashlib.sha256(version("cobs").encode())
+    result = hashlib.sha256(version("cobs").encode())
     for path in _sources():
-        found.update(f"{path.relative_to(CLONE).as_posix()}\0".encode())
-        found.update(hashlib.sha256(path.read_bytes()).digest())
-    return found.hexdigest()
+        result.update(f"{path.relative_to(CLONE).as_posix()}\0".encode())
+        result.update(hashlib.sha256(path.read_bytes()).digest())
+    return result.hexdigest()
 
 
 def _sources() -> list[Path]:
     own = [path for path in SOURCES.rglob("*") if "node_modules" not in path.parts
            and "made" not in path.relative_to(SOURCES).parts]  # fmt: skip
-    made = Path(__file__).with_name("page")
-    package = [path for path in made.parent.parent.rglob("*")
+    result = Path(__file__).with_name("page")
+    package = [path for path in result.parent.parent.rglob("*")
                if path.suffix in (".py", ".toml", ".wasm", ".md", ".txt")]  # fmt: skip
-    files = [*own, *(path for path in package if made not in path.parents), BUILDER]
+    files = [*own, *(path for path in package if result not in path.parents), BUILDER]
     return sorted(path for path in files if path.is_file() and "__pycache__" not in path.parts)
 
 

@@ -72,28 +72,29 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     """Compile a program's text for a shipped robot, or for the one that it names, as `tsc upload`
     does."""
     profile = profile_for(data, robot)
-    found = _found(data, robot)
-    findings = _findings(found, language)
+    compiled = _compiled(data, robot)
+    findings = _findings(compiled, language)
     names_robot = name_in(data) is not None
-    if not found.is_right or found.program is None:
+    if not compiled.is_right or compiled.program is None:
         return Checked(b"", 0, findings, (), (), (), "", profile.name, names_robot)
-    variables = tuple(map(Variable, found.program.variables, found.yes_no))
-    places = source_map.made(found)
-    return Checked(found.image, len(found.code), findings, places.places, _shows(places), variables,
-                   found.program.start, profile.name, names_robot,
-                   _remote(found, profile.kit))  # fmt: skip
+    variables = tuple(map(Variable, compiled.program.variables, compiled.yes_no))
+    places = source_map.made(compiled)
+    return Checked(compiled.image, len(compiled.code), findings, places.places,
+        _show_places(places),
+                   variables, compiled.program.start, profile.name, names_robot,
+                   _remote(compiled, profile.kit))  # fmt: skip
 
 
-def _remote(found: Compiled, kit: Kit) -> tuple[str, ...]:
-    uses = found.verdict.uses if found.verdict is not None else ()
+def _remote(compiled: Compiled, kit: Kit) -> tuple[str, ...]:
+    uses = compiled.verdict.uses if compiled.verdict is not None else ()
     read = {number - len(kit.sensors) for what, number in uses if what == "sensor"}
     return tuple(device.name for k, device in enumerate(REMOTE) if k in read)
 
 
-def _shows(places: source_map.Map) -> tuple[tuple[int, Show], ...]:
+def _show_places(places: source_map.Map) -> tuple[tuple[int, Show], ...]:
     shows = Shows(places)
-    found = ((place.offset, shows.at(place.offset)) for place in places.places)
-    return tuple((offset, show) for offset, show in found if show)
+    result = ((place.offset, shows.at(place.offset)) for place in places.places)
+    return tuple((offset, show) for offset, show in result if show)
 
 
 def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
@@ -101,14 +102,14 @@ def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
 
     `which` counts the findings of this text from 0.
     """
-    found = _found(data, robot)
+    result = _compiled(data, robot)
 
     def check(text: str) -> list[Diagnostic]:
         changed = text.encode()
         return compile_source(changed, profile_for(changed, robot), "", is_strict=True).diagnostics
 
-    edits = offer(found.source.text, found.diagnostics, which, check)
-    return tuple(_change(edit, found.source) for edit in edits)
+    edits = offer(result.source.text, result.diagnostics, which, check)
+    return tuple(_change(edit, result.source) for edit in edits)
 
 
 def opened(data: bytes, robot: str, language: str) -> str | Message:
@@ -125,13 +126,13 @@ def line(data: bytes, robot: str, language: str) -> str | Message:
     Or what is wrong, where such a robot cannot read it.
     """
     profile = profile_for(data, robot)
-    found = compile_source(data, profile, "", is_strict=True)
-    if not found.is_right or found.program is None:
-        mistake = next(diagnostic for diagnostic in found.diagnostics if diagnostic.is_mistake)
-        return message(mistake, found.source, language)
+    result = compile_source(data, profile, "", is_strict=True)
+    if not result.is_right or result.program is None:
+        mistake = next(diagnostic for diagnostic in result.diagnostics if diagnostic.is_mistake)
+        return message(mistake, result.source, language)
     level = level_of(profile.board.chip, profile.board.discs is not None)
-    lacking = misfits(found.source, found.program, profile.kit, level)
-    return message(lacking[0], found.source, language) if lacking else line_of(found.source)
+    lacking = misfits(result.source, result.program, profile.kit, level)
+    return message(lacking[0], result.source, language) if lacking else line_of(result.source)
 
 
 @cache
@@ -146,17 +147,19 @@ def profile_for(data: bytes, robot: str) -> Robot:
 
 
 @lru_cache(maxsize=1)  # whose buttons are asked for, one after the other
-def _found(data: bytes, robot: str) -> Compiled:
+def _compiled(data: bytes, robot: str) -> Compiled:
     profile = profile_for(data, robot)
     return for_robot(compile_source(data, profile, "", is_strict=True), profile)
 
 
-def _findings(found: Compiled, language: str) -> tuple[Finding, ...]:
+def _findings(compiled: Compiled, language: str) -> tuple[Finding, ...]:
     """Return the messages; the first of those that name changes may have a button."""
-    named = [k for k, diagnostic in enumerate(found.diagnostics) if edits_of(diagnostic)][:OFFERS]
+    named = [k for k, diagnostic in enumerate(compiled.diagnostics) if edits_of(diagnostic)][
+        :OFFERS
+    ]
     return tuple(
-        Finding(message(diagnostic, found.source, language), k in named)
-        for k, diagnostic in enumerate(found.diagnostics)
+        Finding(message(diagnostic, compiled.source, language), k in named)
+        for k, diagnostic in enumerate(compiled.diagnostics)
     )
 
 

@@ -111,17 +111,17 @@ class Keeper:
     def read(self) -> Kept | None:
         """Return the class that has not ended, or None. What is no class is put aside."""
         try:
-            found = json.loads(contents(path(), FILE_BYTES))
-            if not isinstance(found, dict) or found.get("form") != FORM:
+            result = json.loads(contents(path(), FILE_BYTES))
+            if not isinstance(result, dict) or result.get("form") != FORM:
                 raise ValueError
         except FileNotFoundError:
             return None
         except (OSError, ValueError, RecursionError):
             with suppress(OSError):
-                path().replace(_aside())
+                path().replace(_unread_path())
             return None
-        when_s = found.get("kept_s")
-        return Kept(found, type(when_s) is int and time() - when_s <= SAME_LESSON_S)
+        when_s = result.get("kept_s")
+        return Kept(result, type(when_s) is int and time() - when_s <= SAME_LESSON_S)
 
     def keep(self, of_class: Json | None) -> None:
         """Keep a class if it is another than the newest that was kept. What could not be kept is
@@ -148,7 +148,7 @@ def path() -> Path:
     return settings_folder() / "class.json"
 
 
-def _aside() -> Path:
+def _unread_path() -> Path:
     return path().with_name("class.unread.json")
 
 
@@ -160,6 +160,6 @@ def _write(of_class: Json) -> None:
 
 def forget() -> None:
     """Delete what is kept of a class that is over."""
-    for each in (path(), _aside()):
+    for item in (path(), _unread_path()):
         with suppress(OSError):
-            each.unlink()
+            item.unlink()

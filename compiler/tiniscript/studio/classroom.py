@@ -210,7 +210,7 @@ class Classroom:
                 raise BadRequest
             pupil.heard_s = self._clock()
             if do == "here":
-                return self._here(pupil, request)
+                return self._report_page(pupil, request)
             if do == "connect":
                 return self._connect(pupil, request)
             if do in ("beat", "leave"):
@@ -233,14 +233,14 @@ class Classroom:
         plain = plain_name(name)
         if not plain:
             return {"failure": "class_nameless"}
-        back = self._back(request.get("before"), plain, now_s)
+        back = self._returning_pupil(request.get("before"), plain, now_s)
         if isinstance(back, Pupil):  # the page has been away
             back.heard_s, back.address = now_s, address
             return {"token": back.token, "name": back.name}
         if back is None:  # who comes back is not a second one
-            same = [pupil for pupil in self._of(address) if are_alike(pupil.written, plain)]
+            same = [pupil for pupil in self._pupils_at(address) if are_alike(pupil.written, plain)]
             self._give_place_away(now_s, PLACE_S, same)
-        same = self._of(address)
+        same = self._pupils_at(address)
         if len(same) >= self._places and not self._give_place_away(now_s, PLACE_S, same):
             return {"failure": "class_crowded"}
         here = list(self._pupils.values())
@@ -262,26 +262,26 @@ class Classroom:
             next(self._numbers), work.token, work.name, work.written, address, now_s, work.work
         )
 
-    def _back(self, token: object, written: str, now_s: float) -> Pupil | Kept | None:
+    def _returning_pupil(self, token: object, written: str, now_s: float) -> Pupil | Kept | None:
         """Return who comes back with the token of an earlier page, and the same name."""
-        for pupil in self._all():
+        for pupil in self._all_work():
             is_here = isinstance(pupil, Pupil) and now_s - pupil.heard_s <= PLACE_S
             if pupil.token and pupil.token == token and not is_here:
                 return pupil if are_alike(pupil.written, written) else None
         return None
 
-    def _of(self, address: str) -> list[Pupil]:
+    def _pupils_at(self, address: str) -> list[Pupil]:
         return [pupil for pupil in self._pupils.values() if pupil.address == address]
 
     def _works(self, address: str | None = None) -> int:
         """Return how many works the class has, of an address or in all."""
-        return sum(address is None or each.address == address for each in self._all())
+        return sum(address is None or item.address == address for item in self._all_work())
 
     def _names(self) -> list[str]:
         """Return the names of all who have a token."""
-        return [each.name for each in self._all() if each.token]
+        return [item.name for item in self._all_work() if item.token]
 
-    def _all(self) -> list[Kept | Pupil]:
+    def _all_work(self) -> list[Kept | Pupil]:
         return [*self._kept.values(), *self._pupils.values()]
 
     def _give_place_away(self, now_s: float, silent_s: float, pupils: list[Pupil]) -> bool:
@@ -292,19 +292,19 @@ class Classroom:
             self._forget(min(silent, key=lambda pupil: pupil.heard_s))
         return bool(silent)
 
-    def _forget(self, gone: Pupil) -> None:
+    def _forget(self, pupil: Pupil) -> None:
         """A pupil is here no more; the work stays, for who comes back."""
-        del self._pupils[gone.token]
-        if gone.work.text:
-            self._keep(Kept(gone.name, gone.written, gone.work, gone.token, gone.address))
-        for each in self._kept.values():
-            if each.given_to == gone.token:
-                each.given_to = ""
+        del self._pupils[pupil.token]
+        if pupil.work.text:
+            self._keep(Kept(pupil.name, pupil.written, pupil.work, pupil.token, pupil.address))
+        for item in self._kept.values():
+            if item.given_to == pupil.token:
+                item.given_to = ""
 
     def _keep(self, kept: Kept) -> None:
         self._kept[kept.key] = kept
 
-    def _here(self, pupil: Pupil, request: Json) -> Json:
+    def _report_page(self, pupil: Pupil, request: Json) -> Json:
         """A page tells of its program, and hears its place: 0 is a turn, -1 none."""
         self._hear_work(pupil, request)
         wants, hand = request.get("wants"), request.get("hand")
@@ -324,14 +324,14 @@ class Classroom:
         place = -1 if turn is None else 0
         if pupil in waiting:
             place = waiting.index(pupil) + 1
-        given = next((each for each in self._kept.values() if each.given_to == pupil.token), None)
+        given = next((item for item in self._kept.values() if item.given_to == pupil.token), None)
         return {
             "name": pupil.name,
             "place": place,
             "waiting": len(waiting),
             "robots": len(self._robots),
             "robot": turn.name if turn else "",
-            "left_s": self._left_s(turn) if turn else 0,
+            "left_s": self._remaining_s(turn) if turn else 0,
             "hand": pupil.hand is not None,
             **({"given": {"key": given.key, **given.work._asdict()}} if given else {}),
         }
@@ -354,9 +354,9 @@ class Classroom:
 
     def _hear_taken(self, pupil: Pupil, took: object) -> None:
         """A page says that it has what it was given: the very text proves it."""
-        found = took if isinstance(took, dict) else {}
-        kept = self._kept.get(str(found.get("key")))
-        if kept is None or kept.given_to != pupil.token or found.get("text") != kept.work.text:
+        result = took if isinstance(took, dict) else {}
+        kept = self._kept.get(str(result.get("key")))
+        if kept is None or kept.given_to != pupil.token or result.get("text") != kept.work.text:
             return
         del self._kept[kept.key]
         lessons = dict.fromkeys((*kept.work.lessons, *pupil.work.lessons))
@@ -369,20 +369,20 @@ class Classroom:
         if robot is None:
             return {"failure": "turn_none"}
         # One that this page has left a moment ago is not the robot of this turn.
-        answer = self._hosting.answer({**_own(pupil, request), "port": robot.port})
+        answer = self._hosting.answer({**_own_request(pupil, request), "port": robot.port})
         if not answer:
             robot.hosted = self._hosting.robot_of(pupil.page)
         return answer
 
     def _drive(self, pupil: Pupil, request: Json) -> Json:
         asked = request.get("asked", [])
-        if not isinstance(asked, list) or not all(_may(each) for each in asked):
+        if not isinstance(asked, list) or not all(_is_allowed(item) for item in asked):
             raise BadRequest
-        return self._hosting.answer(_own(pupil, request))
+        return self._hosting.answer(_own_request(pupil, request))
 
     def _stop(self, pupil: Pupil, request: Json) -> Json:
         """Stop the own robot, and no other, whatever was asked."""
-        return self._hosting.answer({**_own(pupil, request), "do": "stop", "asked": []})
+        return self._hosting.answer({**_own_request(pupil, request), "do": "stop", "asked": []})
 
     # -- turns ------------------------------------------------------------------------------------
 
@@ -437,7 +437,7 @@ class Classroom:
     def _turn(self, pupil: Pupil) -> ClassRobot | None:
         return next((robot for robot in self._robots if robot.pupil is pupil), None)
 
-    def _left_s(self, robot: ClassRobot) -> int:
+    def _remaining_s(self, robot: ClassRobot) -> int:
         return max(0, round(self._turn_s - (self._clock() - robot.began_s)))
 
     # -- the teacher ------------------------------------------------------------------------------
@@ -448,7 +448,7 @@ class Classroom:
         if not isinstance(do, str) or not do.startswith("class"):
             return self._hosting.answer(request)
         # A list of ports may take seconds: no pupil's stop waits for it.
-        given = _given(request) if do == "class_robot" else None
+        given = _requested_robot(request) if do == "class_robot" else None
         with self._lock:
             if given is not None:
                 self._give(given, request.get("gives") is True)
@@ -469,7 +469,7 @@ class Classroom:
             elif do == "class_work":
                 return {"pupils": self.work()}
             elif do == "class_bring":
-                self._bring(request)
+                self._restore_work(request)
             elif do == "class_forget":
                 self._kept.pop(str(request.get("key")), None)
             elif do == "class_give_back":
@@ -505,16 +505,16 @@ class Classroom:
     def work(self) -> list[Json]:
         """Return the work of all pupils, of those who are not here, too."""
         with self._lock:
-            found = [(each.name, each.work) for each in self._all() if each.work.text]
-        return [{"name": name, **work._asdict()} for name, work in found]
+            matches = [(item.name, item.work) for item in self._all_work() if item.work.text]
+        return [{"name": name, **work._asdict()} for name, work in matches]
 
-    def _bring(self, request: Json) -> None:
+    def _restore_work(self, request: Json) -> None:
         """Keep work that comes from a file, once. Raises BadRequest."""
         name, work = request.get("name"), Work.of(request)
         plain = plain_name(name) if isinstance(name, str) else ""
         if not plain or work is None:
             raise BadRequest
-        if any((each.name, each.work) == (plain, work) for each in self._kept.values()):
+        if any((item.name, item.work) == (plain, work) for item in self._kept.values()):
             return
         if self._works() >= MOST_WORKS:
             raise BadRequest
@@ -547,15 +547,15 @@ class Classroom:
                 "robots": [robot.port for robot in self._robots],
                 "kept": [
                     {
-                        "name": each.name,
-                        "written": each.written,
-                        "token": each.token,
-                        "address": each.address,
-                        "given_to": each.given_to,
-                        "key": each.key,
-                        **each.work._asdict(),
+                        "name": item.name,
+                        "written": item.written,
+                        "token": item.token,
+                        "address": item.address,
+                        "given_to": item.given_to,
+                        "key": item.key,
+                        **item.work._asdict(),
                     }
-                    for each in self._kept.values()
+                    for item in self._kept.values()
                 ],
                 "pupils": [
                     {
@@ -575,14 +575,14 @@ class Classroom:
         with self._lock:
             now_s = self._clock()
             for row in _rows(kept, "pupils")[:MOST_PUPILS]:
-                found = _kept_in(row, Work.of(row) or NOTHING)
-                if found is not None and found.token and found.address:
-                    self._begin(found, found.address, now_s)
+                result = _work_of_row(row, Work.of(row) or NOTHING)
+                if result is not None and result.token and result.address:
+                    self._begin(result, result.address, now_s)
             for row in _rows(kept, "kept"):
-                found = _kept_in(row, Work.of(row))
-                if found is not None and self._works() < MOST_WORKS:
-                    found.given_to = found.given_to if found.given_to in self._pupils else ""
-                    self._keep(found)
+                result = _work_of_row(row, Work.of(row))
+                if result is not None and self._works() < MOST_WORKS:
+                    result.given_to = result.given_to if result.given_to in self._pupils else ""
+                    self._keep(result)
             self._goes_on = bool(self._pupils or self._kept)
             if not is_same_lesson:
                 for pupil in list(self._pupils.values()):
@@ -590,7 +590,7 @@ class Classroom:
                 return 0
             for port in kept["robots"] if isinstance(kept.get("robots"), list) else []:
                 with suppress(BadRequest):
-                    self._give(_given({"port": port, "gives": True}), True)
+                    self._give(_requested_robot({"port": port, "gives": True}), True)
             code = kept.get("code")
             if isinstance(code, str) and len(code) == CODE_LETTERS and set(code) <= set(LETTERS):
                 self.code = code
@@ -640,17 +640,17 @@ class Classroom:
             "lessons": len(catalogue.folders()),
             "kept": [
                 {
-                    "key": each.key,
-                    "name": each.name,
-                    "lessons": each.work.lessons,
-                    "given": self._number(each.given_to),
+                    "key": item.key,
+                    "name": item.name,
+                    "lessons": item.work.lessons,
+                    "given": self._number(item.given_to),
                     "alike": [
                         pupil.number
                         for pupil in self._pupils.values()
-                        if are_alike(pupil.written, each.written)
+                        if are_alike(pupil.written, item.written)
                     ],
                 }
-                for each in self._kept.values()
+                for item in self._kept.values()
             ],
             "pupils": [
                 {
@@ -659,7 +659,7 @@ class Classroom:
                     "silent_s": round(now_s - pupil.heard_s),
                     "place": waiting.index(pupil) + 1 if pupil in waiting else 0,
                     "robot": turn.name or turn.port if (turn := self._turn(pupil)) else "",
-                    "left_s": self._left_s(turn) if turn else 0,
+                    "left_s": self._remaining_s(turn) if turn else 0,
                     "version": pupil.version,
                     "is_right": pupil.is_right,
                     "hand": pupil.hand or 0,
@@ -672,7 +672,7 @@ class Classroom:
                     "port": robot.port,
                     "name": robot.name,
                     "pupil": robot.pupil.name if robot.pupil else "",
-                    "left_s": self._left_s(robot) if robot.pupil else 0,
+                    "left_s": self._remaining_s(robot) if robot.pupil else 0,
                 }
                 for robot in self._robots
             ],
@@ -686,45 +686,45 @@ class Classroom:
         return self._pupils[token].number if token in self._pupils else 0
 
 
-def _own(pupil: Pupil, request: Json) -> Json:
+def _own_request(pupil: Pupil, request: Json) -> Json:
     """Return a request about the pupil's own robot: what it calls its page tells tabs apart."""
     return {**request, "page": pupil.page, "tab": request.get("page")}
 
 
-def _may(asked: object) -> bool:
+def _is_allowed(asked: object) -> bool:
     """Return whether a pupil may ask this of a robot."""
     if not isinstance(asked, dict) or asked.get("do") not in MAY:
         return False
     return asked["do"] != "trim" or asked.get("trim") is None
 
 
-def _given(request: Json) -> ClassRobot:
+def _requested_robot(request: Json) -> ClassRobot:
     """Return the robot of a request, with the name that it had last. Raises BadRequest."""
     port = port_of(request)
     return ClassRobot(port, _name_of(port) if request.get("gives") is True else "")
 
 
 def _rows(kept: Json, name: str) -> list[Json]:
-    found = kept.get(name)
-    return [each for each in found if isinstance(each, dict)] if isinstance(found, list) else []
+    result = kept.get(name)
+    return [item for item in result if isinstance(item, dict)] if isinstance(result, list) else []
 
 
-def _kept_in(row: Json, work: Work | None) -> Kept | None:
+def _work_of_row(row: Json, work: Work | None) -> Kept | None:
     """Return whose work it is in a row of a file; None if it is nobody's, or no work."""
     name = row.get("name")
     plain = plain_name(name) if isinstance(name, str) else ""
     if work is None or not plain:
         return None
-    found = Kept(plain, plain, work)
+    result = Kept(plain, plain, work)
     written, address = row.get("written"), row.get("address")
-    found.written = (plain_name(written) if isinstance(written, str) else "") or plain
-    found.address = address if isinstance(address, str) else ""
-    found.token, found.given_to = _token_in(row, "token"), _token_in(row, "given_to")
-    found.key = _token_in(row, "key") or found.key
-    return found
+    result.written = (plain_name(written) if isinstance(written, str) else "") or plain
+    result.address = address if isinstance(address, str) else ""
+    result.token, result.given_to = _token_of_row(row, "token"), _token_of_row(row, "given_to")
+    result.key = _token_of_row(row, "key") or result.key
+    return result
 
 
-def _token_in(row: Json, name: str) -> str:
+def _token_of_row(row: Json, name: str) -> str:
     return str(row[name]) if is_token(row.get(name)) else ""
 
 
@@ -735,4 +735,4 @@ def _new_code() -> str:
 def _name_of(port: str) -> str:
     """Return the name of the robot that was there last, or nothing."""
     same = same_for_all(port)
-    return next((str(each["name"]) for each in listed() if same_for_all(each["port"]) == same), "")
+    return next((str(item["name"]) for item in listed() if same_for_all(item["port"]) == same), "")

@@ -101,15 +101,15 @@ def _device(device: Device, role: str, labels: dict[str, str]) -> dict[str, Any]
 
 def _remote() -> list[dict[str, Any]]:
     """Return what a remote control says, to every robot here."""
-    found = []
+    result = []
     for device in REMOTE:
         key = "remote_key" if device.is_yes_no else "remote_pad"
         labels = {
             language: f"{text('studio', key, language)} {REMOTE_SIGNS[device.name]}"
             for language in languages()
         }
-        found.append(_device(device, "sensor", labels))
-    return found
+        result.append(_device(device, "sensor", labels))
+    return result
 
 
 def _range(low: int, high: int, sample: str) -> dict[str, Any]:

@@ -37,11 +37,11 @@ class Entrances:
 
     def code(self, is_for_here: bool = False) -> str:
         """Return a new code. `is_for_here`: a browser of this computer gets it, and is quick."""
-        made = new_token()
+        result = new_token()
         until_s = self._clock() + OPENS_S if is_for_here else float("inf")
         with self._lock:
-            self._codes[made] = _Code(is_for_here, until_s)
-        return made
+            self._codes[result] = _Code(is_for_here, until_s)
+        return result
 
     def is_unused(self, code: str) -> bool:
         with self._lock:
@@ -58,12 +58,12 @@ class Entrances:
         with self._lock:
             if code in self._used and not peers.tells_users():
                 self.token = new_token()
-            found = self._codes.get(code)
-            if found is None or (found.is_for_here and not peers.is_here(peer)):
+            result = self._codes.get(code)
+            if result is None or (result.is_for_here and not peers.is_here(peer)):
                 return ""
             del self._codes[code]
             self._used.add(code)
-            return self.token if self._clock() <= found.until_s else ""
+            return self.token if self._clock() <= result.until_s else ""
 
     def is_owner(self, token: str, peer: socket.socket) -> bool:
         """Whether it is the token of this run, and nobody else of this computer shows it."""

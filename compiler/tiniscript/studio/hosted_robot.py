@@ -174,7 +174,7 @@ class HostedRobot:
         while monotonic() < end_s and "LOST" not in events:
             news = link.news(LOOK_S)
             self.attending.tell(news)
-            events = [each.get("event") for each in news]
+            events = [item.get("event") for item in news]
             if "STOPPED" in events:
                 self.is_unconfirmed = False
                 return

@@ -81,7 +81,7 @@ class Hosting:
     def is_free(self, port: str) -> bool:
         """Return whether no page has a robot there, nor is one being left."""
         with self._lock:
-            return not self._at(port)
+            return not self._robots_at(port)
 
     def close(self) -> list[str]:
         """Stop what pages have started, and close all ports; return those where no robot has
@@ -106,13 +106,13 @@ class Hosting:
             if own is not None and is_same and connection <= own.connection:
                 own.attending.connect_again()  # the answer was lost, or it comes late
                 return {}
-            before = self._at(port)
-            rivals = [each for each in {*before, *([own] if own else ())} if _drives(each)]
+            before = self._robots_at(port)
+            rivals = [item for item in {*before, *([own] if own else ())} if _is_driving(item)]
             if not all(rival.tab == tab or rival.attending.is_half_made for rival in rivals):
                 return {"failure": "other_tab"}
             for rival in rivals:  # nobody knows of it any more
                 rival.leave()
-            if sum(map(_drives, self._by_page.values())) >= MOST_ROBOTS:
+            if sum(map(_is_driving, self._by_page.values())) >= MOST_ROBOTS:
                 return {"failure": "too_many"}
             if own is not None:
                 self._parting.append(own)
@@ -122,7 +122,7 @@ class Hosting:
             self._by_page[page] = hosted_robot
         return {}
 
-    def _at(self, port: str) -> list[HostedRobot]:
+    def _robots_at(self, port: str) -> list[HostedRobot]:
         """Return who has a port, or is closing it. One that holds it for another command shares it
         with whoever comes."""
         same = same_for_all(port)
@@ -141,7 +141,7 @@ class Hosting:
     def _stop_all(self) -> Json:
         """Stop all robots, and refuse for a while what is on its way to them."""
         with self._lock:
-            self._stopping = [robot for robot in self._by_page.values() if _drives(robot)]
+            self._stopping = [robot for robot in self._by_page.values() if _is_driving(robot)]
             self._latched_until_s = monotonic() + LATCH_S
         for hosted_robot in self._stopping:
             hosted_robot.attending.latch()
@@ -161,8 +161,8 @@ def listed() -> list[Json]:
     `name` is that of the robot that had answered there, `virtual` the profile of a virtual robot.
     """
     known = known_ports.known()
-    virtual = {each.address: each for each in directory.for_all()}
-    about = {each.port: each.description for each in ports.listed()}
+    virtual = {item.address: item for item in directory.for_all()}
+    about = {item.port: item.description for item in ports.listed()}
     names = [*about, *(port for port in virtual if port not in about)]
     names += [port for port in known.names
               if port not in names and is_there(port) and not directory.is_gone(port)]  # fmt: skip
@@ -178,7 +178,7 @@ def listed() -> list[Json]:
     ]
 
 
-def _drives(robot: HostedRobot) -> bool:
+def _is_driving(robot: HostedRobot) -> bool:
     return not robot.has_ended and not robot.is_parting
 
 
@@ -197,10 +197,10 @@ def port_of(request: Json) -> str:
 
 
 def _text(request: Json, name: str, most: int) -> str:
-    found = request.get(name)
-    if not isinstance(found, str) or not 1 <= len(found) <= most or not found.isprintable():
+    result = request.get(name)
+    if not isinstance(result, str) or not 1 <= len(result) <= most or not result.isprintable():
         raise BadRequest
-    return found
+    return result
 
 
 def _requests(request: Json) -> list[Json]:

@@ -24,7 +24,7 @@ _SHOWS_NOTHING = frozenset("CMZ")  # controls, marks without a letter, and space
 def plain_name(found: str) -> str:
     """Return a pupil's name as one line that hides nothing; empty if nothing of it is seen."""
     whole = " ".join(_BLANK.sub(" ", normalize("NFC", found)).split())
-    if all(category(each)[0] in _SHOWS_NOTHING for each in whole):
+    if all(category(item)[0] in _SHOWS_NOTHING for item in whole):
         return ""
     return printable(whole, NAME_CHARACTERS)
 
@@ -36,7 +36,7 @@ def are_alike(one: str, other: str) -> bool:
 
 def free_name(wanted: str, taken: Iterable[str]) -> str:
     """Return a name that looks like none of those that are taken: `Ana`, or else `Ana (2)`."""
-    looks = {look for each in taken for look in _looks(each)}
+    looks = {look for item in taken for look in _looks(item)}
     name, k = wanted, 1
     while not looks.isdisjoint(_looks(name)):
         k += 1
@@ -46,10 +46,10 @@ def free_name(wanted: str, taken: Iterable[str]) -> str:
 
 def _looks(name: str) -> set[str]:
     """Return what a name looks like, as it is and in small letters."""
-    return {_folded(name), _folded(name.casefold())}
+    return {_case_folded(name), _case_folded(name.casefold())}
 
 
-def _folded(text: str) -> str:
+def _case_folded(text: str) -> str:
     """Return the same text for all that look the same, as Unicode's standard 39 folds it."""
     table = _table()
     text = _UNSEEN.sub("", text)
@@ -60,9 +60,9 @@ def _folded(text: str) -> str:
 
 @cache
 def _table() -> dict[int, str]:
-    found: dict[int, str] = {}
+    result: dict[int, str] = {}
     for line in Path(__file__).with_name("alike.txt").read_text(encoding="utf-8").splitlines():
         if not line.startswith("# "):
             looks, _, signs = line.partition(" ")
-            found |= dict.fromkeys(map(ord, signs), looks)
-    return found
+            result |= dict.fromkeys(map(ord, signs), looks)
+    return result

@@ -49,29 +49,29 @@ def titles(language: str) -> list[dict[str, Any]]:
 
 def steps(number: int, language: str) -> list[dict[str, Any]]:
     """Return what to do, one step after the other: its blocks, and a hint. The last is the task."""
-    written = catalogue.whole_page(_folder(number), catalogue.PUPIL, language)
-    found: list[tuple[list[Block], list[str]]] = []
+    sentence = catalogue.whole_page(_folder(number), catalogue.PUPIL, language)
+    matches: list[tuple[list[Block], list[str]]] = []
     before: list[Block] = []  # what the lesson is about stands at its first step
     section = 0
-    for block in blocks(beside_simulator(written)):
+    for block in blocks(beside_simulator(sentence)):
         if block.kind == "heading":
             section += 1
             if section == TASK:
-                found.append(([], []))
+                matches.append(([], []))
         elif section == 0 and block.kind == "paragraph":
             before.append(block)
         elif section == STEPS and block.kind == "steps":
-            found += (([Block("paragraph", (row,))], []) for row in block.rows)
+            matches += (([Block("paragraph", (row,))], []) for row in block.rows)
         elif section in (STEPS, TASK) and block.kind in ("paragraph", "program"):
             text = block.rows[0][0] if block.rows else ""
             if text.startswith(HINT):
-                found[-1][1].append(text.removeprefix(HINT))
+                matches[-1][1].append(text.removeprefix(HINT))
             else:
-                found[-1][0].append(block)
-    found[0][0][:0] = before
+                matches[-1][0].append(block)
+    matches[0][0][:0] = before
     return [
-        {"blocks": [_shown(part) for part in parts], "hint": " ".join(hints)}
-        for parts, hints in found
+        {"blocks": [_without_blanks(part) for part in parts], "hint": " ".join(hints)}
+        for parts, hints in matches
     ]
 
 
@@ -80,22 +80,22 @@ def taught(number: int, language: str) -> list[str]:
     lesson = _lesson(number)
     kit = profile_of(lesson.robot).kit
     words = {word for criterion in lesson.criteria for word in criterion.words}
-    found: set[str] = set()
+    result: set[str] = set()
     for step in steps(number, language):
-        said = step["hint"]
+        sentence = step["hint"]
         for block in step["blocks"]:
             text = "\n".join(row[0] for row in block["rows"] if row)
             if block["kind"] == "program":
-                found |= kinds_in(read(text, kit))
+                result |= kinds_in(read(text, kit))
             else:
-                said += f"\n{text}"
-        words.update(word for code in CODE.findall(said) for word in WORD.findall(code))
-    return sorted(found | {KIND_OF[word] for word in words & WORDS.keys() & KIND_OF.keys()})
+                sentence += f"\n{text}"
+        words.update(word for code in CODE.findall(sentence) for word in WORD.findall(code))
+    return sorted(result | {KIND_OF[word] for word in words & WORDS.keys() & KIND_OF.keys()})
 
 
-def _shown(block: Block) -> dict[str, Any]:
+def _without_blanks(block: Block) -> dict[str, Any]:
     """Return a block without the blanks that are filled in on paper."""
-    rows = [[row.removesuffix(" ____") for row in each] for each in block.rows]
+    rows = [[row.removesuffix(" ____") for row in item] for item in block.rows]
     return {"kind": block.kind, "rows": rows}
 
 
@@ -111,7 +111,7 @@ def world_form(number: int, seed: int) -> Form:
 def goals(number: int, seed: int) -> list[dict[str, Any]]:
     """Return where the task leads: a circle with a flag, or the area around a place."""
     lesson, drawn = _lesson(number), world(number, seed)
-    found = []
+    result = []
     for criterion in lesson.criteria:
         if (criterion.kind not in GOALS and not criterion.area) or criterion.words:
             continue
@@ -125,8 +125,8 @@ def goals(number: int, seed: int) -> list[dict[str, Any]]:
                 goal["around"] = [[x_cm + x, y_cm + y] for x, y in corners]
             else:
                 goal["radius_cm"] = criterion.numbers["within_cm"]
-            found.append(goal)
-    return found
+            result.append(goal)
+    return result
 
 
 class Check:
@@ -139,10 +139,10 @@ class Check:
         self._worlds = lesson.worlds
         self._marking: Marking | None = None
         profile = profile_of(lesson.robot)
-        found = for_robot(compile_source(data, profile, "", is_strict=True), profile)
-        if found.is_right:
+        result = for_robot(compile_source(data, profile, "", is_strict=True), profile)
+        if result.is_right:
             seeds = range(1, lesson.worlds + 1)
-            text = found.source.text
+            text = result.source.text
             self._marking = Marking(text, maker(profile), profile, lesson, seeds)
 
     def go(self, most_ms: int) -> dict[str, Any]:
@@ -152,21 +152,23 @@ class Check:
         program failed: 0 for none. `run` is what to see of it then: in which world, and until when.
         """
         if self._marking is None:
-            return self._said(MISTAKES, 0)
+            return self._verdict_json(MISTAKES, 0)
         outcome = self._marking.go(most_ms)
         if outcome is None:
-            return self._said("", self._marking.seed)
-        return self._said(outcome.verdict, outcome.seed, outcome)
+            return self._verdict_json("", self._marking.seed)
+        return self._verdict_json(outcome.verdict, outcome.seed, outcome)
 
-    def _said(self, verdict: str, seed: int, outcome: Outcome | None = None) -> dict[str, Any]:
+    def _verdict_json(
+        self, verdict: str, seed: int, outcome: Outcome | None = None
+    ) -> dict[str, Any]:
         findings = outcome.findings if outcome is not None else ()
-        said = [sentence(finding, self._language) for finding in findings]
+        texts = [sentence(finding, self._language) for finding in findings]
         run = None
         if outcome is not None and outcome.run.ending != ASKS:
             first = findings[0].ms if findings else None
             until_ms = outcome.run.end_ms if first is None else first
             run = {"seed": outcome.run.seed, "until_ms": until_ms}
-        return {"verdict": verdict, "seed": seed, "worlds": self._worlds, "said": said, "run": run}
+        return {"verdict": verdict, "seed": seed, "worlds": self._worlds, "said": texts, "run": run}
 
 
 class JudgedRun(Simulation):

@@ -45,7 +45,7 @@ class PageKeys(KeyRing):
             self.settle(key)
         return len(given)
 
-    def _kept(self) -> list[RobotKey]:
+    def _stored_keys(self) -> list[RobotKey]:
         return self.keys
 
     def accepts(self, robot: int) -> bool:
@@ -88,7 +88,7 @@ class PageLine(LinkConnection):
 
     def go(self, data: bytes, now_ms: int) -> bytes:
         """Take the bytes that have arrived; return those to send."""
-        self.heard += len(data)
+        self.note_heard(data)
         self.now_ms = now_ms
         self.session.receive(data, now_ms)
         sent = self.session.poll(now_ms)
@@ -122,14 +122,14 @@ class PageRobot:
         for request in asked:
             self.link.ask(request)
         sent = self.line.go(data, now_ms)
-        found: Json = {
+        result: Json = {
             "send": sent.hex(),
             "news": self.link.news(),
             "wakes_ms": self.line.session.wakes_at(),
         }
         if self.keys.has_changed:
-            found["keys"] = self.keys.file()
-        return found
+            result["keys"] = self.keys.file()
+        return result
 
 
 Answer = dict[str, Any]

@@ -72,19 +72,23 @@ def ready(recording: Recording) -> Ready:
     """Raises BadRecording where the program is another one for this version of tsc."""
     profile = load(recording.robot)
     data = recording.text.encode("utf-8", "replace")
-    found: Compiled = compile_source(data, profile, "", is_strict=True, is_chosen=True)
-    found = for_robot(found, profile)
-    if found.program is None or not found.image or checksum(found.image) != recording.program:
+    compiled: Compiled = compile_source(data, profile, "", is_strict=True, is_chosen=True)
+    compiled = for_robot(compiled, profile)
+    if (
+        compiled.program is None
+        or not compiled.image
+        or checksum(compiled.image) != recording.program
+    ):
         raise BadRecording("other_program")
-    sensors = _shown_sensors(found.program)
-    places = made(found)
+    sensors = _shown_sensors(compiled.program)
+    places = made(compiled)
     shows = {place.offset: sensors[its.span.start] for its, place in
-             zip(found.places, places.places, strict=True)
+             zip(compiled.places, places.places, strict=True)
              if its.span.start in sensors}  # fmt: skip
     names = {device.name for device in profile.kit.readings}
-    lines = found.source.text.split("\n")
-    reads = tuple(each.offset for each in places.places if names & _words(lines, each))
-    return Ready(recording, found.image, places, shows, reads)
+    lines = compiled.source.text.split("\n")
+    reads = tuple(item.offset for item in places.places if names & _words(lines, item))
+    return Ready(recording, compiled.image, places, shows, reads)
 
 
 def _words(lines: list[str], place: MapLocation) -> set[str]:
@@ -163,11 +167,11 @@ class Played(Simulation):
         """Return what is to be seen, too: whether it is over, and where the two part."""
         parting = None
         if self.parting is not None:
-            robot, virtual = (
+            recorded_row, virtual_row = (
                 row and row._asdict() for row in (self.parting.robot, self.parting.virtual)
             )
-            began_ms = (self.robot.started_ms or 0) if self.recording.is_virtual else 0
-            told = {"robot": robot, "virtual": virtual, "began_ms": began_ms}
+            started_ms = (self.robot.started_ms or 0) if self.recording.is_virtual else 0
+            told = {"robot": recorded_row, "virtual": virtual_row, "began_ms": started_ms}
             parting = {**self.parting._asdict(), **told}
         whole = {**super().state(), "is_held": False}  # nobody but this class holds it
         return {**whole, "is_over": self._is_over, "parting": parting}
@@ -178,7 +182,7 @@ class Played(Simulation):
         for _ in range(duration_ms):
             if self._is_over:
                 return
-            super()._go(1)
+            super()._advance(1)
             # the recording may have ended within a millisecond, where its program was held
             is_whole = self._held_at_end or self.robot.now_ms > self.recording.end_ms
             self._compare(is_whole)
@@ -197,13 +201,13 @@ class Played(Simulation):
             elif row.event == HELD:
                 self._held_at_end = True
             elif row.is_input:
-                self._do(row.event)
+                self._replay_event(row.event)
 
     def _is_due(self, row: Row) -> bool:
         if self.recording.is_virtual:
             return row.ms <= self.robot.now_ms
-        began_ms = self.robot.started_ms
-        return began_ms is not None and row.ms + began_ms <= self.robot.now_ms
+        started_ms = self.robot.started_ms
+        return started_ms is not None and row.ms + started_ms <= self.robot.now_ms
 
     def _compare(self, is_whole: bool) -> None:
         """Find the first row that is another one than in the recording."""
@@ -233,12 +237,14 @@ class Played(Simulation):
         self._last_ms = rows[count].ms if count < len(rows) else self.recording.end_ms
         return tuple(row for row in rows[:count] if not row.is_input)
 
-    def _part(self, what: str, agreed: int, ours: Row | None, theirs: Row | None) -> None:
-        at_ms = min(row.ms for row in (ours, theirs) if row is not None)
-        at = theirs.at if theirs is not None and theirs.at >= 0 else self.robot.at
+    def _part(
+        self, what: str, agreed: int, recorded_row: Row | None, virtual_row: Row | None
+    ) -> None:
+        at_ms = min(row.ms for row in (recorded_row, virtual_row) if row is not None)
+        at = virtual_row.at if virtual_row is not None and virtual_row.at >= 0 else self.robot.at
         place = self.ready.places.at(at) if at is not None else None
         line = place.line if place is not None else 0
-        self.parting = Parting(what, agreed, line, ours, theirs, "", at_ms)
+        self.parting = Parting(what, agreed, line, recorded_row, virtual_row, "", at_ms)
 
     # -- a real robot's run, beside it ------------------------------------------------------------
 
@@ -246,19 +252,19 @@ class Played(Simulation):
         for _ in range(duration_ms):
             if self._is_over:
                 return
-            self._pass()
-            super()._go(1)
-            self._pass()
-            began_ms = self.robot.started_ms or 0
-            is_late = self.robot.now_ms - began_ms >= self._until_ms()
+            self._replace_readings()
+            super()._advance(1)
+            self._replace_readings()
+            started_ms = self.robot.started_ms or 0
+            is_late = self.robot.now_ms - started_ms >= self._until_ms()
             has_more = len(self._virtual) > len(self.recording.rows)
             has_ended = self.robot.started_ms is not None and not self.robot.is_running
             if is_late or has_more or has_ended:
                 if self.parting is None:
-                    self.parting = self._compared()
+                    self.parting = self._compare_runs()
                 return self._end()
 
-    def _pass(self) -> None:
+    def _replace_readings(self) -> None:
         """At each SHOW the sensor that it shows has the reading that the robot has shown."""
         self._listen()
         while self.held_at is not None:
@@ -270,10 +276,10 @@ class Played(Simulation):
 
     def _tell_shown(self, at: int) -> None:
         sensor, place = self.ready.shows[at], self.ready.places.at(at)
-        said = [row.event for row in self.recording.rows if _is_told(row)]
-        told = said[len(self._places)] if len(self._places) < len(said) else ""
-        if sensor is not None and told.startswith("SHOW"):
-            self.robot.sensing.tell(sensor, _number(told.removeprefix("SHOW ")))
+        texts = [row.event for row in self.recording.rows if _is_told(row)]
+        message = texts[len(self._places)] if len(self._places) < len(texts) else ""
+        if sensor is not None and message.startswith("SHOW"):
+            self.robot.sensing.tell(sensor, _number(message.removeprefix("SHOW ")))
             self._known.add(sensor)
         self._places.append(place.line if place is not None else 0)
 
@@ -289,16 +295,16 @@ class Played(Simulation):
             self._known.add(number)
 
     def _listen(self) -> None:
-        began_ms = self.robot.started_ms or 0
+        started_ms = self.robot.started_ms or 0
         for event in self.take_events():
             if event.what == "READ" and event.values[0] not in self._known and not self._unread:
                 name = self.robot.profile.kit.readings[event.values[0]].name
                 place = self.ready.places.at(self._at) if self._at is not None else None
-                row = Row(event.time_ms - began_ms, event.text)
+                row = Row(event.time_ms - started_ms, event.text)
                 self._unread = (name, row, place.line if place is not None else 0)
                 self._virtual.append(row)
             elif event.what in TOLD:
-                self._virtual.append(Row(event.time_ms - began_ms, event.text))
+                self._virtual.append(Row(event.time_ms - started_ms, event.text))
 
     def _push_button(self) -> None:
         """Push the start button, and wait until the program has begun."""
@@ -308,7 +314,7 @@ class Played(Simulation):
                 self.robot.let_go()
             if self.robot.started_ms is not None and k >= STEP_MS:
                 return
-            super()._go(1)
+            super()._advance(1)
         raise AssertionError("the program does not begin")
 
     def _until_ms(self) -> int:
@@ -317,56 +323,66 @@ class Played(Simulation):
         By its button its first row is waited for, whose time the recording does not have.
         """
         recording = self.recording
-        told = [row for row in recording.rows if _is_told(row)]
-        if not recording.is_by_button or not told:
+        messages = [row for row in recording.rows if _is_told(row)]
+        if not recording.is_by_button or not messages:
             return recording.end_ms + _off_ms(recording.end_ms)
-        said = [row for row in self._virtual if _is_told(row)]
-        if not said:
+        texts = [row for row in self._virtual if _is_told(row)]
+        if not texts:
             return MOST_MS
-        late_ms = said[0].ms - told[0].ms
+        late_ms = texts[0].ms - messages[0].ms
         return recording.end_ms + late_ms + _off_ms(recording.end_ms + late_ms)
 
-    def _compared(self) -> Parting:
+    def _compare_runs(self) -> Parting:
         rows = self.recording.rows
-        told = [row for row in rows if _is_told(row)]
+        messages = [row for row in rows if _is_told(row)]
         virtual = [row for row in self._virtual if _is_told(row)]
         if not rows or rows[0].event == "LOST":
             return Parting("empty")
         late_ms = 0
-        if self.recording.is_by_button and told and virtual:
-            late_ms = virtual[0].ms - told[0].ms
-        told = [row._replace(ms=row.ms + late_ms) for row in told]
+        if self.recording.is_by_button and messages and virtual:
+            late_ms = virtual[0].ms - messages[0].ms
+        messages = [row._replace(ms=row.ms + late_ms) for row in messages]
         end_ms = self.recording.end_ms + late_ms
-        began_ms = self.robot.started_ms or 0
+        started_ms = self.robot.started_ms or 0
         before = len(virtual)  # rows of the virtual robot before it read what nobody knows
         if self._unread is not None:
             before = self._virtual.index(self._unread[1])
-        for count, ours in enumerate(told):
+        for count, recorded_row in enumerate(messages):
             line = self._places[count] if count < len(self._places) else 0
-            theirs = virtual[count] if count < len(virtual) else None
+            virtual_row = virtual[count] if count < len(virtual) else None
             if self._unread is not None and count >= before:
-                return self._unread_parting(count, began_ms)
-            if theirs is None:
-                return Parting("robot_more", count, line, ours, None, "", ours.ms + began_ms)
-            if ours.event != theirs.event:
-                return Parting("value", count, line, ours, theirs, "", theirs.ms + began_ms)
-            if abs(ours.ms - theirs.ms) > _off_ms(max(ours.ms, theirs.ms)):
-                return Parting("time", count, line, ours, theirs, "", theirs.ms + began_ms)
-        count = len(told)
+                return self._unread_parting(count, started_ms)
+            if virtual_row is None:
+                return Parting(
+                    "robot_more", count, line, recorded_row, None, "", recorded_row.ms + started_ms
+                )
+            if recorded_row.event != virtual_row.event:
+                return Parting(
+                    "value", count, line, recorded_row, virtual_row, "", virtual_row.ms + started_ms
+                )
+            if abs(recorded_row.ms - virtual_row.ms) > _off_ms(
+                max(recorded_row.ms, virtual_row.ms)
+            ):
+                return Parting(
+                    "time", count, line, recorded_row, virtual_row, "", virtual_row.ms + started_ms
+                )
+        count = len(messages)
         cut = rows[-1].event if rows[-1].event in CUT else ""
         if self._unread is not None:
-            return self._unread_parting(count, began_ms)
+            return self._unread_parting(count, started_ms)
         if cut in ("", "STOPPED") and len(virtual) > count:
-            theirs = virtual[count]  # the robot has not said that, and had the time for it
-            if theirs.ms + _off_ms(end_ms) < end_ms:
+            virtual_row = virtual[count]  # the robot has not said that, and had the time for it
+            if virtual_row.ms + _off_ms(end_ms) < end_ms:
                 line = self._places[count] if count < len(self._places) else 0
-                return Parting("virtual_more", count, line, None, theirs, "", theirs.ms + began_ms)
+                return Parting(
+                    "virtual_more", count, line, None, virtual_row, "", virtual_row.ms + started_ms
+                )
         return Parting("missed" if cut == "MISSED" else "same", count)
 
-    def _unread_parting(self, agreed: int, began_ms: int) -> Parting:
+    def _unread_parting(self, agreed: int, started_ms: int) -> Parting:
         assert self._unread is not None
         name, row, line = self._unread
-        return Parting("unread", agreed, line, None, row, name, row.ms + began_ms)
+        return Parting("unread", agreed, line, None, row, name, row.ms + started_ms)
 
 
 def play(ready: Ready, world: World | None = None) -> Played:

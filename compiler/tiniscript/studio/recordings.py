@@ -75,8 +75,8 @@ class Row(NamedTuple):
     @property
     def pressed(self) -> Pressed | None:
         """What somebody holds from then on, if that is what the row says."""
-        found = _KEYS.fullmatch(self.event)
-        return Pressed(*map(int, found.groups())) if found else None
+        match = _KEYS.fullmatch(self.event)
+        return Pressed(*map(int, match.groups())) if match else None
 
 
 class Recording(NamedTuple):
@@ -166,31 +166,31 @@ def read(data: bytes) -> Recording:
     """Return the recording in a file. Raises BadRecording."""
     if len(data) > MOST_BYTES:
         raise BadRecording("too_long")
-    lines = _decoded(data).rstrip("\r\n").split("\n")
+    lines = _decode_text(data).rstrip("\r\n").split("\n")
     fields = _parsed(lines[0], 1, dict)
     if OLDER in fields:
         raise BadRecording("older")
     if HEAD in fields and fields[HEAD] != VERSION:
         raise BadRecording("other_version" if type(fields[HEAD]) is int else "unreadable")
-    found = _begun(fields)
+    result = _parse_header(fields)
     rows: list[Row] = []
     for number, each in enumerate(lines[1:], 2):
         if rows and rows[-1].event == END:
             raise BadRecording("unreadable", number)
-        row = _row(each, number, found.of)
+        row = _row(each, number, result.of)
         if row.ms < (rows[-1].ms if rows else 0):
             raise BadRecording("unreadable", number)
         if row.ms > MOST_MS:
             raise BadRecording("too_long", number)
-        if rows and not found.is_virtual and rows[-1].event in CUT and row.event != END:
+        if rows and not result.is_virtual and rows[-1].event in CUT and row.event != END:
             raise BadRecording("unreadable", number)
         rows.append(row)
     if not rows or rows[-1].event != END:
         raise BadRecording("cut", len(lines))
-    return found._replace(rows=tuple(rows[:-1]), end_ms=rows[-1].ms)
+    return result._replace(rows=tuple(rows[:-1]), end_ms=rows[-1].ms)
 
 
-def _begun(fields: dict[str, Any]) -> Recording:
+def _parse_header(fields: dict[str, Any]) -> Recording:
     """Return what the first line says. Raises BadRecording."""
     text, robot, of = fields.get("text"), fields.get("robot"), fields.get("of")
     seed = fields.get("seed", 1)
@@ -214,7 +214,7 @@ def _begun(fields: dict[str, Any]) -> Recording:
     return Recording(
         of=of, text=text, robot=robot, kit=kit, program=int(fields["program"], 16), rows=(),
         end_ms=0, world=world_in(fields.get("world")) if is_virtual else None, seed=seed,
-        told=_told(fields.get("told"), robots.load(robot)) if is_virtual else {},
+        told=_parse_readings(fields.get("told"), robots.load(robot)) if is_virtual else {},
         is_by_button=not is_virtual and fields.get("is_by_button") is True, version=fields["tsc"],
     )  # fmt: skip
 
@@ -240,19 +240,21 @@ def kept(world: World) -> tuple[World, str | Form]:
     return world_in(form), form
 
 
-def _told(found: object, robot: Robot) -> dict[int, list[int]]:
+def _parse_readings(found: object, robot: Robot) -> dict[int, list[int]]:
     """Return the readings that single sensors gave one after the other."""
     numbers = {device.name: k for k, device in enumerate(robot.kit.readings) if device.name}
-    told: dict[int, list[int]] = {}
+    result: dict[int, list[int]] = {}
     for name, values in found.items() if isinstance(found, dict) else ():
         number = numbers.get(name)
         if number is None or not isinstance(values, list) or not 0 < len(values) <= MOST_READINGS:
             raise BadRecording("unreadable")
         device = robot.kit.readings[number]
-        if any(type(each) is not int or not device.low <= each <= device.high for each in values):
+        if any(
+            type(value) is not int or not device.low <= value <= device.high for value in values
+        ):
             raise BadRecording("unreadable")
-        told[number] = values
-    return told
+        result[number] = values
+    return result
 
 
 def _row(written_row: str, number: int, of: str) -> Row:
@@ -271,7 +273,7 @@ def _row(written_row: str, number: int, of: str) -> Row:
     return row
 
 
-def _decoded(data: bytes) -> str:
+def _decode_text(data: bytes) -> str:
     """Return the text of a file, also as PowerShell and Notepad write it."""
     is_wide = data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
     return data.decode("utf-16" if is_wide else "utf-8-sig", "replace")
@@ -279,12 +281,12 @@ def _decoded(data: bytes) -> str:
 
 def _parsed(written_line: str, number: int, kind: type) -> Any:
     try:
-        found = json.loads(written_line)
+        result = json.loads(written_line)
     except (ValueError, RecursionError):
-        found = None
-    if not isinstance(found, kind):
+        result = None
+    if not isinstance(result, kind):
         raise BadRecording("unreadable", number)
-    return found
+    return result
 
 
 def _is(form: re.Pattern[str], found: object) -> bool:

@@ -22,11 +22,13 @@ from tiniscript.library.refusing import refusal
 from tiniscript.link.authority import whose
 from tiniscript.link.connection import (
     DEADLINE_MS,
+    FOREIGN,
     STATUS,
     LinkConnection,
     PendingRequest,
     Requester,
     reason_of,
+    stranger,
 )
 from tiniscript.link.messages import (
     MOST_BALANCE,
@@ -91,7 +93,7 @@ class RobotLink:
 
     @property
     def has_run(self) -> bool:
-        return self._run is not None or any(each.pending.starts for each in self._asked)
+        return self._run is not None or any(item.pending.starts for item in self._asked)
 
     def ask(self, request: Json) -> None:
         """Begin a request; its answer is among the news, with its `id`.
@@ -105,11 +107,11 @@ class RobotLink:
             return
         if not isinstance(do, str) or do not in _MAKERS:
             raise BadRequest
-        if do != "keys" and sum(not each.is_keys for each in self._asked) >= MOST_WAITING:
+        if do != "keys" and sum(not item.is_keys for item in self._asked) >= MOST_WAITING:
             raise BadRequest
         make = _MAKERS[do](request)
         limit_ms = whole(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
-        refused = self._refused(request) if "image" in request else None
+        refused = self._refusal_of(request) if "image" in request else None
         if refused is not None:
             self._answers.append({"id": number, **self._failure(refused)})
             return
@@ -144,26 +146,26 @@ class RobotLink:
         return found
 
     def _outcomes(self) -> list[Json]:
-        over = [each for each in self._asked if each.pending.outcome is not None]
-        self._asked = [each for each in self._asked if each.pending.outcome is None]
-        for each in over:
-            reply = each.pending.outcome
+        over = [item for item in self._asked if item.pending.outcome is not None]
+        self._asked = [item for item in self._asked if item.pending.outcome is None]
+        for item in over:
+            reply = item.pending.outcome
             if reply and reply.status == OK and isinstance(reply.values, ReceiptReply):
-                if each.is_program:
-                    self._program_run = self._known(reply.values.run)
-        return [{"id": each.number, **self._answer(each.pending)} for each in over]
+                if item.is_program:
+                    self._program_run = self._known_run(reply.values.run)
+        return [{"id": item.number, **self._answer(item.pending)} for item in over]
 
     def _follow(self, event: Event) -> None:
         """Find the end of the page's run. An end may come before the answer that names the run;
         one without a number may be that of a run before. Another run that begins ends it, too: what
         the page leaves to be stopped is its own."""
         if event.name == "STARTED":
-            begun = self._known(event.run)
+            begun = self._known_run(event.run)
             if self._begun == self._run != begun:
                 self._run = None
             self._begun, self._over = begun, None
         elif event.name in ("DONE", "FAULT"):
-            self._over = self._known(event.run)
+            self._over = self._known_run(event.run)
         elif event.name == "STOPPED":
             self._over = self._begun
         if event.name in ("LOST", "RESTARTED") or (
@@ -171,12 +173,12 @@ class RobotLink:
         ):
             self._run = None
 
-    def _known(self, number: int) -> _Run:
+    def _known_run(self, number: int) -> _Run:
         return _Run(self._connection.boot, number)
 
     # -- requests ---------------------------------------------------------------------------------
 
-    def _refused(self, request: Json) -> Reply[Any] | None:
+    def _refusal_of(self, request: Json) -> Reply[Any] | None:
         """Return the refusal of a program of another kit, before any byte is sent."""
         robot = self._connection.robot
         if robot is None:
@@ -190,7 +192,7 @@ class RobotLink:
             return self._failure(reply)
         values = reply.values
         if isinstance(values, ReceiptReply):
-            run = self._known(values.run)
+            run = self._known_run(values.run)
             if pending.starts and run != self._over:
                 self._run = run
             return {
@@ -207,6 +209,12 @@ class RobotLink:
 
     def _failure(self, reply: Reply[Any]) -> Json:
         reason = reason_of(self._connection, reply)
+        found = stranger(self._connection) if reason == FOREIGN else None
+        if found is not None:
+            from tiniscript.link.foreign import told as told_of
+
+            said, advice = told_of(found, self.language)
+            return {"failure": reason, "said": said, "advice": advice}
         if reason != STATUS:
             return {"failure": reason, "said": "", "advice": ""}
         said, advice = sentence(reply.status, reply.detail, self.language)
@@ -234,7 +242,7 @@ class RobotLink:
         elif event.name == "STARTED":
             found["program"] = f"{event.program:08x}"
             # no line, and nobody else's
-            found["is_program"] = self._known(event.run) == self._program_run
+            found["is_program"] = self._known_run(event.run) == self._program_run
         elif event.name not in ("DONE", "RESTARTED", "LOST"):
             return []  # who else uses the port is no news for a page
         return [found]
@@ -282,17 +290,17 @@ def _name(request: Json) -> _Make:
 
 
 def _trim(request: Json) -> _Make:
-    found = request.get("trim")
-    if found is None:
+    result = request.get("trim")
+    if result is None:
         return lambda session: session.trim()
-    if not isinstance(found, dict):
+    if not isinstance(result, dict):
         raise BadRequest
     trim = Trim(  # without a pace: the robot leaves what it has
-        found.get("is_exchanged") is True,
-        found.get("is_left_reversed") is True,
-        found.get("is_right_reversed") is True,
-        whole(found, "balance", -MOST_BALANCE, MOST_BALANCE),
-        whole(found, "least", 0, MOST_LEAST),
+        result.get("is_exchanged") is True,
+        result.get("is_left_reversed") is True,
+        result.get("is_right_reversed") is True,
+        whole(result, "balance", -MOST_BALANCE, MOST_BALANCE),
+        whole(result, "least", 0, MOST_LEAST),
     )
     return lambda session: session.trim(trim.data())
 

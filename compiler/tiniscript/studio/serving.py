@@ -123,7 +123,7 @@ def files(folder: Path | None = None) -> dict[str, File]:
     """Return the files of the page, which is built, by their names."""
     folder = folder or PAGE
     return {
-        path.name: _tagged(path.read_bytes(), TYPES[path.suffix])
+        path.name: _with_etag(path.read_bytes(), TYPES[path.suffix])
         for path in folder.iterdir()
         if path.suffix in TYPES and path.name != building.STAMP
     }
@@ -131,28 +131,28 @@ def files(folder: Path | None = None) -> dict[str, File]:
 
 def with_firmware(page: dict[str, File]) -> dict[str, File]:
     """Return the page with the firmware that the package brings, for boards at its browser."""
-    found = dict(page)
+    result = dict(page)
     brought = [*ready.files(), *ready.images()]
-    for each in brought:
-        found[each.path.name] = _tagged(each.path.read_bytes(), TYPES[each.path.suffix])
-    rows = [{"title": each.title, "board": each.board, "file": each.path.name} for each in brought]
-    found[FIRMWARE] = _tagged(json.dumps(rows).encode(), TYPES[".json"])
-    return found
+    for item in brought:
+        result[item.path.name] = _with_etag(item.path.read_bytes(), TYPES[item.path.suffix])
+    rows = [{"title": item.title, "board": item.board, "file": item.path.name} for item in brought]
+    result[FIRMWARE] = _with_etag(json.dumps(rows).encode(), TYPES[".json"])
+    return result
 
 
 def for_class(page: dict[str, File]) -> dict[str, File]:
     """Return the page as thirty tablets on one radio fetch it: packed, and marked as a class's."""
-    found = {}
+    result = {}
     for name, file in page.items():
         data = file.data
         if name == FIRST:
             data = data.replace(HTML, HTML + b" data-class", 1)
         packed = gzip.compress(data, 6, mtime=0)
-        found[name] = _tagged(data, file.kind, packed if len(packed) < len(data) else b"")
-    return found
+        result[name] = _with_etag(data, file.kind, packed if len(packed) < len(data) else b"")
+    return result
 
 
-def _tagged(data: bytes, kind: str, packed: bytes = b"") -> File:
+def _with_etag(data: bytes, kind: str, packed: bytes = b"") -> File:
     return File(data, kind, f'"{hashlib.sha256(data).hexdigest()[:32]}"', packed)
 
 
@@ -240,9 +240,9 @@ class Server(ThreadingHTTPServer):
     def trust(self, client: socket.socket) -> None:
         """A client has shown a token: others are closed before it."""
         with self._lock:
-            found = self._connections.pop(client, None)
-            if found is not None:
-                self._connections[client] = found._replace(is_known=True)
+            result = self._connections.pop(client, None)
+            if result is not None:
+                self._connections[client] = result._replace(is_known=True)
 
     def process_request(self, request: Any, client_address: Any) -> None:
         closed = None

@@ -80,13 +80,13 @@ class Simulation:
 
         After a fault a little longer, until the robot has told where it was.
         """
-        self._go(duration_ms)
+        self._advance(duration_ms)
         if not self.robot.fault:
             self.fault_at = None
         for _ in range(FAULT_MS):
             if not self.robot.fault or self.fault_at is not None:
                 return
-            self._go(1)
+            self._advance(1)
 
     def set_breakpoints(self, breakpoints: Iterable[int]) -> None:
         """Hold the program in front of these offsets from now on, and of no others."""
@@ -133,7 +133,7 @@ class Simulation:
         self._pressed, self._said_ms = NOTHING, 0
         self._is_amid = False  # a millisecond: the program was held
 
-    def _go(self, duration_ms: int) -> None:
+    def _advance(self, duration_ms: int) -> None:
         for _ in range(duration_ms):
             if self.held_at is not None:
                 break
@@ -147,11 +147,11 @@ class Simulation:
     def _let_in(self) -> None:
         """What somebody has done meanwhile reaches the robot now."""
         done, self._done = self._done, []
-        for each in done:
-            self._do(each)
-            self._note(each)
+        for item in done:
+            self._replay_event(item)
+            self._note(item)
 
-    def _do(self, done: str) -> None:
+    def _replay_event(self, done: str) -> None:
         if done == DOWN:
             self.robot.press()
         elif done == UP:

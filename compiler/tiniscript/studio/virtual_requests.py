@@ -67,7 +67,9 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
     return _simulation.state()
 
 
-def _driven(drive: Callable[[Simulation, Answer], object]) -> Callable[[Answer, bytes], Answer]:
+def _driving_request(
+    drive: Callable[[Simulation, Answer], object],
+) -> Callable[[Answer, bytes], Answer]:
     """Return what does `drive` with the virtual robot, and answers how it stands then.
 
     `held` is what somebody holds of a remote control meanwhile."""
@@ -158,12 +160,14 @@ def _lesson_check(fields: Answer, data: bytes) -> Answer:
 
 ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "power_on": _power_on,
-    "go": _driven(lambda robot, fields: robot.go(fields["duration_ms"])),
-    "step": _driven(lambda robot, fields: robot.step(fields["limit_ms"])),
-    "go_on": _driven(lambda robot, fields: robot.go_on()),
-    "breakpoints": _driven(lambda robot, fields: robot.set_breakpoints(fields["breakpoints"])),
-    "stop": _driven(lambda robot, fields: robot.stop()),
-    "push": _driven(lambda robot, fields: robot.push()),
+    "go": _driving_request(lambda robot, fields: robot.go(fields["duration_ms"])),
+    "step": _driving_request(lambda robot, fields: robot.step(fields["limit_ms"])),
+    "go_on": _driving_request(lambda robot, fields: robot.go_on()),
+    "breakpoints": _driving_request(
+        lambda robot, fields: robot.set_breakpoints(fields["breakpoints"])
+    ),
+    "stop": _driving_request(lambda robot, fields: robot.stop()),
+    "push": _driving_request(lambda robot, fields: robot.push()),
     "open_world": _open_world,
     "write_world": _write_world,
     "open_run": _open_run,

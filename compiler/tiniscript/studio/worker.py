@@ -26,26 +26,26 @@ MOST_BLOCKS = 1500  # that a page can move about
 def answer(request: str, data: bytes = b"") -> str:
     """Return the answer to a request; `data` is a program's text or file."""
     fields = json.loads(request)
-    return json.dumps(_asked(fields["do"])(fields, data), ensure_ascii=False)
+    return json.dumps(_request_handler(fields["do"])(fields, data), ensure_ascii=False)
 
 
 def _check(fields: Answer, data: bytes) -> Answer:
-    found = checking.check(data, fields["robot"], fields["language"])
+    result = checking.check(data, fields["robot"], fields["language"])
     return {
-        "image": found.image.hex(),
-        "program": f"{checksum(found.image):08x}" if found.image else "",
-        "bytes": found.code_bytes,
+        "image": result.image.hex(),
+        "program": f"{checksum(result.image):08x}" if result.image else "",
+        "bytes": result.code_bytes,
         "findings": [
             {**finding.message._asdict(), "may_repair": finding.may_repair}
-            for finding in found.findings
+            for finding in result.findings
         ],
-        "places": found.places,
-        "shows": [[offset, *show] for offset, show in found.shows],
-        "variables": [variable._asdict() for variable in found.variables],
-        "start": found.start,
-        "robot": found.robot,
-        "names_robot": found.names_robot,
-        "remote": found.remote,
+        "places": result.places,
+        "shows": [[offset, *show] for offset, show in result.shows],
+        "variables": [variable._asdict() for variable in result.variables],
+        "start": result.start,
+        "robot": result.robot,
+        "names_robot": result.names_robot,
+        "remote": result.remote,
         "loose": _loose(fields, data) if LOOSE.encode() in data else 0,
     }
 
@@ -63,14 +63,14 @@ def _loose(fields: Answer, data: bytes) -> int:
 
 
 def _open(fields: Answer, data: bytes) -> Answer:
-    return _told(checking.opened(data, fields["robot"], fields["language"]))
+    return _post_answer(checking.opened(data, fields["robot"], fields["language"]))
 
 
 def _line(fields: Answer, data: bytes) -> Answer:
-    return _told(checking.line(data, fields["robot"], fields["language"]))
+    return _post_answer(checking.line(data, fields["robot"], fields["language"]))
 
 
-def _told(message: str | Message) -> Answer:
+def _post_answer(message: str | Message) -> Answer:
     if isinstance(message, Message):
         return {"message": message.message, "fix": message.fix}
     return {"text": message}
@@ -110,7 +110,7 @@ _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
 }  # fmt: skip
 
 
-def _asked(do: str) -> Callable[[Answer, bytes], Answer]:
+def _request_handler(do: str) -> Callable[[Answer, bytes], Answer]:
     """Return what answers a request. A page begins without its robots: they load when asked for."""
     if do in _ASKED:
         return _ASKED[do]

@@ -42,7 +42,7 @@ def form_of(world: World) -> Form:
         "lamps": [{"x_cm": lamp.place.x, "y_cm": lamp.place.y, "reach_cm": lamp.reach_cm}
                   for lamp in world.lamps],
         "flags": [{"x_cm": flag.place.x, "y_cm": flag.place.y, "reach_cm": flag.reach_cm,
-                   "rests": flag.rests} for flag in world.flags],
+                   "rests": flag.needs_rest} for flag in world.flags],
         "seconds": world.seconds,
     }  # fmt: skip
 

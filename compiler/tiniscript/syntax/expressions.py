@@ -6,17 +6,18 @@ own (`operators`), so that no depth of brackets exhausts Python's. Knows no inst
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NoReturn
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.base.source import Edit, Span
-from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word
+from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.syntax.ast import Argument, Part
-from tiniscript.syntax.cursor import AFTER_VALUE, Cursor
+from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
-from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, Postfix
+from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, SIGNS, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
 
 _ENDS_VALUE = (")", "(", ";", NEWLINE, END)
@@ -295,6 +296,34 @@ class ExpressionParser:
         diagnostic = Diagnostic(codes.SEMICOLON_INSIDE, tokens[k].span, {"fix": fix}, call, repair)
         self.reporter.diagnostics.append(diagnostic)
         raise Failed
+
+    def after_name(self) -> Token | None:
+        """Return what follows a name of a DEF where a comma or the end belongs.
+
+        A sign is passed, with all up to there: `= 5`; a name is the next one. None for a unit.
+        """
+        cursor = self.cursor
+        first = cursor.token
+        depth = 0
+        while first.kind in SIGNS and (depth > 0 or cursor.token.kind not in AFTER_VALUE):
+            depth += (cursor.token.kind == "(") - (cursor.token.kind == ")")
+            if cursor.token.kind in AT_END:
+                break
+            cursor.i += 1
+        is_unit = len(first.text) > 1 and bool(said_of(first.text, "unit"))
+        is_name = first.kind is WORD and not is_unit
+        return first if first.kind in SIGNS or is_name else None
+
+    def no_names_alone(self, bracket: int, more: Token, names: Sequence[str]) -> None:
+        """`DEF SIDE(SIZE = 5)`, `DEF SIDE(SIZE SPEED)`: the whole header is shown."""
+        tokens = self.cursor.tokens
+        header = Span(tokens[bracket - 2].start, self.cursor.last.end)
+        name = tokens[bracket - 1].text
+        fix = f"DEF {name}({', '.join(names)})"
+        repair = Repair((Edit(header, fix),), False)
+        code = codes.MISSING_COMMA if more.kind is WORD else codes.PARAMETER_NEEDS_NAME
+        diagnostic = Diagnostic(code, more.span, {"name": name, "fix": fix}, header, repair)
+        self.reporter.diagnostics.append(diagnostic)
 
     def no_close(self, bracket: int) -> NoReturn:
         """In brackets a comma or their end is expected."""

@@ -111,7 +111,7 @@ def _rows(pieces: list[Piece]) -> list[Row]:
     one_line = is_one_line(pieces)
     groups: list[list[Piece]] = []
     for piece in pieces:
-        if groups and _goes_on(groups[-1][-1], piece, one_line):
+        if groups and _continues_line(groups[-1][-1], piece, one_line):
             groups[-1].append(piece)
         else:
             groups.append([piece])
@@ -133,7 +133,7 @@ def is_one_line(pieces: list[Piece]) -> bool:
     return first == last or pieces[first].first_line == pieces[last].last_line
 
 
-def _goes_on(before: Piece, piece: Piece, one_line: bool) -> bool:
+def _continues_line(before: Piece, piece: Piece, one_line: bool) -> bool:
     """Whether a piece goes on the line of the one before it."""
     if not piece.is_instruction:
         return False

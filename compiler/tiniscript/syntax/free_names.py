@@ -32,6 +32,6 @@ def in_place_of(text: str, word: str) -> str:
     return right if is_free else next(numbered(text, right.removesuffix("_1")))
 
 
-def for_a_number(text: str) -> str:
+def free_number_name(text: str) -> str:
     """Return a name for a variable that gets a number: N, or N_2 beside an N."""
     return "N" if "N" not in names_in(text) else next(numbered(text, "N"))

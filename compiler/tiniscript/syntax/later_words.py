@@ -49,7 +49,7 @@ def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
         if kind is WORD and text in KIT_WORDS_SINCE and text not in seen:
             seen.add(text)
             is_named = tokens[k - 1].text == "DEF" if k else False
-            is_set = is_begin and tokens[k + 1].kind == "=" and not _uses(text, tokens, k + 2)
+            is_set = is_begin and tokens[k + 1].kind == "=" and not _value_uses(text, tokens, k + 2)
             if is_named or is_set or is_in_def:
                 words[text] = token
         if kind == "(":
@@ -63,7 +63,7 @@ def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
     return words
 
 
-def _uses(name: str, tokens: Sequence[Token], k: int) -> bool:
+def _value_uses(name: str, tokens: Sequence[Token], k: int) -> bool:
     """Whether the value that begins at a token uses a name."""
     depth = 0
     while tokens[k].kind not in (END, ";") and (depth or tokens[k].kind is not NEWLINE):

@@ -239,18 +239,26 @@ class Parser:
         cursor.i += 1
         if cursor.take_inner(")"):
             return
+        more = None
         while True:
             name = cursor.inner()
             if name.kind is not WORD:
-                self.reporter.fail(codes.PARAMETER_NEEDS_NAME, name.span, name=of.text)
+                from tiniscript.syntax.unnamed import used_inside  # of a wrong program alone
+
+                inside = used_inside(cursor.source, name) if name.kind is NUMBER else {}
+                self.reporter.fail(codes.PARAMETER_NEEDS_NAME, name.span, name=of.text, **inside)
             cursor.take_inner(WORD)
             if name.text in WORDS:
                 self.reporter.report(codes.RESERVED, name.span, word=name.text)
             found.append(Parameter(name.text, name.span))
-            if not cursor.take_inner(","):
+            odd = self.expressions.after_name()
+            more = more or odd
+            if not cursor.take_inner(",") and (odd is None or odd.kind is not WORD):
                 break
         if not cursor.take_inner(")"):
             self.expressions.no_close(bracket)
+        if more is not None:
+            self.expressions.no_names_alone(bracket, more, [each.name for each in found])
 
     def task(self, word: Token) -> None:
         cursor = self.cursor

@@ -40,7 +40,7 @@ def announce(running: Running) -> Path | None:
     """Let others find a robot. Return the file, or None where it cannot be written."""
     path = _path(running.address)
     with contextlib.suppress(OSError):  # there may be no folder yet
-        files.remove_abandoned(path.parent, [each.name for each in path.parent.iterdir()])
+        files.remove_abandoned(path.parent, [item.name for item in path.parent.iterdir()])
     return path if files.keep(path, json.dumps(running._asdict()).encode()) else None
 
 
@@ -52,7 +52,7 @@ def withdraw(path: Path | None) -> None:
 
 def running() -> list[Running]:
     """Return the running robots. Opens none of them: that would count as a client."""
-    found: list[Running] = []
+    result: list[Running] = []
     paths: list[Path] = []
     with contextlib.suppress(OSError):
         paths = sorted(_folder().glob("*.json"))
@@ -60,10 +60,10 @@ def running() -> list[Running]:
         robot = _read(path)
         if robot is not None and _is_listening(robot.address):
             if not peers.is_of_another(_number_of(robot.address)):
-                found.append(robot)
+                result.append(robot)
         else:
             withdraw(path)
-    return found
+    return result
 
 
 def is_of_another(port: str) -> bool:
@@ -78,13 +78,13 @@ def is_of_another(port: str) -> bool:
 
 def for_all() -> list[Running]:
     """Return the robots to which any command may upload a program."""
-    return [each for each in running() if each.verb == "robot"]
+    return [item for item in running() if item.verb == "robot"]
 
 
 def is_virtual(port: str) -> bool:
     """Return whether a port belongs to a running virtual robot."""
     known = {port, same_for_all(port)}
-    return any(known & {each.address, each.terminal} for each in running())
+    return any(known & {item.address, item.terminal} for item in running())
 
 
 def is_gone(port: str) -> bool:
@@ -99,7 +99,7 @@ def _read(path: Path) -> Running | None:
         robot = Running(*(fields[key] for key in Running._fields))
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return None
-    if not all(isinstance(each, str) and each.isprintable() for each in robot):
+    if not all(isinstance(item, str) and item.isprintable() for item in robot):
         return None
     return robot if robot.address == f"{PREFIX}{path.stem}" else None
 

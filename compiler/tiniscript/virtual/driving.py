@@ -29,8 +29,8 @@ class Contact(NamedTuple):
     """The nearest obstacle: its distance, and the nearest points of body and obstacle."""
 
     gap_cm: float
-    ours: Point  # on the middle line of the body
-    theirs: Point
+    body_point: Point  # on the middle line of the body
+    obstacle_point: Point
 
 
 class Hull:
@@ -41,9 +41,9 @@ class Hull:
     """
 
     def __init__(self, body: Body) -> None:
-        places = [place.x_cm for place in body.places.values()]
-        front = max([body.length_cm / 2, *places])
-        back = min([-body.length_cm / 2, *places])
+        places_x_cm = [place.x_cm for place in body.places.values()]
+        front = max([body.length_cm / 2, *places_x_cm])
+        back = min([-body.length_cm / 2, *places_x_cm])
         self.radius_cm = min(body.width_cm, body.length_cm) / 2
         self.front_cm = front - self.radius_cm
         self.back_cm = min(back + self.radius_cm, self.front_cm)
@@ -67,24 +67,24 @@ class Hull:
             # far away is known more quickly
             if best is not None and distance(obstacle, middle_x, middle_y) >= best.gap_cm + reach:
                 continue
-            apart, ours, theirs = between(spine, obstacle)
+            apart, body_point, obstacle_point = between(spine, obstacle)
             gap = apart - self.radius_cm
             if best is None or gap < best.gap_cm:
-                best = Contact(gap, ours, theirs)
+                best = Contact(gap, body_point, obstacle_point)
         return best
 
     def outline(self, pose: Pose, corners: int = 24) -> list[Point]:
         """Return points around the robot, for a picture."""
         back, front = self.spine(pose)
-        found = []
+        points = []
         for k in range(corners):
             middle = front if k < corners // 2 else back
             angle = math.radians(pose.heading - 90) + math.pi * (
                 k / (corners // 2 - 1) if k < corners // 2 else (k - 1) / (corners // 2 - 1)
             )
             x, y = self.radius_cm * math.cos(angle), self.radius_cm * math.sin(angle)
-            found.append(Point(middle.x + x, middle.y + y))
-        return found
+            points.append(Point(middle.x + x, middle.y + y))
+        return points
 
 
 class Drive(NamedTuple):
@@ -120,7 +120,7 @@ class Driving:
     def touched(self, pose: Pose) -> Point | None:
         """Return the place where a robot at `pose` touches an obstacle, or None."""
         contact = self._contact(pose)
-        return contact.theirs if contact is not None and contact.gap_cm < TOUCH_CM else None
+        return contact.obstacle_point if contact is not None and contact.gap_cm < TOUCH_CM else None
 
     def _contact(self, pose: Pose) -> Contact | None:
         """Return the nearest obstacle, or None where each is further away than NEAR_CM."""
@@ -150,10 +150,10 @@ class Driving:
         """Return the pose at `now_ms`. This does not change the later path."""
         while self._kept_ms + STRIDE_MS <= now_ms:
             self._keep(STRIDE_MS)
-        return self._driven(self._pose, self._free_cm, now_ms - self._kept_ms).way[-1]
+        return self._drive_free(self._pose, self._free_cm, now_ms - self._kept_ms).way[-1]
 
     def _keep(self, duration_ms: float) -> None:
-        drive = self._driven(self._pose, self._free_cm, duration_ms)
+        drive = self._drive_free(self._pose, self._free_cm, duration_ms)
         self._kept_ms += duration_ms
         before = self._pose
         self._pose, self._free_cm = drive.way[-1], drive.free_cm
@@ -180,7 +180,7 @@ class Driving:
         bx, by = third.x_cm - second.x_cm, third.y_cm - second.y_cm
         return abs(ax * by - ay * bx) < 1e-6 and ax * bx + ay * by >= 0
 
-    def _driven(self, pose: Pose, free_cm: float, duration_ms: float) -> Drive:
+    def _drive_free(self, pose: Pose, free_cm: float, duration_ms: float) -> Drive:
         """Return the way from a pose on, of which `free_cm` are known to be free."""
         if (not self.left and not self.right) or duration_ms <= 0:
             return Drive([pose], free_cm)
@@ -198,8 +198,8 @@ class Driving:
                 free_cm -= speed * step_ms
                 is_known = False
             else:
-                wanted = moved(self.body, pose, *self._slowed(pose), step_ms)
-                pushed, free_cm = self._pushed(pose, wanted)
+                expected = moved(self.body, pose, *self._pushed_wheel_speeds(pose), step_ms)
+                pushed, free_cm = self._slide_along(pose, expected)
                 way.append(pushed)
                 is_known = True
             pose = way[-1]
@@ -213,7 +213,7 @@ class Driving:
         turning = abs(self.right - self.left) / 200 * math.radians(self.body.turn_s) / 1000
         return ahead + turning * self.hull.reach_cm
 
-    def _slowed(self, pose: Pose) -> tuple[float, float]:
+    def _pushed_wheel_speeds(self, pose: Pose) -> tuple[float, float]:
         """Return how fast the wheels are, in percent, where an obstacle pushes against the body.
 
         It pushes as much as keeps the body out. Each motor is slower by what pushes against it,
@@ -225,14 +225,16 @@ class Driving:
             return left, right
         along = math.radians(pose.heading)
         cos, sin = math.cos(along), math.sin(along)
-        apart = math.dist(contact.ours, contact.theirs) or 1.0
+        apart = math.dist(contact.body_point, contact.obstacle_point) or 1.0
         away_x, away_y = (
             (ours - theirs) / apart
-            for ours, theirs in zip(contact.ours, contact.theirs, strict=True)
+            for ours, theirs in zip(contact.body_point, contact.obstacle_point, strict=True)
         )
         ahead = away_x * cos + away_y * sin  # the part of the push that is along the robot,
         aside = away_y * cos - away_x * sin
-        lever_cm = (contact.ours.x - pose.x_cm) * cos + (contact.ours.y - pose.y_cm) * sin
+        lever_cm = (contact.body_point.x - pose.x_cm) * cos + (
+            contact.body_point.y - pose.y_cm
+        ) * sin
         lever = lever_cm * math.radians(self.body.turn_s) / self.body.speed_cm_s
         turning = aside * lever  # and the one that turns it
         comes = (left + right) / 2 * ahead + (right - left) / 2 * turning
@@ -241,7 +243,7 @@ class Driving:
         push = comes / (ahead * ahead + turning * turning)
         return left - push * (ahead - turning), right - push * (ahead + turning)
 
-    def _pushed(self, before: Pose, pose: Pose) -> tuple[Pose, float]:
+    def _slide_along(self, before: Pose, pose: Pose) -> tuple[Pose, float]:
         """Return where a robot ends up on its way to `pose`, and the free distance there.
 
         It is pushed out of every obstacle; if that is not possible it stays where it was.
@@ -252,13 +254,13 @@ class Driving:
                 return pose, NEAR_CM
             if contact.gap_cm > -EXACT_CM:
                 return pose, max(0.0, contact.gap_cm)
-            apart = math.dist(contact.ours, contact.theirs)
+            apart = math.dist(contact.body_point, contact.obstacle_point)
             if apart < self.hull.radius_cm / 2:  # deeper than a step leads: it was forced in
                 break
             scale = -contact.gap_cm / apart
             pose = Pose(
-                pose.x_cm + (contact.ours.x - contact.theirs.x) * scale,
-                pose.y_cm + (contact.ours.y - contact.theirs.y) * scale,
+                pose.x_cm + (contact.body_point.x - contact.obstacle_point.x) * scale,
+                pose.y_cm + (contact.body_point.y - contact.obstacle_point.y) * scale,
                 pose.heading,
             )
         return before, 0.0

@@ -113,7 +113,7 @@ def seen(
             continue
         dx, dy = bx - ax, by - ay
         first, last = Point(ax + low * dx, ay + low * dy), Point(ax + high * dx, ay + high * dy)
-        found = distance(Segment(first, last), 0.0, 0.0)
-        if best is None or found < best:
-            best = found
+        result = distance(Segment(first, last), 0.0, 0.0)
+        if best is None or result < best:
+            best = result
     return best

@@ -169,8 +169,8 @@ class Firmware:
         """Return the offset in front of which the program is held, or None."""
         if not self.is_watched:
             return None
-        found = self.call("held_at") % _CLOCK
-        return None if found == NOWHERE else found
+        result = self.call("held_at") % _CLOCK
+        return None if result == NOWHERE else result
 
     @property
     def now_us(self) -> int:
@@ -223,6 +223,6 @@ class Firmware:
         for k in range(self._notes, self._notes + count * _NOTE, _NOTE):
             now_ms, what, *values = numbers[k : k + _NOTE]
             tell, takes = self._told[what - 1]
-            found = tell(now_ms % _CLOCK, *values[:takes])
+            result = tell(now_ms % _CLOCK, *values[:takes])
             if what in _ASKS:
-                numbers[self._reading] = found
+                numbers[self._reading] = result

@@ -75,7 +75,7 @@ class _Sheet:
             [self.at(point) for point in hull.outline(pose)], outline=ROBOT, width=round(2.5 * FINE)
         )
         self._disc(hull.spine(pose).b, 1.2, ROBOT)
-        self._foot(title)
+        self._draw_title(title)
         small = self.image.resize(
             (self.image.width // FINE, self.image.height // FINE), Image.Resampling.LANCZOS
         )
@@ -94,7 +94,7 @@ class _Sheet:
         places = [self.at(point) for point in points]
         self.draw.line(places, fill=colour, width=max(1, round(width)), joint="curve")
 
-    def _foot(self, title: str) -> None:
+    def _draw_title(self, title: str) -> None:
         """Write the title, and draw how long a good length is."""
         font = ImageFont.load_default(16 * FINE)
         y = self.image.height - self.foot

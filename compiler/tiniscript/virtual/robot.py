@@ -102,11 +102,11 @@ class VirtualRobot:
         self.is_lit = False  # the light is on: the button would start a program
         self.fault = ""  # the fault that has ended the last program
         self.actuators: dict[int, int] = {}  # the current value of each
-        self._traced = TracedRobot(profile.kit, self._noticed)
+        self._traced = TracedRobot(profile.kit, self._sensor_reading)
         self._ended = ""  # how the program has ended, as far as it is known
         self._remote = 0  # what the firmware has heard, of the reading that it takes
         self._began_ms = 0  # when it was switched on
-        self._firmware = self._switched_on(POWER_ON, memory)
+        self._firmware = self._power_up(POWER_ON, memory)
 
     # -- what happens to it -----------------------------------------------------------------------
 
@@ -140,7 +140,7 @@ class VirtualRobot:
         memory = self._firmware.memory()
         self.switch_off()
         self._firmware.close()
-        self._firmware = self._switched_on(reset, memory)
+        self._firmware = self._power_up(reset, memory)
 
     def rest(self) -> None:
         """End its time: it no longer moves, whatever its firmware does."""
@@ -153,7 +153,7 @@ class VirtualRobot:
         self._halt("OFF")
         self.actuators.clear()
 
-    def _switched_on(self, reset: int, memory: bytes | None) -> Firmware:
+    def _power_up(self, reset: int, memory: bytes | None) -> Firmware:
         self._began_ms = self.now_ms
         kit, board = self.profile.kit, self.profile.board
         baud = board.baud if self.settings.baud is None else self.settings.baud
@@ -228,32 +228,32 @@ class VirtualRobot:
 
     def edges(self, now_ms: int) -> int:
         """Return how many edges of both discs have passed."""
-        self._at(now_ms)
+        self._advance_to(now_ms)
         return self.wheels.edges(self.now_ms) if self.wheels else 0
 
     def read(self, now_ms: int, sensor: int, remote: int) -> int:
         """Return a reading; `remote` is what the firmware has heard from a remote control."""
-        self._at(now_ms)
+        self._advance_to(now_ms)
         self._remote = remote
         return self._traced.read(sensor) or 0
 
     def beep(self, now_ms: int, hertz: int, duration_ms: int) -> None:
-        self._at(now_ms)
+        self._advance_to(now_ms)
         self._traced.beep(hertz, duration_ms)
 
     def show(self, now_ms: int, value: int, is_yes_no: int, at: int) -> None:
-        self._at(now_ms)
+        self._advance_to(now_ms)
         self._traced.show(value, bool(is_yes_no))
         self._traced.events[-1] = self._traced.events[-1]._replace(at=at)
 
     def set(self, now_ms: int, actuator: int, value: int) -> None:
-        self._at(now_ms)
+        self._advance_to(now_ms)
         self._traced.set(actuator, value)
         self.actuators[actuator] = self._traced.events[-1].values[1]
 
     def actuators_off(self, now_ms: int) -> None:
         """Turn actuators off; a servo gets no more pulses, unless its profile holds it."""
-        self._at(now_ms)
+        self._advance_to(now_ms)
         board, kit = self.profile.board, self.profile.kit
         for number, value in sorted(self.actuators.items()):
             if kit.actuators[number].is_yes_no:
@@ -274,7 +274,7 @@ class VirtualRobot:
 
     def release(self, now_ms: int) -> None:
         self._settle()  # two programs may follow each other in one step
-        self._at(now_ms)
+        self._advance_to(now_ms)
         if self.is_at_rest:
             return
         self.is_running = True
@@ -295,22 +295,22 @@ class VirtualRobot:
 
     # ---------------------------------------------------------------------------------------------
 
-    def _at(self, now_ms: int) -> None:
+    def _advance_to(self, now_ms: int) -> None:
         self.now_ms = self._began_ms + now_ms
         self._traced.now_ms = self.now_ms
 
     def _set_motors(self, now_ms: int, left: float, right: float) -> None:
-        self._at(now_ms)
+        self._advance_to(now_ms)
         if self.is_at_rest:
             return
-        made = []
+        items = []
         for power, percent in zip((left, right), self.settings.motors, strict=True):
             off = self.chance.gauss(0.0, self.settings.noise) if self.settings.noise else 0.0
-            made.append(power * percent / 100 * (1 + off))
+            items.append(power * percent / 100 * (1 + off))
         if self.wheels:
-            self.wheels.set(self.now_ms, *made)
+            self.wheels.set(self.now_ms, *items)
         else:
-            self.driving.set_motors(self.now_ms, *made)
+            self.driving.set_motors(self.now_ms, *items)
 
     def _halt(self, said: str) -> None:
         """Its motors have no power from now on, and a program that runs has ended, as is `said`.
@@ -326,7 +326,7 @@ class VirtualRobot:
         self.is_running = False
         self._ended = ""
 
-    def _noticed(self, sensor: int) -> int:
+    def _sensor_reading(self, sensor: int) -> int:
         if self.wheels:
             self.wheels.go_on(self.now_ms)
         return self.sensing.read(sensor, self.driving.go_on(self.now_ms), self._remote)
@@ -348,14 +348,14 @@ class VirtualRobot:
     @property
     def at(self) -> int | None:
         """Return where the instruction that runs begins, or None while no program runs."""
-        found = self._firmware.call("at") % (1 << 32)
-        return None if found == NOWHERE else found
+        result = self._firmware.call("at") % (1 << 32)
+        return None if result == NOWHERE else result
 
     @property
     def places(self) -> list[int]:
         """Return the offsets of what the program does now, one for each of its tasks."""
-        found = self._firmware.tasks()
-        return found or ([] if self.at is None else [self.at])
+        result = self._firmware.tasks()
+        return result or ([] if self.at is None else [self.at])
 
     @property
     def watched(self) -> Firmware:

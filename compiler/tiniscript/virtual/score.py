@@ -41,7 +41,7 @@ class Score:
         x_cm, y_cm, _ = robot.pose
         stands = not (robot.driving.left or robot.driving.right)
         if math.hypot(x_cm - flag.place.x, y_cm - flag.place.y) <= flag.reach_cm:
-            self._taken += stands or not flag.rests
+            self._taken += stands or not flag.needs_rest
 
     def state(self) -> dict[str, Any] | None:
         """Return what is to be shown, or None where there are no flags."""

@@ -57,12 +57,12 @@ class Sensing:
 
     def read(self, number: int, pose: Pose, remote: int = 0) -> int:
         """Return the reading of a sensor at `pose`, or what a remote control says there."""
-        told = self._told.get(number)
-        if told:
-            return told.pop(0) if len(told) > 1 else told[0]
+        message = self._told.get(number)
+        if message:
+            return message.pop(0) if len(message) > 1 else message[0]
         if number >= len(self.robot.kit.sensors):
             return remote
-        return self._noticed(number, pose, self.noise)
+        return self._sense(number, pose, self.noise)
 
     def tell(self, number: int, reading: int) -> None:
         """Have a sensor read that from now on, as far as it can; in thousandths, or 0 and 1."""
@@ -70,19 +70,19 @@ class Sensing:
 
     def look(self, number: int, pose: Pose) -> int:
         """Return the reading without noise. This does not change later readings."""
-        told = self._told.get(number)
-        return told[0] if told else self._noticed(number, pose, 0.0)
+        message = self._told.get(number)
+        return message[0] if message else self._sense(number, pose, 0.0)
 
-    def _noticed(self, number: int, pose: Pose, noise: float) -> int:
+    def _sense(self, number: int, pose: Pose, noise: float) -> int:
         device = self.robot.kit.sensors[number]
         place = self.robot.body.places.get(device.name)
         if place is None:
-            return _nothing(device)
+            return _idle_reading(device)
         return _in_range(device, self._found(device, place, pose, noise))
 
     def _found(self, device: Device, place: Place, pose: Pose, noise: float) -> float:
         """Return a reading in thousandths, which may be out of range."""
-        eye, heading = _stood(place, pose)
+        eye, heading = _sensor_pose(place, pose)
         span = device.high - device.low
         off = self._chance.gauss(0.0, noise) if noise else 0.0
         if place.sees == "distance":
@@ -134,14 +134,14 @@ class Sensing:
         contact = self.hull.contact(pose, self._near[1]) if self._near[1] else None
         if contact is None or contact.gap_cm >= TOUCH_CM:
             return False
-        (_, _, heading), point = pose, contact.theirs
+        (_, _, heading), point = pose, contact.obstacle_point
         sits = math.atan2(place.y_cm, place.x_cm) if place.x_cm or place.y_cm else 0.0
-        side = math.atan2(point.y - contact.ours.y, point.x - contact.ours.x)
+        side = math.atan2(point.y - contact.body_point.y, point.x - contact.body_point.x)
         off = (side - sits - math.radians(heading) + math.pi) % (2 * math.pi) - math.pi
         return abs(off) <= BUMPER
 
 
-def _stood(place: Place, pose: Pose) -> tuple[Point, float]:
+def _sensor_pose(place: Place, pose: Pose) -> tuple[Point, float]:
     """Return where a sensor is on the floor, and where it looks."""
     along = math.radians(pose.heading)
     cos, sin = math.cos(along), math.sin(along)
@@ -152,7 +152,7 @@ def _stood(place: Place, pose: Pose) -> tuple[Point, float]:
     return eye, along + math.radians(place.heading)
 
 
-def _nothing(device: Device) -> int:
+def _idle_reading(device: Device) -> int:
     """Return the reading of a sensor that detects nothing in this world."""
     if device.is_yes_no:
         return 0

@@ -33,9 +33,9 @@ class Heartbeat:
         self._heard_s = wall_s
         *whole, self._open = (self._open + data).split(b"\0")
         self._open = self._open[:LONGEST]
-        for each in whole:
-            if each and len(each) < LONGEST:
-                self._frame = b"\0" + each + b"\0"  # it is repeated
+        for item in whole:
+            if item and len(item) < LONGEST:
+                self._frame = b"\0" + item + b"\0"  # it is repeated
 
     def forget(self) -> None:
         """Forget the last frame, because another client connects."""
@@ -90,9 +90,9 @@ class Simulator:
     @property
     def over_ms(self) -> int | None:
         """When the robot's time is over, if that is known."""
-        began_ms = self.robot.started_ms
-        if self.lasts_ms is not None and began_ms is not None:
-            return began_ms + self.lasts_ms
+        started_ms = self.robot.started_ms
+        if self.lasts_ms is not None and started_ms is not None:
+            return started_ms + self.lasts_ms
         return self.end_ms
 
     @property

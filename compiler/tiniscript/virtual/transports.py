@@ -85,7 +85,7 @@ class Transports:
 
     def receive(self) -> bytes:
         """Return what has come. Lets clients in and out."""
-        data = self._heard()
+        data = self._received()
         first = self._let_in()
         return data if first is None else first
 
@@ -94,7 +94,7 @@ class Transports:
         now_s = monotonic()
         return any(caller.ends_with_stop(now_s) for caller in self._callers)
 
-    def _heard(self) -> bytes:
+    def _received(self) -> bytes:
         if self._client is not None:
             try:
                 data = self._client.recv(READ_BYTES)
@@ -322,16 +322,16 @@ class BadLine:
             elif kind == 1:
                 self._late.append((due_ms, byte ^ 1 << self._chance.randrange(8)))
             elif kind == 2:
-                self._late.extend((due_ms, each) for each in (*RADIO_TEXT, byte))
+                self._late.extend((due_ms, item) for item in (*RADIO_TEXT, byte))
             else:
                 self._late.append((due_ms + self._chance.randrange(LATEST_MS), byte))
 
     def take(self, now_ms: int) -> bytes:
         """Return the bytes that have arrived."""
-        found = bytearray()
+        result = bytearray()
         while self._late and self._late[0][0] <= now_ms:
-            found.append(self._late.popleft()[1])
-        return bytes(found)
+            result.append(self._late.popleft()[1])
+        return bytes(result)
 
     @property
     def waiting(self) -> int:

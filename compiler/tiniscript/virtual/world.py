@@ -35,11 +35,11 @@ class Lamp(NamedTuple):
 
 
 class Flag(NamedTuple):
-    """A flag: a robot takes it within `reach_cm`; where `rests`, only while it stands there."""
+    """A flag. A robot takes it within `reach_cm`; if it `needs_rest`, only by standing there."""
 
     place: Point
     reach_cm: float
-    rests: bool
+    needs_rest: bool
 
 
 class World(NamedTuple):

@@ -93,11 +93,11 @@ def _parts(root: Table, key: str, read: Callable[[Table], T]) -> tuple[T, ...]:
     tables = root.tables(key)
     if len(tables) > PARTS:
         root.complain("too_many_parts", key, found=str(len(tables)), most=str(PARTS))
-    found = []
+    matches = []
     for table in tables[:PARTS]:
-        found.append(read(table))
+        matches.append(read(table))
         table.finish()
-    return tuple(found)
+    return tuple(matches)
 
 
 def _number(
@@ -154,13 +154,13 @@ def _flag(table: Table) -> Flag:
 
 def _labels(table: Table, name: str) -> dict[str, str]:
     """Return the world's name by language, or `name` in each where it has none."""
-    written: ByLanguage[str] = ByLanguage()
+    text: ByLanguage[str] = ByLanguage()
     for language in languages():
         label = table.label(language, LABEL_CHARACTERS)
         if label is not None:
-            written[language] = label
+            text[language] = label
     table.finish()
-    return written or ByLanguage.fromkeys(languages(), name)
+    return text or ByLanguage.fromkeys(languages(), name)
 
 
 DEFAULT = "obstacles"
@@ -169,8 +169,8 @@ FOLDER = Path(__file__).with_name("worlds")
 
 def names() -> list[str]:
     """Return the names of the shipped worlds, the default first."""
-    found = [path.stem for path in FOLDER.glob("*.toml")]
-    return sorted(found, key=lambda name: (name != DEFAULT, name))
+    matches = [path.stem for path in FOLDER.glob("*.toml")]
+    return sorted(matches, key=lambda name: (name != DEFAULT, name))
 
 
 def load(name_or_path: str) -> World:
@@ -184,5 +184,5 @@ def load(name_or_path: str) -> World:
     if robots.is_path(name_or_path):
         return read(robots.text_of(name_or_path, WorldRefused), Path(name_or_path).stem)
     values = {"name": shown(name_or_path), "known": ", ".join(names())}
-    near = nearest(name_or_path.lower(), names()) or ""
-    raise WorldRefused(("no_such_world", {**values, "near": near}))
+    suggestion = nearest(name_or_path.lower(), names()) or ""
+    raise WorldRefused(("no_such_world", {**values, "near": suggestion}))

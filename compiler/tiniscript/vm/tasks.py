@@ -131,7 +131,7 @@ class TaskMachine(Machine):
         self.status = RUNNING
         at, left = self.at, budget
         try:
-            while left and self._finds_turn():
+            while left and self._next_turn():
                 run, pc = self._steps, self.me.pc
                 while left:
                     left -= 1
@@ -154,7 +154,7 @@ class TaskMachine(Machine):
         self.steps += budget - left
         return self.status
 
-    def _finds_turn(self) -> bool:
+    def _next_turn(self) -> bool:
         """Go on with a turn, or begin the next one of the round; FALSE: the round is over."""
         while not self.in_turn:
             if self.next_rank == len(self.tasks):
@@ -307,7 +307,7 @@ class TaskMachine(Machine):
     def _begin_watched(self) -> None:
         me = self.me
         if me.powers is not None:
-            self._take()
+            self._take_motors()
             me.forget_set()
             me.is_moving = me.drives = True
             self._set_motors(me.powers)
@@ -347,7 +347,7 @@ class TaskMachine(Machine):
         me = self.me
         me.set_to, me.has_set, me.keeps = (left, right), True, me.is_when
         if not self._is_below():
-            self._take()
+            self._take_motors()
             self._set_motors(me.set_to)
 
     def stop_motors(self) -> None:
@@ -371,7 +371,7 @@ class TaskMachine(Machine):
         """Whether its move, or what is no wait that an UNTIL watches, may not begin."""
         return self.me.powers is not None and self._is_below()
 
-    def _take(self) -> None:
+    def _take_motors(self) -> None:
         """Give the motors to the task whose turn it is; no higher one has them."""
         if self.holder is not None and self.holder is not self.me and self.holder.drives:
             self.holder.stand_still(self.now_ms)

@@ -130,7 +130,7 @@ def _binary(calculate: Callable[[int, int], int]) -> Handler:
     return handler
 
 
-def _comparing(compare: Compare) -> Handler:
+def _comparison_handler(compare: Compare) -> Handler:
     def handler(m: Execution, after: int) -> Step:
         stack = m.task.stack
 
@@ -166,7 +166,7 @@ _CALCULATE: dict[str, Callable[[int, int], int]] = {
     "OR": lambda a, b: 1 if a or b else 0,
 }  # fmt: skip
 HANDLERS.update((name, _binary(calculate)) for name, calculate in _CALCULATE.items())
-HANDLERS.update((name, _comparing(compare)) for name, compare in COMPARE.items())
+HANDLERS.update((name, _comparison_handler(compare)) for name, compare in COMPARE.items())
 HANDLERS["NEG"] = _unary(fixed_point.negate)
 HANDLERS["ABS"] = _unary(fixed_point.absolute)
 HANDLERS["NOT"] = _unary(lambda a: 0 if a else 1)

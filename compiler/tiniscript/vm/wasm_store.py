@@ -44,7 +44,7 @@ class Instance:
                  for import_type in module.imports]  # fmt: skip
         exports = wasmtime.Instance(self._store, module, given).exports(self._store)
         found = {export.name: exports[export.name] for export in module.exports}
-        self.functions = {name: _called(self._store, func)
+        self.functions = {name: _bound_function(self._store, func)
                           for name, func in found.items() if isinstance(func, Func)}  # fmt: skip
         memory = found["memory"]
         assert isinstance(memory, Memory)
@@ -74,7 +74,7 @@ def _module(path: Path) -> Module:
     return Module(_engine(), path.read_bytes())
 
 
-def _called(store: Store, function: Func) -> Callable[..., Any]:
+def _bound_function(store: Store, function: Func) -> Callable[..., Any]:
     """Return a function of a module, of whole numbers, to call without its store.
 
     `wasmtime` looks at the types of all numbers at each call, which takes ten times as long as the

@@ -78,8 +78,8 @@ def _language() -> int:
     import locale
 
     names = (os.environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
-    found = (next(filter(None, names), None) or locale.getlocale()[0] or "").lower()
-    code = TEAMS.get(found.partition("_")[0], found[:2])
+    result = (next(filter(None, names), None) or locale.getlocale()[0] or "").lower()
+    code = TEAMS.get(result.partition("_")[0], result[:2])
     return LANGUAGES.index(code) if code in LANGUAGES else 0
 
 

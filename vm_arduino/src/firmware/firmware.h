@@ -2,7 +2,9 @@
 //
 // Knows no pins. Time comes in as `now_ms`; nothing here blocks. There is only one robot, so these
 // are plain functions. Parts: `program` holds the images in memory, `run` runs one, `persistence`
-// saves, `identity` is id, name and trim, `port` answers the link, `state` is what they share.
+// saves, `identity` is id, name, `trim` and `pace`, `port` answers the link, with `owners`; `state` is
+// what they share. `guide` goes a way, `breakpoints` and `statements` halt a run, `button_hold` and
+// `identify` are what a long press means and how the robot shows which one it is.
 
 #pragma once
 

@@ -196,9 +196,7 @@ Answer port_keep_key(uint8_t which, const uint8_t* key) {
   copy_bytes(key, record + kKeysAt + which * kKeyRoom, kKeyRoom);
   const bool was_worn = (worn & kOwnerBit) != 0;
   keep_keys();
-#ifdef tiniscript_transports
   link.expire_others();
-#endif
   return was_worn ? Answer::kNotKept : Answer::kSaving;
 }
 

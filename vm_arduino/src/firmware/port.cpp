@@ -43,9 +43,7 @@ bool port_may_prepare_upload(bool is_live) {
 }
 
 bool port_may_write_ahead() {
-#ifdef tiniscript_transports
   if (!link.is_driving()) return false;
-#endif
   const bool is_text = kTextIsInProgram && is_image_running(program) && !is_in_memory();
   return has_booted() && !is_image_running(live) && !is_text && load_program();
 }
@@ -67,7 +65,7 @@ void port_take(uint8_t mode, bool is_live) {
   show_light();
 }
 
-void port_seal(const uint8_t* image) {
+void port_has_checksum(const uint8_t* image) {
   if (image == program && (!kTextIsInProgram || is_in_memory()))
     robot_status.program = get32(image + kChecksumAt);
 }
@@ -78,9 +76,7 @@ void port_start(bool is_live) {
 
 uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 #ifdef tiniscript_has_draft
-#ifdef tiniscript_transports
   if (!link.take_text_memory()) return nullptr;
-#endif
   *has_room = true;
   *room = kTextRoom;
   return draft;

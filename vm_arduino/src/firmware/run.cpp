@@ -26,9 +26,7 @@ Flag<Bit::kMayStart>
     may_start;  // the button is down and nothing ran or was stopped since: its release starts
 Flag<Bit::kStartDue> is_start_due;  // the button was released, but the program was not available
 bool has_motors_on;
-#ifdef tiniscript_reads_keys
-bool reads_keys;  // the program that runs has read some
-#endif
+bool reads_keys;  // the program that runs has read some, where kReadsKeys
 Flag<Bit::kPrepared> is_prepared;  // machine and board are reset for a program
 
 #ifdef tiniscript_has_breakpoints
@@ -50,7 +48,7 @@ uint32_t machine_ms() { return now_ms - held_ms; }
 void begin_breakpoints(const uint8_t* image, uint16_t length) {
   held_ms = 0;
   goes_on = false;
-  if (breakpoints.has_places()) link.seal();
+  if (breakpoints.has_places()) link.write_checksum();
   if (breakpoints.has_places() && get32(image + kChecksumAt) != places_program) {
     breakpoints.forget_places();
   }
@@ -91,7 +89,7 @@ Status tick_machine() { return machine.tick(now_ms, kTickBudget); }
 
 // Records a fault.
 void fault(uint8_t number, uint16_t at) {
-  link.seal();  // the record contains the checksum of its image
+  link.write_checksum();  // the record contains the checksum of its image
   robot_status.fault = number;
   robot_status.fault_at = at;
   robot_status.fault_program = get32(run_image + kChecksumAt);
@@ -144,9 +142,7 @@ void begin_run(const uint8_t* image) {
   is_start_due = false;
   may_start = false;
   link.let_go();
-#ifdef tiniscript_reads_keys
-  reads_keys = false;
-#endif
+  if (kReadsKeys) reads_keys = false;
   guide_begin();
   robot_status.state = State::kRunning;
   robot_status.run++;
@@ -250,7 +246,7 @@ uint16_t port_run_at() { return machine.at(); }
 #ifdef tiniscript_has_breakpoints
 Answer port_set_breakpoints(const uint8_t* places, uint8_t count) {
   if (!is_running() && (!has_booted() || !load_program())) return not_now();
-  link.seal();
+  link.write_checksum();
   const uint8_t* const image = is_running() ? run_image : program;
   const uint16_t length = get16(image + kCodeLengthAt);
   if (!breakpoints.set(code_of(image), length, places, count)) return Answer::kBadValue;
@@ -308,14 +304,10 @@ bool firmware_runs(Place* place) {
 
 // -- what a program asks ------------------------------------------------------------------------
 
-#ifdef tiniscript_reads_keys
-bool port_reads_keys() { return reads_keys && is_running(); }
-#endif
+bool port_reads_keys() { return kReadsKeys && reads_keys && is_running(); }
 
 int32_t remote_reading(uint8_t number) {
-#ifdef tiniscript_reads_keys
-  reads_keys = true;
-#endif
+  if (kReadsKeys) reads_keys = true;
   const RemoteKeys* const remote_keys = link.remote();
   if (remote_keys == nullptr) return 0;
   if (number < kRemoteKeys) {

@@ -33,8 +33,6 @@ const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80,
 constexpr uint8_t kChatter = 3;  // so many of them
 constexpr uint8_t kAsking = 5;
 
-bool is_latched() { return port_status().state >= State::kStopped; }
-
 }  // namespace
 
 void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {
@@ -262,7 +260,7 @@ bool Console::has_room() {
   uint16_t room;
   if (!text_may_drive()) {
     refused_ = Remark::kNotOwner;
-  } else if (!reader_.has_setup() && is_latched()) {
+  } else if (!reader_.has_setup() && port_is_latched()) {
     refused_ = Remark::kLatched;
   } else {
     refused_ = Remark::kSaving;

@@ -58,8 +58,7 @@ bool KeyLine::takes(const char* word) {
 
 // Takes a blank and a number from -100 to 100.
 bool KeyLine::take_way(int8_t* way) {
-  if (*at_ != ' ') return false;
-  while (*at_ == ' ') at_++;
+  if (*at_++ != ' ') return false;
   const bool is_below = *at_ == '-';
   if (is_below) at_++;
   if (!is_digit(*at_)) return false;

@@ -16,7 +16,10 @@ class KeyLine {
   void begin() { length_ = 0; }
   bool is_empty() const { return length_ == 0; }
 
+  // Of several blanks one is kept, so that no count of them makes a line too long.
   void put(uint8_t byte) {
+    if (byte == '\t') byte = ' ';
+    if (byte == ' ' && length_ != 0 && bytes_[length_ - 1] == ' ') return;
     if (length_ < kMost) bytes_[length_] = byte;
     if (length_ <= kMost) length_++;
   }
@@ -25,7 +28,7 @@ class KeyLine {
   bool read(RemoteKeys* remote_keys);
 
  private:
-  static constexpr uint8_t kMost = 16;  // PAD -100 -100, and some blanks
+  static constexpr uint8_t kMost = 20;  // PAD -100 -100, with a blank and a ; on each side
 
   bool takes(const char* word);
   bool take_way(int8_t* way);

@@ -25,15 +25,10 @@ __attribute__((weak)) bool port_report_task(uint8_t, TaskReport*) { return false
 namespace {
 
 constexpr uint8_t kLiveByte = static_cast<uint8_t>(Message::kLive);
-constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
-
-uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
-
-bool is_latched() { return port_status().state >= State::kStopped; }
 
 // Whether a frame whose payload ends at `end` begins as one of its length does: a large one has a 0
 // before its payload. `link_seals.cpp` looks at those that are sealed.
-bool may_begin_so(const uint8_t* bytes, uint8_t end) {
+bool has_right_start(const uint8_t* bytes, uint8_t end) {
   return !is_large(end) || bytes[kPayloadAt] == 0;
 }
 
@@ -91,13 +86,13 @@ void Link::turn() {
   const Cause cause = receiver_->due_stop();
   if (cause != Cause::kNone) {
     receiver_->take_stop();  // cleared before it is handled, so that another stop is not lost
-    halt(cause);
+    stop(cause);
   }
   const bool is_there = receiver_->has_frame();  // the whole frame has arrived
   take_arrived();
   if (is_there && receiver_->frame_may_stop()) {
     receiver_->let_frame();
-    if (!check_.is_whole()) halt(Cause::kText);
+    if (!check_.is_whole()) stop(Cause::kText);
   }
   // A reply that is due goes first, and text last. Before a stop that waits among text no frame
   // does anything.
@@ -106,32 +101,32 @@ void Link::turn() {
   } else if (console_.is_due() || receiver_->has_text()) {
     talk();
   }
-  if ((is_attached_ || attends()) && is_dead_man_over() &&
+  if ((is_attached_ || owns_halt()) && is_dead_man_over() &&
       port_status().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
   }
   if (kHasOwners && left_ms_[kListen] <= kListenMs - kAuthorityMs) expire();
 #ifdef tiniscript_has_breakpoints
-  if (attends() && left_ms_[kHaltedAgain] == 0) halted();
+  if (owns_halt() && left_ms_[kHaltedAgain] == 0) halted();
 #endif
 }
 
 void Link::send_due() {
   Link* const self = near(this);
-  if (self->unsealed_ != nullptr) self->seal();
+  if (self->without_checksum_ != nullptr) self->write_checksum();
   if (self->due_ != 0 && self->left_ == 0) self->send();
 }
 
 // Writes the checksum into an image that is complete otherwise.
-tini_noinline void Link::seal() {
-  uint8_t* const image = unsealed_;
+tini_noinline void Link::write_checksum() {
+  uint8_t* const image = without_checksum_;
   if (image == nullptr) return;
-  unsealed_ = nullptr;
+  without_checksum_ = nullptr;
   const uint32_t checksum = image_checksum(image, image_length(image));
   __builtin_memcpy(image + kChecksumAt, &checksum, sizeof checksum);
   if (!is_typed()) checksum_ = checksum;
-  port_seal(image);
+  port_has_checksum(image);
 }
 
 bool Link::next_tx_byte(uint8_t* byte) {
@@ -145,11 +140,11 @@ bool Link::next_tx_byte(uint8_t* byte) {
 
 // Stops the robot. Of one that stands already the epoch stays, or a line that is held low would
 // exhaust it. A waiting packet is from before the stop and therefore stale.
-tini_noinline void Link::halt(Cause cause) {
+tini_noinline void Link::stop(Cause cause) {
   const bool was_stopped = port_status().state == State::kStopped;
   port_stop(0);
   const bool has_stale = cause != Cause::kMessage && receiver_->has_frame();
-  note_halt();
+  note_stop();
   if (!was_stopped || has_stale) {
     stopped(cause);
   } else {
@@ -168,7 +163,7 @@ inline void Link::take_arrived() {
   if (length == check_.taken()) return;
   asm volatile("" ::: "memory");  // barrier: the interrupt has written the bytes before the length
   check_.take(receiver_->bytes(), length < kPacketBytes ? length : kPacketBytes);
-  if (check_.left() <= kCrcBytes && receiver_->bytes()[kTypeAt] == kLiveByte) prepare();
+  if (check_.left() <= kCrcBytes && receiver_->bytes()[kTypeAt] == kLiveByte) make_ahead();
 }
 
 // Answers a frame.
@@ -180,7 +175,7 @@ void Link::on_frame() {
     damaged_++;
   } else {
     const uint8_t end = check_.decode(receiver_->bytes());
-    if (!may_begin_so(receiver_->bytes(), end)) {
+    if (!has_right_start(receiver_->bytes(), end)) {
       damaged_++;
     } else if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // otherwise it is an echo
       const uint8_t opened = open_seal(end);
@@ -236,7 +231,7 @@ tini_noinline void Link::handle(uint8_t end) {
   } else if (is_marked && (is_hello || type == static_cast<uint8_t>(Message::kAuthenticate))) {
     refusal = Answer::kNotSealed;  // they begin what a seal is made of
   } else if (is_marked && !is_sealed()) {
-    if (type == static_cast<uint8_t>(Message::kStop)) halt(Cause::kMessage);
+    if (type == static_cast<uint8_t>(Message::kStop)) stop(Cause::kMessage);
     refusal = Answer::kNotOwner;
   } else if (type == 0 || type > kLastRequest) {
     refusal = Answer::kUnknownMessage;
@@ -325,7 +320,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       if (found == Answer::kOk) said_.detail = get16(payload + kFetchOffsetAt);
       break;
     case Message::kStop:
-      halt(Cause::kMessage);
+      stop(Cause::kMessage);
       if (kHasOwners && may(is_teacher())) rights_ |= kHeldBack;
       break;
     case Message::kClear:
@@ -336,7 +331,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
         found = Answer::kBadValue;
       } else if ((found = lacks_program()) != Answer::kOk) {
         break;
-      } else if (is_latched()) {
+      } else if (port_is_latched()) {
         found = Answer::kLatched;
       } else if ((found = port_prepare_upload(true)) == Answer::kOk) {
         image_ = nullptr;
@@ -435,9 +430,9 @@ void Link::renew() {
 #ifdef tiniscript_has_breakpoints
 // Of a session that is over: what is halted for it ends.
 void Link::forget_breakpoints() {
-  if (attends()) port_end();
+  if (owns_halt()) port_end();
   if (has_breakpoints_) port_forget_breakpoints();
-  has_breakpoints_ = attends_ = false;
+  has_breakpoints_ = owns_halt_ = false;
 }
 #endif
 

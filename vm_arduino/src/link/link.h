@@ -24,6 +24,10 @@
 
 namespace tiniscript {
 
+// An answer as a reply has it.
+inline constexpr uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
+constexpr uint8_t kIsFine = number_of(Answer::kOk);
+
 class Link {
  public:
   // Members not listed here start as 0. `epoch` is any number, preferably a new one after each
@@ -42,12 +46,12 @@ class Link {
   // The memory of the image that was made ahead goes to somebody else: it must not start.
   void drop_ahead() { is_ready_ = false; }
 
-  // Call it after the motors are served: seals a program that came in one frame and starts to send
-  // what is due.
+  // Call it after the motors are served: writes the checksum of a program that came in one frame, and
+  // starts to send what is due.
   void send_due();
 
-  // Seals that program now, because its checksum is needed.
-  void seal();
+  // Writes that checksum now, because it is needed.
+  void write_checksum();
 
   // Whether there is a byte to send.
   bool has_tx_byte() const { return left_ != 0; }
@@ -152,15 +156,20 @@ class Link {
 
   // Whether it was told to stop since this was asked last, also where the robot stood already: what
   // was typed before, at any session, is over.
-  bool take_halted() {
-    const bool has_halted = has_halted_;
-    has_halted_ = false;
-    return has_halted;
+  bool take_stopped() {
+    const bool was_stopped = was_stopped_;
+    was_stopped_ = false;
+    return was_stopped;
   }
   void discard_text() { drop_answer(); }
 
   bool has_open_text() const { return console_.is_open(); }
   void drop_text() { console_.drop(); }
+#else
+  // What the firmware asks of `Links`, where it has several.
+  static void expire_others() {}
+  static constexpr bool is_driving() { return true; }
+  static constexpr bool take_text_memory() { return true; }
 #endif
 
  private:
@@ -204,7 +213,7 @@ class Link {
   void pass(uint16_t now_ms);
   void end_silence(bool is_held, bool is_at_stop, uint16_t before_ms);
   void turn();
-  void halt(Cause cause);
+  void stop(Cause cause);
   void take_arrived();
   void on_frame();
   bool is_next(uint8_t seq, uint8_t epoch) const;
@@ -221,7 +230,7 @@ class Link {
   void renew();
 
   // programs: `link_programs.cpp`
-  void prepare();
+  void make_ahead();
   bool go_live();
   uint8_t refuse(Answer answer, uint16_t detail);
   uint8_t allow(uint8_t mode, const uint8_t* isa);
@@ -243,13 +252,13 @@ class Link {
   Answer allow_text(const uint8_t* payload);
 
 #ifdef tiniscript_transports
-  void note_halt() { has_halted_ = true; }
+  void note_stop() { was_stopped_ = true; }
 
   // `link_wifi.cpp`
   uint8_t set_wifi(const uint8_t* payload, uint8_t length);
   void tell_wifi();
 #else
-  static void note_halt() {}
+  static void note_stop() {}
 #endif
 
   // seals: `link_seals.cpp`
@@ -318,12 +327,12 @@ class Link {
   void send();
   bool is_dead_man_over() const { return dead_man_ms() <= kListenMs - kDeadManMs; }
 #ifdef tiniscript_has_breakpoints
-  bool attends() const { return attends_ && port_is_halted(); }
+  bool owns_halt() const { return owns_halt_ && port_is_halted(); }
   void forget_breakpoints();
   void tell_tasks();
   void tell_variables();
 #else
-  static constexpr bool attends() { return false; }
+  static constexpr bool owns_halt() { return false; }
   static void forget_breakpoints() {}
 #endif
   void reply();
@@ -363,7 +372,7 @@ class Link {
   uint8_t mode_;
   uint16_t length_;    // number of bytes after the checksum
   uint16_t next_;      // offset of the next one
-  uint8_t* unsealed_;  // the taken image without a checksum yet, or nullptr
+  uint8_t* without_checksum_;  // the taken image without a checksum yet, or nullptr
   uint8_t* made_;      // the image that was made last
   uint8_t ahead_;      // end of the payload of an image made ahead, or 0
   bool is_ready_;      // it is `made_`, and may start if the frame ends there
@@ -385,11 +394,11 @@ class Link {
   Seal seal_;
 #endif
 #ifdef tiniscript_transports
-  bool has_halted_;
+  bool was_stopped_;
 #endif
 #ifdef tiniscript_has_breakpoints
   bool has_breakpoints_;  // of this session
-  bool attends_;          // it was told of the last halt: that ends with it
+  bool owns_halt_;        // it was told of the last halt: that ends with it
 #endif
 #ifdef tiniscript_has_remote
   RemoteKeys remote_;  // what the remote control has said last

@@ -11,7 +11,6 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
 constexpr uint8_t kTagText = kChallengeBytes + sizeof(uint32_t) + 2;
 // Longer by a label than that of a tag: no challenge is the tag of another one.
 constexpr uint8_t kChallengeText = kChallengeBytes + sizeof(uint32_t) + sizeof(uint16_t) + 1;
@@ -19,8 +18,6 @@ constexpr uint8_t kChallengeLabel = 'C';
 
 static_assert(kChallengeText > kTagText, "the hash has the length in it");
 static_assert(kTagBytes == kHashBytes && kChallengeBytes == kHashBytes, "both are hashes");
-
-uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 
 bool has(uint8_t feature) { return (port_identity().features & feature) != 0; }
 

@@ -16,22 +16,17 @@ namespace {
 constexpr uint16_t kIsa = kIsaMajor << 8 | kIsaMinor;
 constexpr uint8_t kFirstAt = kIsaMajorAt;  // first header byte that BEGIN carries
 constexpr uint8_t kLiveByte = static_cast<uint8_t>(Message::kLive);
-constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
 
-uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
-
-bool is_latched() { return port_status().state >= State::kStopped; }
-
-bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !is_latched(); }
+bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !port_is_latched(); }
 
 }  // namespace
 
 // Called when the payload of a frame has arrived, assuming that the frame ends at the next zero.
 // Makes and verifies the image of LIVE. Nothing is reported or started yet, because the frame may
 // turn out to be damaged or longer.
-tini_noinline void Link::prepare() {
+tini_noinline void Link::make_ahead() {
   uint8_t* const bytes = receiver_->bytes();
-  const uint8_t end = check_.decode(bytes);  // below 0 it is very large
+  const uint8_t end = check_.decode(bytes);  // of too few bytes it wraps around, and is very large
   const uint8_t begin = payload_at(end);
   if (end == ahead_ || end <= begin || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
       (is_large(end) && bytes[kPayloadAt] != 0) || due_ != 0 || !is_open_ ||
@@ -46,7 +41,7 @@ tini_noinline void Link::prepare() {
 // Runs the image that was made ahead. False: this frame does not allow it.
 bool Link::go_live() {
   const uint8_t* const bytes = receiver_->bytes();
-  if (!check_.is_whole() || !is_next(bytes[kSeqAt], bytes[kEpochAt]) || is_latched() ||
+  if (!check_.is_whole() || !is_next(bytes[kSeqAt], bytes[kEpochAt]) || port_is_latched() ||
       port_may_drive(kLiveByte) != Answer::kOk || port_prepare_upload(true) != Answer::kOk) {
     return false;
   }
@@ -56,7 +51,7 @@ bool Link::go_live() {
   said_.seq = last_.seq = bytes[kSeqAt];
   said_.status = last_.status = kIsFine;
   last_epoch_ = epoch_;
-  unsealed_ = made_;
+  without_checksum_ = made_;
   finish(kRun, true);
   return true;
 }
@@ -138,7 +133,7 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
 uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
   const uint8_t refusal = fill(is_live ? Use::kLive : Use::kStored, payload, length);
   if (refusal != kIsFine) return refusal;
-  unsealed_ = made_;
+  without_checksum_ = made_;
   finish(payload[kProgramModeAt], is_live);
   return kIsFine;
 }
@@ -189,7 +184,7 @@ uint8_t Link::commit(const uint8_t* payload) {
   }
   if (admission.refusal != 0) return refuse(static_cast<Answer>(admission.refusal), admission.offset);
   finish(mode_, false);
-  port_seal(image);
+  port_has_checksum(image);
   return kIsFine;
 }
 

@@ -10,8 +10,6 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
-
 uint8_t number_of(Message message) { return static_cast<uint8_t>(message); }
 
 }  // namespace

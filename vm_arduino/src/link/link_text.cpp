@@ -15,7 +15,7 @@ void Link::talk() {
   while (receiver_->take_text(&byte)) {
     if (byte != kLineStop) continue;
     receiver_->take_mark();
-    return halt(Cause::kText);
+    return stop(Cause::kText);
   }
 }
 
@@ -26,7 +26,7 @@ void Link::talk() {
   Console* const console = near(&console_);
   const bool may_say = left_ms_[kFrameSent] == 0;
   const Console::Act act = console->turn(receiver_, is_listened_to(), may_say);
-  if (act == Console::Act::kStop) halt(Cause::kText);
+  if (act == Console::Act::kStop) stop(Cause::kText);
   if (act == Console::Act::kEnd) port_end();
   if (act == Console::Act::kStart) console->say(start_text(*console));
 #ifdef tiniscript_reads_keys
@@ -60,14 +60,14 @@ Remark Link::start_text(const Console& console) {
   const bool is_beside = port_text_is_beside(start != 0);
   if (!port_may_prepare_upload(is_beside)) return Remark::kSaving;
   image_ = nullptr;
-  seal();  // a frame's image of this turn, whose receipt is due
+  write_checksum();  // a frame's image of this turn, whose receipt is due
   if (make(is_beside ? Use::kLive : Use::kStored, start, console.image() + kHeaderBytes,
            reader->length(), false) != static_cast<uint8_t>(Answer::kOk)) {
     return Remark::kRefused;
   }
   uint8_t* const image = made_;
   port_take_text(image, start != 0);
-  unsealed_ = image;  // its first instruction does not wait for the checksum
+  without_checksum_ = image;  // its first instruction does not wait for the checksum
   note_typed(true);
   is_attached_ = false;
   return start != 0 ? Remark::kOkButton : Remark::kOk;

@@ -9,9 +9,8 @@
 
 namespace tiniscript {
 
-#ifdef tiniscript_has_discs
+// Of a robot without discs.
 __attribute__((weak)) bool port_noise(uint16_t*) { return false; }
-#endif
 
 namespace {
 
@@ -63,7 +62,7 @@ void Link::faulted() {
 
 #ifdef tiniscript_has_breakpoints
 void Link::halted() {
-  attends_ = true;
+  owns_halt_ = true;
   due_ |= kDueHalted;
   left_ms_[kHaltedAgain] = kHaltedAgainMs;
 }
@@ -170,10 +169,8 @@ void Link::reply() {
       put_all(&robot_status, sizeof robot_status);
       put16(both(byte_of(damaged_ + receiver_->damaged()), receiver_->dropped()));
       put16(both(port_line_errors().framing, port_line_errors().overrun));
-#ifdef tiniscript_has_discs
       uint16_t edges;
-      if (port_noise(&edges)) put16(edges);
-#endif
+      if (kHasDiscs && port_noise(&edges)) put16(edges);
       break;
     case Message::kFetch:
       fetch();

@@ -60,12 +60,12 @@ void Links::spread(State before) {
   const State state = port_status().state;
   Link& its = links_[current_];
   const bool is_held_back = its.is_held_back();
-  const bool has_halted = its.take_halted();
+  const bool was_stopped = its.take_stopped();
   for (uint8_t place = 0; place < kTransports; place++) {
     if (place == current_) continue;
     Link& other = links_[place];
     if (is_held_back != is_held_back_) other.hold_back(is_held_back);
-    if (has_halted) other.discard_text();
+    if (was_stopped) other.discard_text();
     if (state == before) continue;
     if (state == State::kStopped) other.stopped(its.cause());
     if (state == State::kFaulted) other.faulted();
@@ -81,8 +81,8 @@ void Links::send_due() {
   }
 }
 
-void Links::seal() {
-  for (Link& link : links_) link.seal();
+void Links::write_checksum() {
+  for (Link& link : links_) link.write_checksum();
 }
 
 bool Links::has_due_live() const {

@@ -26,7 +26,7 @@ class Links {
   void pass_time(uint16_t now_ms);
   void tick();
   void send_due();
-  void seal();
+  void write_checksum();
   bool has_due_live() const;
   bool stop_is_due() const;
   void done();

@@ -130,7 +130,7 @@ void port_forget();
 void port_take(uint8_t mode, bool is_live);
 
 // The taken image has its checksum.
-void port_seal(const uint8_t* image);
+void port_has_checksum(const uint8_t* image);
 
 // Starts the image taken last, or the program that the robot holds.
 void port_start(bool is_live);
@@ -165,6 +165,9 @@ void port_end();
 // is not 0.
 void port_stop(uint8_t fault);
 void port_release();
+
+// Whether a stop keeps the robot from starting, until port_release.
+inline bool port_is_latched() { return port_status().state >= State::kStopped; }
 
 // What runs: where it is, the byte of its code with which the instruction begins that runs or
 // waits, and its image. Only while something runs.

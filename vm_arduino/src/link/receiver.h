@@ -6,8 +6,9 @@
 // text, because no whole frame looks so, and text goes on.
 // Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Holds frames
 // until they are released, kWindow of them; a frame that finds no place is dropped. Text is passed
-// on as it arrives. Finds the same packets as `receiver.py`, in the same states. `put` may be called
-// from an interrupt, everything else from the main loop.
+// on as it arrives. Finds the same packets as `receiver.py`, in the same states and in kHeld, as
+// typed stops are a class of their own there. `put` may be called from an interrupt, everything
+// else from the main loop.
 
 #pragma once
 

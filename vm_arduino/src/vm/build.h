@@ -137,6 +137,12 @@ constexpr bool kHasRemote = true;
 constexpr bool kHasRemote = false;
 #endif
 
+#ifdef tiniscript_reads_keys
+constexpr bool kReadsKeys = true;
+#else
+constexpr bool kReadsKeys = false;
+#endif
+
 #ifdef tiniscript_has_breakpoints
 constexpr bool kHasBreakpoints = true;
 #else

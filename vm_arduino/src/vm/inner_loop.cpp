@@ -55,7 +55,7 @@ tini_always_inline bool InnerLoop::step() {
   if (kCountsInstructions) left_--;
   const uint8_t* const bytes = next_;
   at_ = bytes;
-  if (static_cast<uint32_t>(bytes - machine_.code_) > machine_.length_) return halt(Fault::kBadCode);
+  if (static_cast<uint32_t>(bytes - machine_.code_) > machine_.length_) return fail(Fault::kBadCode);
   const uint8_t code = *bytes;
   const Op op = static_cast<Op>(code);
   next_++;
@@ -133,7 +133,7 @@ tini_always_inline bool InnerLoop::step() {
       return set_variable(u8());
     case Op::kSetVar8: {
       const uint8_t number = u8();
-      if (number >= kVariables) return halt(Fault::kBadCode);
+      if (number >= kVariables) return fail(Fault::kBadCode);
       machine_.task_.variables[number] = in_thousandths(i8());
       return true;
     }
@@ -144,7 +144,7 @@ tini_always_inline bool InnerLoop::step() {
     case Op::kAddVar: {
       const uint8_t number = u8();
       const uint8_t second = u8();
-      return second < kVariables ? add_to(number, machine_.task_.variables[second]) : halt(Fault::kBadCode);
+      return second < kVariables ? add_to(number, machine_.task_.variables[second]) : fail(Fault::kBadCode);
     }
     case Op::kIncVar:
       return add_to(u8(), kOne);
@@ -241,7 +241,7 @@ tini_always_inline bool InnerLoop::step() {
     case Op::kBreakLoopFar:
       return break_loop(u16());
     case Op::kReturn:
-      if (machine_.task_.framed == 0) return halt(Fault::kBadCode);
+      if (machine_.task_.framed == 0) return fail(Fault::kBadCode);
       next_ = machine_.code_ + machine_.task_.frames[--machine_.task_.framed];
       return true;
     case Op::kCall:
@@ -283,7 +283,7 @@ tini_always_inline bool InnerLoop::step() {
         return unless_variable_relates(number, op, in_thousandths(i16()));
       }
   }
-  return halt(Fault::kBadCode);
+  return fail(Fault::kBadCode);
 }
 
 // A computer on which somebody follows a program instruction by instruction counts these. The budget is

@@ -40,7 +40,7 @@ class InnerLoop {
   tini_always_inline int16_t i16() { return static_cast<int16_t>(u16()); }
 
   uint16_t offset(const uint8_t* at) const;
-  bool halt(Fault fault);
+  bool fail(Fault fault);
   bool pop(uint8_t values);
   bool push(int32_t value);
   bool leave(Fault fault);
@@ -89,22 +89,22 @@ tini_always_inline void InnerLoop::end() {
   machine_.task_.depth = static_cast<uint8_t>(top_ - machine_.task_.stack);
 }
 
-// Ends the program.
-tini_always_inline bool InnerLoop::halt(Fault fault) {
+// Ends the program with a fault.
+tini_always_inline bool InnerLoop::fail(Fault fault) {
   machine_.fault_ = fault;
   return false;
 }
 
 // What an instruction takes from the stack lies at `top_` then, the first value first.
 tini_always_inline bool InnerLoop::pop(uint8_t values) {
-  if (top_ < machine_.task_.stack + values) return halt(Fault::kBadCode);
+  if (top_ < machine_.task_.stack + values) return fail(Fault::kBadCode);
   top_ -= values;
   return true;
 }
 
 // Pushes a value, if there is room.
 tini_always_inline bool InnerLoop::push(int32_t value) {
-  if (top_ == machine_.task_.stack + kStackValues) return halt(Fault::kBadCode);
+  if (top_ == machine_.task_.stack + kStackValues) return fail(Fault::kBadCode);
   *top_++ = value;
   return true;
 }
@@ -112,7 +112,7 @@ tini_always_inline bool InnerLoop::push(int32_t value) {
 // Leaves what was calculated at `top_`.
 tini_always_inline bool InnerLoop::leave(Fault fault) {
   top_++;
-  return fault == Fault::kNone || halt(fault);
+  return fault == Fault::kNone || fail(fault);
 }
 
 // The place of a byte in the code.
@@ -183,17 +183,17 @@ tini_always_inline bool InnerLoop::unless_relates(Op op, int32_t constant) {
 }
 
 tini_always_inline bool InnerLoop::unless_variable_relates(uint8_t number, Op op, int32_t constant) {
-  if (number >= kVariables) return halt(Fault::kBadCode);
+  if (number >= kVariables) return fail(Fault::kBadCode);
   return unless(relates(machine_.task_.variables[number], comparator_of(op), constant), u8());
 }
 
 // Variables and sensors: their numbers are checked, as damaged code may have any.
 tini_always_inline bool InnerLoop::push_variable(uint8_t number) {
-  return number < kVariables ? push(machine_.task_.variables[number]) : halt(Fault::kBadCode);
+  return number < kVariables ? push(machine_.task_.variables[number]) : fail(Fault::kBadCode);
 }
 
 tini_always_inline bool InnerLoop::push_sensor(uint8_t number) {
-  return number < machine_.sensors_ ? push(machine_.readings_[number]) : halt(Fault::kBadCode);
+  return number < machine_.sensors_ ? push(machine_.readings_[number]) : fail(Fault::kBadCode);
 }
 
 tini_always_inline bool InnerLoop::push_read(uint8_t number) {
@@ -207,21 +207,21 @@ tini_always_inline bool InnerLoop::read(uint8_t number) {
 
 tini_always_inline bool InnerLoop::set_variable(uint8_t number) {
   if (!pop(1)) return false;
-  if (number >= kVariables) return halt(Fault::kBadCode);
+  if (number >= kVariables) return fail(Fault::kBadCode);
   machine_.task_.variables[number] = *top_;
   return true;
 }
 
 tini_always_inline bool InnerLoop::add_to(uint8_t number, int32_t more) {
-  if (number >= kVariables) return halt(Fault::kBadCode);
+  if (number >= kVariables) return fail(Fault::kBadCode);
   int32_t* const variable = machine_.task_.variables + number;
   const Fault fault = sum(*variable, more, variable);
-  return fault == Fault::kNone || halt(fault);
+  return fault == Fault::kNone || fail(fault);
 }
 
 // Loops and calls.
 tini_always_inline bool InnerLoop::open(Frame frame) {
-  if (machine_.task_.framed >= kFrames) return halt(Fault::kBadCode);
+  if (machine_.task_.framed >= kFrames) return fail(Fault::kBadCode);
   machine_.task_.frames[machine_.task_.framed++] = frame;
   return true;
 }
@@ -233,14 +233,14 @@ tini_always_inline bool InnerLoop::loop(uint16_t distance) {
 }
 
 tini_always_inline bool InnerLoop::next_round(uint16_t distance) {
-  if (machine_.task_.framed == 0) return halt(Fault::kBadCode);
+  if (machine_.task_.framed == 0) return fail(Fault::kBadCode);
   if (--machine_.task_.frames[machine_.task_.framed - 1] != 0) return again(distance);
   machine_.task_.framed--;
   return true;
 }
 
 tini_always_inline bool InnerLoop::break_loop(uint16_t distance) {
-  if (machine_.task_.framed == 0) return halt(Fault::kBadCode);
+  if (machine_.task_.framed == 0) return fail(Fault::kBadCode);
   machine_.task_.framed--;
   return jump(distance);
 }

@@ -32,7 +32,7 @@ def _next(robot: str, output: Path, chip: str, language: str) -> str:
     path = output.absolute()
     folder = path.parents[3] if len(path.parents) > 3 else path.parent
     if path == folder / HOME and (folder / "platformio.ini").is_file():
-        build = f"pio run -d {_name(_from_here(folder))} -e {chip}"
+        build = f"pio run -d {_name(_relative_to_cwd(folder))} -e {chip}"
         return text("board_here", language).format(build=build)
     build = f"pio run -d {SKETCH} -e {chip}"
     return text("board_elsewhere", language).format(
@@ -40,7 +40,7 @@ def _next(robot: str, output: Path, chip: str, language: str) -> str:
     )
 
 
-def _from_here(folder: Path) -> Path:
+def _relative_to_cwd(folder: Path) -> Path:
     try:
         return Path(os.path.relpath(folder))
     except ValueError:  # Windows: the path is on another drive
@@ -49,5 +49,5 @@ def _from_here(folder: Path) -> Path:
 
 def _name(path: Path) -> str:
     """Return a path quoted for a command."""
-    found = inputs.shown(str(path))
-    return f'"{found}"' if " " in found else found
+    result = inputs.shown(str(path))
+    return f'"{result}"' if " " in result else result

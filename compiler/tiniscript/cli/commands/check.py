@@ -53,30 +53,30 @@ def _repaired(
     """Make or show the sure repairs; return what is left, and whether the program is right now."""
     from tiniscript.cli.repairing import print_difference, repaired
 
-    found = repaired(given, robot)
+    result = repaired(given, robot)
     name = inputs.shown(given.name)
     says = not options.json
     if options.diff:
-        if says and found.repairs:
-            print_difference(given.data, found.data, given.name)
-        key = "would_repair" if found.repairs else "nothing_repaired"
-        if says and (found.repairs or not found.compiled.is_right):
-            key += "_one" if found.repairs == 1 else ""
-            say_aside(key, language, file=name, n=found.repairs)
-        return found.compiled, found.compiled.is_right and not found.repairs
+        if says and result.repairs:
+            print_difference(given.data, result.data, given.name)
+        key = "would_repair" if result.repairs else "nothing_repaired"
+        if says and (result.repairs or not result.compiled.is_right):
+            key += "_one" if result.repairs == 1 else ""
+            say_aside(key, language, file=name, n=result.repairs)
+        return result.compiled, result.compiled.is_right and not result.repairs
     if given.path is None:
         if says:
-            outputs.put(None, found.data)
-    elif found.repairs:
-        outputs.write(given.path, found.data, "unwritable_source")
-    if says and found.repairs and given.path is not None:
-        print_difference(given.data, found.data, given.name)
-        key = "repaired_one" if found.repairs == 1 else "repaired"
-        say_aside(key, language, file=name, n=found.repairs)
-    if says and not found.compiled.is_right:
-        key = "not_repaired" if found.repairs else "nothing_repaired"
+            outputs.put(None, result.data)
+    elif result.repairs:
+        outputs.write(given.path, result.data, "unwritable_source")
+    if says and result.repairs and given.path is not None:
+        print_difference(given.data, result.data, given.name)
+        key = "repaired_one" if result.repairs == 1 else "repaired"
+        say_aside(key, language, file=name, n=result.repairs)
+    if says and not result.compiled.is_right:
+        key = "not_repaired" if result.repairs else "nothing_repaired"
         print(text(key, language).format(file=name) + "\n", file=sys.stderr)
-    compiled = compiling.for_level(found.compiled, robot, options.text_level)
+    compiled = compiling.for_level(result.compiled, robot, options.text_level)
     return compiled, compiled.is_right
 
 

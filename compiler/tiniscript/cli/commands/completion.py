@@ -86,7 +86,7 @@ def run(options: Namespace, language: str) -> int:
     last = last[1:]
     if last == "=":  # bash makes three words of --robot=liner
         last = ""
-    kind, rows = _fitting([word for word in before if word != "="], last, language)
+    kind, rows = _completions([word for word in before if word != "="], last, language)
     print("files" if kind in FILES else "words")
     for word, says in rows:
         if word.startswith(last):
@@ -94,7 +94,7 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
-def _fitting(before: list[str], last: str, language: str) -> tuple[str, list[tuple[str, str]]]:
+def _completions(before: list[str], last: str, language: str) -> tuple[str, list[tuple[str, str]]]:
     """Return the kind of what the last word may be, and the words of that kind."""
     verb, before = _verb(before)
     if verb not in ("tsc", *VERBS):
@@ -114,7 +114,7 @@ def _fitting(before: list[str], last: str, language: str) -> tuple[str, list[tup
         arguments = [option.kind for option in options if option.is_argument]
         kind = VERB if verb == "tsc" else arguments[0] if arguments else None
     if kind is None:
-        return "", [(flag, _short(option.help(language))) for flag, option in flags.items()]
+        return "", [(flag, _first_clause(option.help(language))) for flag, option in flags.items()]
     begin = f"{name}=" if equals else ""
     return kind.name, [(begin + word, says) for word, says in _words_of(kind, language)]
 
@@ -131,14 +131,14 @@ def _verb(before: list[str]) -> tuple[str, list[str]]:
 def _words_of(kind: Kind, language: str) -> list[tuple[str, str]]:
     """Return the values of a kind that have names, and what they do where that is known."""
     if kind is VERB:
-        return [(verb, _short(summary_of(verb, "summary", language))) for verb in VERBS]
+        return [(verb, _first_clause(summary_of(verb, "summary", language))) for verb in VERBS]
     if kind.name == "port":
-        return [(each.port, each.description) for each in ports.listed()]
+        return [(item.port, item.description) for item in ports.listed()]
     named = {"robot": robots.names(), "world": worlds.names(), "chip": BOARDS, "code": CODES,
              "action": LESSON_ACTIONS, "hurry": ("max",)}  # fmt: skip
     return [(word, "") for word in named.get(kind.name, kind.choices)]
 
 
-def _short(says: str) -> str:
+def _first_clause(says: str) -> str:
     """Return the first part of what an option or a verb does, in one line."""
     return re.split(r"; |\. |: `", says)[0].replace("`", "")

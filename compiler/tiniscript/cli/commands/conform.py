@@ -70,14 +70,14 @@ def _machine(options: Namespace, timeout_s: int, language: str) -> int:
         raise CommandError(2, "conform_no_case", found=shown(options.only))
     process = MachineProcess(options.machine, timeout_s)
     try:
-        found = list(verdicts(cases, process.ask))
+        result = list(verdicts(cases, process.ask))
     except CannotStart as why:
         command = shown(options.machine) or "''"
         raise CommandError(2, "conform_no_start", command=command, why=shown(str(why))) from None
     finally:
         process.close()
     facts = {"version": str(VERSION), "isa": ISA}
-    return report(found, len(cases), facts, "conform_machine_end", timeout_s, options, language)
+    return report(result, len(cases), facts, "conform_machine_end", timeout_s, options, language)
 
 
 def _port(options: Namespace, language: str) -> int:
@@ -94,24 +94,24 @@ def _port(options: Namespace, language: str) -> int:
     is_radio = ports.is_radio(port)
     nonce = int.from_bytes(os.urandom(4), "little")
     robot = WireRobot(wire, nonce, RADIO_MS if is_radio else CABLE_MS)
-    found: list[Verdict] = []
+    verdicts: list[Verdict] = []
     try:
         wire.heard(0 if is_radio else BOOT_MS)
         hello = port_checks.met(robot)
         if not hello.status and hello.number("features") & OWNED:
             raise CommandError(3, "conform_owned")
-        found.extend(port_checks.verdicts(robot, checks))
+        verdicts.extend(port_checks.verdicts(robot, checks))
     except Silent:
         raise CommandError(3, "conform_silent", port=shown(port)) from None
     except OSError as why:
-        values = {"port": shown(port), "why": shown(str(why)), "n": str(len(found))}
+        values = {"port": shown(port), "why": shown(str(why)), "n": str(len(verdicts))}
         raise CommandError(3, "conform_gone", **values) from None
     finally:
         with contextlib.suppress(OSError):  # nothing runs on, whatever has ended the checks
             robot.send(bytes(STOP_BYTES))
         wire.close()
     facts = {"version": str(LINK_VERSION), "link": f"{MAJOR}.{MINOR}", "isa": ISA}
-    return report(found, len(checks), facts, "conform_port_end", 0, options, language)
+    return report(verdicts, len(checks), facts, "conform_port_end", 0, options, language)
 
 
 def report(

@@ -53,14 +53,14 @@ def run(options: Namespace, language: str) -> int:
     if are_many(options):
         if options.report is not None or options.watch is not None:
             raise CommandError(2, "doctor_one")
-        work = partial(_one_of_many, expected)
+        work = partial(_examine_member, expected)
         return together(options, inputs.robot(options, language), language, work)
     told: dict[str, str] = {}  # by a robot, of itself
     heard: list[Heard] = []
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
     expected = expected._replace(note=told.update, hear=heard.append)
     diagnosis = diagnosis_of(options, _port(options), expected, language, watch_s * 1000)
-    robot = _described(diagnosis.port or "", heard[-1], language) if heard else None
+    robot = _description(diagnosis.port or "", heard[-1], language) if heard else None
     if robot is not None:
         opening.remember(robot.port, robot.device_info.name)
         remember_profile(options, inputs.robot(options, language), robot.device_info.kit)
@@ -96,7 +96,7 @@ def _port(options: Namespace) -> str | None:
     return None if port is None else inputs.port(port)
 
 
-def _one_of_many(expected: Expected, connection: Connection, member: Member) -> Result:
+def _examine_member(expected: Expected, connection: Connection, member: Member) -> Result:
     """Examine one of many robots as if it were the only one."""
     member.meet(connection)
     language = connection.language
@@ -106,7 +106,7 @@ def _one_of_many(expected: Expected, connection: Connection, member: Member) -> 
     wrong = [finding for finding in findings if finding.is_wrong]
     rows, fields = [said(finding, language).what for finding in wrong], {}
     if heard is not None:
-        robot, trips_ms = _described(connection.port, heard, language), [*heard.trips_ms]
+        robot, trips_ms = _description(connection.port, heard, language), [*heard.trips_ms]
         rows.append(robot.line())
         if trips_ms:
             rows.append(trips_in_words(trips_ms, language))
@@ -115,7 +115,7 @@ def _one_of_many(expected: Expected, connection: Connection, member: Member) -> 
     return Result(not wrong, "; ".join(rows), fields)
 
 
-def _described(port: str, heard: Heard, language: str) -> Description:
+def _description(port: str, heard: Heard, language: str) -> Description:
     """Return what a robot says about itself, of what it has answered."""
     info = described(heard.hello)
     trim = None if heard.trim is None else trim_told(heard.trim)

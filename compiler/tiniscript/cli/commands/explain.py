@@ -16,9 +16,9 @@ def run(options: Namespace, language: str) -> int:
         for code, title in titles(language):
             print(Said(f"{code}  {title}"))
         return 0
-    said = explain(options.code, language)
-    if said is None:
-        near = nearest(options.code.upper(), list(CODES)) or ""
-        raise CommandError(2, "no_code", found=options.code, near=near)
-    print(Said(said), end="" if said.endswith("\n") else "\n")
+    text = explain(options.code, language)
+    if text is None:
+        suggestion = nearest(options.code.upper(), list(CODES)) or ""
+        raise CommandError(2, "no_code", found=options.code, near=suggestion)
+    print(Said(text), end="" if text.endswith("\n") else "\n")
     return 0

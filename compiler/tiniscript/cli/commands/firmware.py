@@ -14,7 +14,7 @@ from tiniscript.cli.robot.description import described
 from tiniscript.cli.terminal.progress import Progress, waiting
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.flash import avrdude
-from tiniscript.flash.avrdude import Ended, Seen
+from tiniscript.flash.avrdude import Ended, StepProgress
 from tiniscript.flash.bootloaders import BOARDS, UNO, Bootloader
 from tiniscript.flash.ready import Ready
 from tiniscript.link import ports
@@ -35,13 +35,13 @@ def run(options: Namespace, language: str) -> int:
         return 0
     if options.chip is None and inputs.robot(options, language).board.chip in ESP32S:
         return _esp32(options, language)
-    robot, bootloaders = _chosen(options, language)
+    robot, bootloaders = _selected_robot(options, language)
     if options.build:
         print(
             firmware_build.row(robot, firmware_build.firmware(robot, options, language), language)
         )
         return 0
-    command = avrdude.found()
+    command = avrdude.find_avrdude()
     if command is None:
         raise CommandError(2, "flash_no_avrdude", how=INSTALLS.get(sys.platform, INSTALLS["linux"]))
     port = _port(options)
@@ -69,7 +69,7 @@ def _esp32(options: Namespace, language: str) -> int:
     return 0
 
 
-def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader, ...]]:
+def _selected_robot(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader, ...]]:
     """Return the robot of the options, on its board, and the bootloaders that it may have."""
     if options.chip is not None and options.chip not in BOARDS:
         raise bad_choice("--chip", list(BOARDS), options.chip, language)
@@ -107,7 +107,7 @@ def _write(
     for bootloader in bootloaders:
         if bootloader is not bootloaders[0]:
             say_aside("flash_older", language)
-        ended = _written(command, bootloader, port, firmware, language)
+        ended = _write_firmware(command, bootloader, port, firmware, language)
         if ended.how != avrdude.NOBODY:
             break
     if ended.how != avrdude.DONE:
@@ -115,13 +115,13 @@ def _write(
         raise CommandError(3, f"flash_{ended.how}", **values)
 
 
-def _written(
+def _write_firmware(
     command: list[str], bootloader: Bootloader, port: str, firmware: Ready, language: str
 ) -> Ended:
     progress = Progress(language, 100)
     has_begun = False
 
-    def look(seen: Seen | None) -> None:
+    def look(seen: StepProgress | None) -> None:
         nonlocal has_begun
         if seen is not None:
             has_begun = True

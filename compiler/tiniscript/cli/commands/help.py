@@ -19,13 +19,13 @@ def run(options: Namespace, language: str) -> int:
         show(overview, language)
     elif any(about in said("all", language).split() for language in languages()):
         show(everything, language)
-    elif command := next((each for each in COMMANDS if typed(each) == about), WAS.get(about)):
+    elif command := next((item for item in COMMANDS if typed(item) == about), WAS.get(about)):
         show(partial(of, command), language)
     else:
-        found = [] if meant(about) else verbs_for(about)
-        if not found and " " in about:
+        result = [] if meant(about) else verbs_for(about)
+        if not result and " " in about:
             raise CommandError(2, "none_does", found=shown(about))
-        if not found:
+        if not result:
             refuse(about, [], language)
-        show(partial(listed, found), language)
+        show(partial(listed, result), language)
     return 0

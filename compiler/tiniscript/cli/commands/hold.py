@@ -46,13 +46,13 @@ class _Log:
         """Print events until the port is gone."""
         self._say("LINKED", "linked", robot=self.connection.name, port=shown(self.connection.port))
         while True:
-            found = self.connection.event()
-            if found is not None:
-                self._tell(*found)
+            result = self.connection.event()
+            if result is not None:
+                self._print_event(*result)
             if self.search is not None and self.search.outcome is not None:
                 self._look_again()
 
-    def _tell(self, time_ms: int, event: Event) -> None:
+    def _print_event(self, time_ms: int, event: Event) -> None:
         if event.name == "JOINED" or event.name == "LEFT":
             self._say(event.name, event.name.lower(), verb=event.verb.decode())
         elif event.name == "STARTED":

@@ -14,11 +14,11 @@ from tiniscript.cli.robot.member import Member, Result, are_many
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     if are_many(options):
-        return together(options, robot, language, _one_of_many)
+        return together(options, robot, language, _identify_member)
     with Connection(options, robot, language) as connection:
         connection.meet()
-        said = _identified(connection)
-        print(json.dumps(_fields(connection)) if options.json else said)
+        text = _identified(connection)
+        print(json.dumps(_fields(connection)) if options.json else text)
     return 0
 
 
@@ -32,7 +32,7 @@ def _fields(connection: Connection) -> dict[str, object]:
     return {"port": connection.port, "robot": info.name, "id": f"{info.id:08x}", "is_done": True}
 
 
-def _one_of_many(connection: Connection, member: Member) -> Result:
+def _identify_member(connection: Connection, member: Member) -> Result:
     member.meet(connection)
     member.tell("crew_identifying")
     return Result(True, _identified(connection), {"id": f"{connection.device_info.id:08x}"})

@@ -27,7 +27,7 @@ def run(options: Namespace, language: str) -> int:
     try:
         robot_keys = own.all()
     except BadKeys as why:
-        raise _own(own, "own_keys_bad", why) from None
+        raise _key_file_error(own, "own_keys_bad", why) from None
     if keys.is_shared(own.path):
         warning = CommandError(0, "keys_shared", file=shown(str(own.path)))
         print(warning.sentence(language), file=sys.stderr)
@@ -65,7 +65,7 @@ def _import(own: KeyFile, name: str, language: str) -> None:
     except TooManyKeys:
         raise CommandError(2, "too_many_keys", most=str(keys.MOST), file=shown(name)) from None
     except BadKeys as why:
-        raise _own(own, "own_keys_full", why) from None
+        raise _key_file_error(own, "own_keys_full", why) from None
     say("keys_imported", language, n=changed, all=len(brought), file=shown(name))
 
 
@@ -77,7 +77,7 @@ def _forget(own: KeyFile, robot_keys: list[RobotKey], robot: str, language: str)
     try:
         own.forget(gone[0].id)
     except BadKeys as why:
-        raise _own(own, "own_keys_full", why) from None
+        raise _key_file_error(own, "own_keys_full", why) from None
     say("keys_forgotten", language, robot=shown(robot))
 
 
@@ -87,11 +87,11 @@ def _accept(own: KeyFile, robot: str, language: str) -> None:
     try:
         own.accept(int(robot, 16))
     except BadKeys as why:
-        raise _own(own, "own_keys_full", why) from None
+        raise _key_file_error(own, "own_keys_full", why) from None
     say("robot_accepted", language, robot=robot.lower())
 
 
-def _own(own: KeyFile, key: str, why: BadKeys) -> CommandError:
+def _key_file_error(own: KeyFile, key: str, why: BadKeys) -> CommandError:
     return CommandError(2, key, file=shown(str(own.path)), why=f": {why.why}" if why.why else "")
 
 
@@ -108,4 +108,5 @@ def _print(robot_keys: list[RobotKey], language: str) -> None:
 
 def _fields(key: RobotKey) -> dict[str, object]:
     return {"id": f"{key.id:08x}", "name": key.name, "kind": KEYS[key.which][0].lower(),
-            "is_pending": key.is_pending, "is_stale": key.is_stale, "seals": key.seals}  # fmt: skip
+            "is_pending": key.is_pending, "is_stale": key.is_stale,
+            "seals": key.uses_seals}  # fmt: skip

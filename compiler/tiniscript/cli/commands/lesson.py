@@ -46,7 +46,7 @@ def run(options: Namespace, language: str) -> int:
 def _refuse_others(options: Namespace, action: str) -> None:
     """Refuse what only goes with another action."""
     for option in of_verb("lesson"):
-        is_others = any(option.name in taken for taken in ACTIONS.values())
+        is_others = any(option.name in item for item in ACTIONS.values())
         if is_others and option.name not in ACTIONS.get(action, ()):
             if getattr(options, option.name):
                 label = option.flags if not option.is_argument else options.program

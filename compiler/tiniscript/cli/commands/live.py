@@ -45,7 +45,7 @@ def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
 
     known = Known(robot.kit)
-    if line is not None and line != "-" and not _may_be_done(line, known, robot, options):
+    if line is not None and line != "-" and not _is_runnable(line, known, robot, options):
         return 1
     with Connection(options, robot, language) as connection:
         talk = Repl(connection, known, options)
@@ -59,14 +59,14 @@ def run(options: Namespace, language: str) -> int:
         return talk.do(line, is_last=True)
 
 
-def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
+def _is_runnable(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
     language: str = options.language
     if options.robot is None:
         compiled = naming(known.line(line, 0).compiled, robot, is_chosen=True)
         if is_other_robots(compiled.diagnostics):
-            found = own_kit.of_answering(options, robot, language)
-            if found is not None:
+            result = own_kit.of_answering(options, robot, language)
+            if result is not None:
                 return True  # it is compiled again for that robot
     return _compiled(line, known, robot, language, True, SHORT_BYTES, warns=False) is not None
 
@@ -82,18 +82,18 @@ def _compiled(
     """
     if header(line) == "SB":
         raise CommandError(1, "live_button")
-    found = known.line(line, 0 if is_last else room)
-    if warns or not found.compiled.is_right:
-        outputs.print_diagnostics(naming(found.compiled, robot, is_chosen=True), language)
-    if not found.compiled.is_right:
+    result = known.line(line, 0 if is_last else room)
+    if warns or not result.compiled.is_right:
+        outputs.print_diagnostics(naming(result.compiled, robot, is_chosen=True), language)
+    if not result.compiled.is_right:
         return None
-    assert found.compiled.verdict is not None
-    if lacks := lacking(found.compiled.verdict.needs, robot):
+    assert result.compiled.verdict is not None
+    if lacks := lacking(result.compiled.verdict.needs, robot):
         raise CommandError(1, lacks, robot=robot.name, file="prog.ts")
-    code = len(found.compiled.code)
+    code = len(result.compiled.code)
     if code > room:
         raise CommandError(1, "live_too_long", code=str(code), room=str(room))
-    return found
+    return result
 
 
 class Repl:
@@ -118,21 +118,21 @@ class Repl:
             return introduced(self.connection, is_json=False)
         robot = self.connection.profile
         room = short_bytes(self.connection.device_info)  # less where frames are sealed
-        found = _compiled(line, self.known, robot, self.language, is_last, room)
-        if found is None:
+        result = _compiled(line, self.known, robot, self.language, is_last, room)
+        if result is None:
             return 1
-        if lacks_remote(found.compiled.code, self.known.kit, self.connection.device_info):
+        if lacks_remote(result.compiled.code, self.known.kit, self.connection.device_info):
             raise self.connection.failure(Reply(STATUSES["NO_REMOTE"]))
         try:
-            code = 0 if found.does_nothing else self._run(found, is_last)
+            code = 0 if result.does_nothing else self._run(result, is_last)
         except KeyboardInterrupt:
             return stop_and_say(self.connection)
-        if not code and found.forgets and not is_last:
+        if not code and result.forgets and not is_last:
             say_aside("live_forgets", self.language)
-        if not code and found.defs:
-            self.known.defs.update(found.defs)
-            if found.does_nothing:
-                names = ", ".join(found.defs)
+        if not code and result.defs:
+            self.known.defs.update(result.defs)
+            if result.does_nothing:
+                names = ", ".join(result.defs)
                 say("live_known", self.language, names=names)
         return code
 
@@ -151,15 +151,15 @@ class Repl:
             line = f"{line}\n{following}"
         return line
 
-    def _run(self, found: Line, is_last: bool) -> int:
-        compiled = found.compiled
+    def _run(self, line: Line, is_last: bool) -> int:
+        compiled = line.compiled
         places = source_map.made(compiled)
         source_map.remember(compiled.image, places)  # tsc doctor names a fault's line later
-        kit = kit_of(found.compiled, self.connection.profile)
-        reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
+        kit = kit_of(line.compiled, self.connection.profile)
+        reply = self.connection.ask(lambda session: session.live(line.compiled.code, kit))
         program = reply.values.program
-        printer = printer_of(self.connection, False, places, program, found.whole)
-        catch = Catch(found.shown, self.known, printer, is_last)
+        printer = printer_of(self.connection, False, places, program, line.whole)
+        catch = Catch(line.shown, self.known, printer, is_last)
         simulator = self.connection.simulator
         if simulator is not None:
             simulator.watch()
@@ -190,8 +190,8 @@ class Repl:
         if simulator is not None:
             simulator.watch()
         try:
-            while not self._says_time_over():
-                self._tell_meanwhile(remote_keys.LOOK_S)
+            while not self._report_time_limit():
+                self._print_pending_events(remote_keys.LOOK_S)
                 self.remote.look()
             return 0
         except KeyboardInterrupt:
@@ -202,14 +202,14 @@ class Repl:
         lines = (line.rstrip("\r\n") for line in file)
         for line in lines:
             if line.strip():
-                if self._says_time_over():
+                if self._report_time_limit():
                     return 0
                 code = self.do(self.whole(line, lambda: next(lines, None)))
                 if code or self.connection.is_time_over:
                     return code
         return 0
 
-    def _says_time_over(self) -> bool:
+    def _report_time_limit(self) -> bool:
         """Whether a virtual robot's time limit has passed between two lines; prints so then."""
         if self.connection.is_time_over:
             say("time_over", self.language)
@@ -230,7 +230,7 @@ class Repl:
         self.connection.say("live_hello")
         with _history(self.known):
             while True:
-                self._tell_meanwhile()
+                self._print_pending_events()
                 try:
                     line = self.whole(input(PROMPT), lambda: input(MORE))
                 except EOFError:
@@ -239,9 +239,9 @@ class Repl:
                 except KeyboardInterrupt:
                     self._stop()
                     continue
-                if self._says_time_over():
+                if self._report_time_limit():
                     return 0
-                self._tell_meanwhile()
+                self._print_pending_events()
                 request = requested(line, self.known)
                 if request == LEAVE:
                     return 0
@@ -267,7 +267,7 @@ class Repl:
         except CommandError as failure:
             print(failure.sentence(self.language), file=sys.stderr)
 
-    def _tell_meanwhile(self, limit_s: float = 0) -> None:
+    def _print_pending_events(self, limit_s: float = 0) -> None:
         """Print the robot's events since the last line.
 
         The next line reports a lost robot, if it is still lost.

@@ -19,26 +19,26 @@ from tiniscript.link.errors import PortError
 from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
 from tiniscript.link.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
-from tiniscript.link.modules.talk import Module, asked, found
+from tiniscript.link.modules.talk import Module, ask, find_module
 from tiniscript.link.wire import Wire
 
 
 def run(options: Namespace, language: str) -> int:
-    wanted = _wanted(options)
+    expected = _wanted(options)
     port = _port(options)
     try:
         wire = Wire(ports.opened(port, BAUDS[0]))
     except PortError as failure:
         return _end(unopened(System(), port, failure)._replace(of="module"), language)
-    begun: list[Step] = []  # the speed, once a command for it may have been sent
+    steps: list[Step] = []  # the speed, once a command for it may have been sent
     try:
-        return _SetUp(wire, options, wanted, language, begun).run()
+        return _SetUp(wire, options, expected, language, steps).run()
     except OSError:
         code = _end(sure("port_gone")._replace(of="module"), language)
-        print(_left(begun, language))
+        print(_speed_after_abort(steps, language))
         return code
     except KeyboardInterrupt:
-        raise CommandError(2, "module_stopped", left=_left(begun, language)) from None
+        raise CommandError(2, "module_stopped", left=_speed_after_abort(steps, language)) from None
     finally:
         wire.close()
 
@@ -49,11 +49,11 @@ def _end(finding: Finding, language: str) -> int:
     return 3 if finding.is_wrong else 0
 
 
-def _left(begun: list[Step], language: str) -> str:
+def _speed_after_abort(steps: list[Step], language: str) -> str:
     """Return what is known of the speed of a module whose set-up was broken off."""
-    if not begun:
+    if not steps:
         return text("module_left_nothing", language)
-    return text("module_left", language).format(baud=begun[0].value)
+    return text("module_left", language).format(baud=steps[0].value)
 
 
 def _wanted(options: Namespace) -> Wanted:
@@ -67,18 +67,18 @@ def _wanted(options: Namespace) -> Wanted:
         name = set_up.name_for(int(options.id, 16))
     baud = None
     if options.baud is not None:
-        known = {str(each): each for each in BAUDS}
+        known = {str(item): item for item in BAUDS}
         if options.baud not in known:
             raise CommandError(
                 2, "module_bad_baud", known=", ".join(map(str, sorted(BAUDS))),
                 found=shown(options.baud) or "''",
             )  # fmt: skip
         baud = known[options.baud]
-    wanted = Wanted(name, options.pin, baud)
-    misfits = [set_up.misfit(wanted, dialect) for dialect in DIALECTS]
+    result = Wanted(name, options.pin, baud)
+    misfits = [set_up.misfit(result, dialect) for dialect in DIALECTS]
     if all(misfits):
-        _refuse(wanted, max(DIALECTS, key=lambda dialect: dialect.name_bytes), misfits[0])
-    return wanted
+        _refuse(result, max(DIALECTS, key=lambda dialect: dialect.name_bytes), misfits[0])
+    return result
 
 
 def _refuse(wanted: Wanted, dialect: Dialect, what: str) -> None:
@@ -112,7 +112,7 @@ class _SetUp:
 
     def run(self) -> int:
         doing = Doing()
-        module = found(
+        module = find_module(
             self.wire, look=lambda baud: doing.tell(self._text("module_looking", baud=str(baud)))
         )
         doing.end()
@@ -127,7 +127,7 @@ class _SetUp:
         outcomes: list[Outcome] = []
         if not self.options.dry_run:
             self.begun += [step for step in plan if step.what == BAUD]
-            outcomes = set_up.done(self.wire, module, plan, self._tell)
+            outcomes = set_up.done(self.wire, module, plan, self._print_outcome)
         else:
             self._show(plan)
         is_done = all(outcome.how in GOOD for outcome in outcomes)
@@ -147,14 +147,14 @@ class _SetUp:
         dialect = module.dialect
         questions = {NAME: dialect.ask_name, BAUD: dialect.ask_baud}
         values = {
-            what: value_of(asked(self.wire, question, dialect.ending, dialect.wait_ms))
+            what: value_of(ask(self.wire, question, dialect.ending, dialect.wait_ms))
             for what, question in questions.items()
             if question
         }
         if BAUD in values:
-            written = values[BAUD].split(",")[0]
+            text = values[BAUD].split(",")[0]
             values[BAUD] = next(
-                (str(baud) for baud, value in dialect.bauds.items() if value == written), ""
+                (str(baud) for baud, value in dialect.bauds.items() if value == text), ""
             )
         return {what: shown(value) for what, value in values.items() if value}
 
@@ -165,7 +165,7 @@ class _SetUp:
                        version=version, baud=str(module.baud))
         )  # fmt: skip
         if now:
-            values = (self._text(f"module_what_{what}", value=now[what]) for what in now)
+            values = (self._text(f"module_what_{item}", value=now[item]) for item in now)
             print(self._text("module_now", values=", ".join(values)), flush=True)
 
     def _show(self, plan: list[Step]) -> None:
@@ -174,10 +174,10 @@ class _SetUp:
             commands = self._text("module_plan_or").join(step.commands)
             print(f"{what}: " + self._text("module_plan", commands=commands))
 
-    def _tell(self, outcome: Outcome) -> None:
-        step, how, said = outcome
+    def _print_outcome(self, outcome: Outcome) -> None:
+        step, how, text = outcome
         name = self._text(f"module_what_{step.what}", value=step.value)
         if step.what == BAUD and how == DONE:
-            how = "done_baud" if said == step.value else "done_later"
-        said = shown(said) or self._text("module_no_word")
-        _end(sure(f"module_{how}", name=name, said=said), self.language)
+            how = "done_baud" if text == step.value else "done_later"
+        text = shown(text) or self._text("module_no_word")
+        _end(sure(f"module_{how}", name=name, said=text), self.language)

@@ -45,10 +45,10 @@ def run(options: Namespace, language: str) -> int:
 def _watch(
     connection: Connection, printer: EventPrinter, seconds: int, board: Board | None = None
 ) -> None:
-    for found in connection.watch(monotonic() + seconds if seconds else None):
+    for item in connection.watch(monotonic() + seconds if seconds else None):
         if board is not None:
             board.draw_plot(int(monotonic() * 1000))
-        if found is not None:
+        if item is not None:
             if board is not None:
-                board.take(*found, printer.name_of)
-            printer.tell(*found)
+                board.take(*item, printer.name_of)
+            printer.tell(*item)

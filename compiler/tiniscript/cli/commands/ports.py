@@ -12,14 +12,16 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import baud_of, opened_client
-from tiniscript.cli.robot.in_reach import AT_ONCE, found
+from tiniscript.cli.robot.in_reach import AT_ONCE, find_robots
 from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, listed
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import Said, text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link import known_ports
 from tiniscript.link.authority import whose
+from tiniscript.link.connection import stranger
+from tiniscript.link.foreign import told
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.protocol import LOOKER
 from tiniscript.robots.profile import Robot
@@ -32,7 +34,7 @@ def run(options: Namespace, language: str) -> int:
     baud = None if options.baud is None else baud_of(options, robot, language)
     in_reach = NOWHERE
     if options.ask and options.port is None:
-        in_reach = found(list(known_ports.known().names), language)
+        in_reach = find_robots(list(known_ports.known().names), language)
         for note in in_reach.notes:  # what could not be searched
             print(note, file=sys.stderr, flush=True)
     rows = listed(language, options.port, in_reach)
@@ -60,6 +62,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
         with closing(opened_client(port, robot, LOOKER, baud, language, OPEN_S)) as client:
             reply = client.hello()
             device_info, heard = client.line.robot, client.line.heard
+            found = stranger(client.line)
     except CommandError as failure:
         return {"answer": None, "said": failure.plain(language)}
     except RobotError as gone:
@@ -70,7 +73,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             shown(device_info.name) or shipped_of_kit(device_info.kit) or f"{device_info.id:08x}"
         )
         owner = whose(device_info)
-        said = text("port_whose", language).format(
+        sentence = text("port_whose", language).format(
             said=text("port_robot", language).format(name=called),
             whose=text(f"whose_{owner}", language),
         )
@@ -79,6 +82,8 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "id": f"{device_info.id:08x}",
             "kit": f"{device_info.kit:04x}",
             "owner": owner,
-            "said": said,
+            "said": sentence,
         }
+    if found is not None and (found.has_row or found.is_sure):
+        return {"answer": None, "said": Said(told(found, language).said.rstrip("."))}
     return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}

@@ -110,9 +110,9 @@ class _Stage:
                     if pushes and robot.now_ms >= pushes[0][0]:
                         self.simulator.push(pushes.pop(0)[1])
                     self.simulator.turn(self._limit_s(pushes, end_ms))
-                    self._tell(robot.take_events())
+                    self._print_events(robot.take_events())
                     self._save(is_due=False)
-                    if not self._obey(keys.pressed()):
+                    if not self._handle_keys(keys.pressed()):
                         break
         except KeyboardInterrupt:
             pass
@@ -157,7 +157,7 @@ class _Stage:
             limits.append(max(0.001, (due_ms - self.simulator.robot.now_ms) / 1000))
         return min(limits)
 
-    def _tell(self, events: list[Event]) -> None:
+    def _print_events(self, events: list[Event]) -> None:
         is_plain = self.screen is None or not sys.stdout.isatty()
         for event in events:
             if self._bookkeeping.hides_trace(event.what, event.values):
@@ -178,7 +178,7 @@ class _Stage:
                 self._frame_s = monotonic() + FRAME_S
                 self.screen.draw(self.picture, self.simulator.robot.now_ms)
 
-    def _obey(self, keys: str) -> bool:
+    def _handle_keys(self, keys: str) -> bool:
         """Handle keys; return whether to go on."""
         for key in keys:
             if key in QUIT:

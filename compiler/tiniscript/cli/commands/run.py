@@ -46,7 +46,7 @@ def run(options: Namespace, language: str) -> int:
     machine_of = _cpp_machine(ready.image, robot) if options.machine == "cpp" else None
     begins = begun(ready.image, robot, lists, max_ms, max_steps, seed, machine_of)
     read: set[int] = set()
-    events = _noting(begins, read)
+    events = _recording_reads(begins, read)
     if options.show and sys.stderr.isatty():
         from tiniscript.cli.terminal.run_drawing import watch
 
@@ -60,8 +60,8 @@ def run(options: Namespace, language: str) -> int:
         say_aside("read_nothing", language, **values)
     if ending.what != "FAULT":
         return 0
-    said = fault_text(ending.fault, ending.offset, ready.places, given.is_image, language)
-    print(said, file=sys.stderr)
+    text = fault_text(ending.fault, ending.offset, ready.places, given.is_image, language)
+    print(text, file=sys.stderr)
     return 1
 
 
@@ -73,7 +73,7 @@ def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
         raise not_installed("no_wasmtime", why) from None
 
 
-def _noting(events: Iterator[Event | Ending], read: set[int]) -> Iterator[Event | Ending]:
+def _recording_reads(events: Iterator[Event | Ending], read: set[int]) -> Iterator[Event | Ending]:
     """Yield the events of a run, and note the numbers of the sensors that it reads."""
     for event in events:
         if isinstance(event, Event) and event.what == "READ":

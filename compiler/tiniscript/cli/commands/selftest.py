@@ -80,14 +80,14 @@ def _print(
     if name:
         say("selftest_head", language, robot=name, port=shown(port or ""))
     print("\n".join(rows(findings, language)))
-    counts = {each: sum(row.verdict == each for row in findings) for each in (OK, WRONG, OPEN)}
+    counts = {item: sum(row.verdict == item for row in findings) for item in (OK, WRONG, OPEN)}
     good, wrong, left = counts[OK], counts[WRONG], counts[OPEN]
     say("selftest_end", language, good=good, all=len(findings), wrong=wrong, open=left)
 
 
 def _report(findings: list[Finding], name: str, port: str, language: str) -> list[str]:
     """Return the lines of a report: nothing in it tells whose robot or computer it is."""
-    hidden = [(each, report.shown_port(port)) for each in (port, shown(port)) if port]
+    hidden = [(item, report.shown_port(port)) for item in (port, shown(port)) if port]
     if name and name not in robots.names():  # a shipped one's says what it is, not whose
         hidden.append((name, report.HIDDEN))
 

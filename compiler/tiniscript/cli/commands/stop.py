@@ -20,7 +20,7 @@ def run(options: Namespace, language: str) -> int:
     if not is_many and options.port is None:
         from tiniscript.cli.robot import in_reach
 
-        options.ports = in_reach.to_stop(options.virtual)
+        options.ports = in_reach.ports_to_stop(options.virtual)
         options.virtual = options.virtual and not options.ports
         is_many = are_many(options)
     if is_many:

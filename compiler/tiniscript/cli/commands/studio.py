@@ -38,9 +38,9 @@ def run(options: Namespace, language: str) -> int:
         if options.address or options.ports or options.turn:
             raise CommandError(2, "studio_needs_class")
         return _serve(options, language, (serving.HOST, port), hosting)
-    host = _given(options.address) if options.address else _address()
+    host = _address_option(options.address) if options.address else _address()
     room = Classroom(hosting, list(map(inputs.port, options.ports)), 60 * minutes or None)
-    with closing(_keeper()) as keeper:
+    with closing(_class_keeper()) as keeper:
         return _serve(options, language, (host, port), hosting, _Class(room, keeper))
 
 
@@ -95,7 +95,7 @@ def _serve(
     return 0
 
 
-def _keeper() -> class_keeping.Keeper:
+def _class_keeper() -> class_keeping.Keeper:
     try:
         return class_keeping.Keeper()
     except class_keeping.Taken:
@@ -125,12 +125,12 @@ def _address() -> str:
             raise CommandError(3, "studio_no_network") from None
 
 
-def _given(address: str) -> str:
+def _address_option(address: str) -> str:
     """Return the address of --address, which has no other form: Host must be exactly this."""
     try:
-        found = IPv4Address(address)
+        result = IPv4Address(address)
     except ValueError:
-        found = IPv4Address(0)
-    if found.is_unspecified or found.is_multicast:
+        result = IPv4Address(0)
+    if result.is_unspecified or result.is_multicast:
         raise CommandError(2, "studio_bad_address", found=shown(address))
-    return str(found)
+    return str(result)

@@ -20,7 +20,7 @@ from tiniscript.link.trim import MOST_PACE, Pace, Trim, told
 
 
 def run(options: Namespace, language: str) -> int:
-    given = _given(options, language)
+    given = _trim_options(options, language)
     with connected(options, language) as connection:
         connection.meet()
         before = told(connection.ask(lambda session: session.trim()).values)
@@ -50,9 +50,9 @@ def _changed(before: Trim, given: dict[str, Any], is_reset: bool) -> Trim:
     return (Trim() if is_reset else before)._replace(**given)
 
 
-def _given(options: Namespace, language: str) -> dict[str, Any]:
+def _trim_options(options: Namespace, language: str) -> dict[str, Any]:
     """Return the fields of a trim that the options set."""
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     for option, name in (
         ("exchange", "is_exchanged"),
         ("reverse_left", "is_left_reversed"),
@@ -60,20 +60,20 @@ def _given(options: Namespace, language: str) -> dict[str, Any]:
     ):
         word: str | None = getattr(options, option)
         if word is not None:
-            found[name] = word == "yes"
+            result[name] = word == "yes"
     if options.balance is not None:
-        found["balance"] = whole_number(
+        result["balance"] = whole_number(
             "--balance", options.balance, 0, -MOST_BALANCE, MOST_BALANCE, language
         )
     for name in Pace._fields:
-        said: str | None = getattr(options, name)
-        if said is not None:
+        text: str | None = getattr(options, name)
+        if text is not None:
             option, most = f"--{name.replace('_', '-')}", round(MOST_PACE * ONE)
-            size = thousandths(option, said.replace(",", "."), 0, 0, most, language)
-            found[name] = size / ONE
+            size = thousandths(option, text.replace(",", "."), 0, 0, most, language)
+            result[name] = size / ONE
     if options.least is not None:
-        found["least"] = whole_number("--least", options.least, 0, 0, MOST_LEAST, language)
-    return found
+        result["least"] = whole_number("--least", options.least, 0, 0, MOST_LEAST, language)
+    return result
 
 
 def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:

@@ -29,7 +29,7 @@ class UndoSaving(Saving):
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     if are_many(options):
-        return together(options, robot, language, _one_of_many)
+        return together(options, robot, language, _undo_member)
     with Connection(options, robot, language) as connection:
         connection.meet()
         receipt = Undone(connection)
@@ -50,7 +50,7 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
-def _one_of_many(connection: Connection, member: Member) -> Result:
+def _undo_member(connection: Connection, member: Member) -> Result:
     member.meet(connection)
     receipt = Undone(connection)
     member.tell("crew_saving")

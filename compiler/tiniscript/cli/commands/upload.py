@@ -83,9 +83,9 @@ def _ready(
     try:
         return images.ready(given, robot, language, is_strict=True, is_open=True)
     except images.OtherRobot as other:
-        found = own_kit.of_answering(options, robot, language)
-        if found is not None:
-            return images.ready(given, found, language, is_strict=True)
+        result = own_kit.of_answering(options, robot, language)
+        if result is not None:
+            return images.ready(given, result, language, is_strict=True)
         outputs.print_diagnostics(other.compiled, language)
         return None
 

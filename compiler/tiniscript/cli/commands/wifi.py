@@ -38,7 +38,7 @@ def run(options: Namespace, language: str) -> int:
     if is_about_broker and (is_about_network or (options.broker is not None and options.no_broker)):
         raise CommandError(2, "wifi_one_way")
     of_broker = (options.user, options.group, options.trust, options.tls or None)
-    if options.broker is None and any(each is not None for each in of_broker):
+    if options.broker is None and any(item is not None for item in of_broker):
         raise CommandError(2, "broker_no_user")
     broker = robot_broker.settings(options, language) if options.broker is not None else None
     name = None if options.network is None else _name_bytes(options.network)
@@ -60,7 +60,7 @@ def run(options: Namespace, language: str) -> int:
         elif name is not None:
             _join(connection, name, options.access_point)
         else:
-            _tell(connection, _told(connection))
+            _print_wifi_state(connection, _wifi_state(connection))
             robot_broker.tell_if_any(connection)
     return 0
 
@@ -70,7 +70,7 @@ def _refuse_itself(connection: Connection) -> None:
 
     A robot that would refuse anyway does so here, before anybody is asked for a password.
     """
-    _told(connection)
+    _wifi_state(connection)
     if connection.port.startswith(("tcp://", "socket://")):
         raise CommandError(2, "wifi_itself", robot=connection.name)
 
@@ -80,15 +80,17 @@ def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
     password = asking.password(prompt, LEAST_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")
     network = Network(name, password, is_access_point)
     connection.ask(lambda session: session.join(network))
-    ask = partial(_told, connection)
-    _tell(connection, robot_broker.awaited(ask, lambda wifi_reply: wifi_reply.state in ENDS))
+    ask = partial(_wifi_state, connection)
+    _print_wifi_state(
+        connection, robot_broker.awaited(ask, lambda wifi_reply: wifi_reply.state in ENDS)
+    )
 
 
-def _told(connection: Connection) -> WifiReply:
+def _wifi_state(connection: Connection) -> WifiReply:
     return connection.ask_or(lambda session: session.wifi(), "wifi_none", "UNKNOWN_MESSAGE").values
 
 
-def _tell(connection: Connection, wifi_reply: WifiReply) -> None:
+def _print_wifi_state(connection: Connection, wifi_reply: WifiReply) -> None:
     mode, state = (
         row[number] if number < len(row) else "OFF"
         for row, number in ((MODES, wifi_reply.mode), (STATES, wifi_reply.state))

@@ -25,7 +25,7 @@ def run(options: Namespace, language: str) -> int:
     if options.output is None:
         _print_rows(wire_rows(plan))
         print()
-        _print_rows(_by_tag(rail_rows(plan)))
+        _print_rows(_merge_by_tag(rail_rows(plan)))
         print()
         say("wiring_page", language)
         return 0
@@ -34,7 +34,7 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
-def _by_tag(rows: list[tuple[str, ...]]) -> list[tuple[str, ...]]:
+def _merge_by_tag(rows: list[tuple[str, ...]]) -> list[tuple[str, ...]]:
     """Return the rows of power and GND with one row for a tag."""
     found: dict[tuple[str, ...], list[str]] = {}
     for *tag, end in rows:

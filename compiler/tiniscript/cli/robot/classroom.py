@@ -63,20 +63,20 @@ class Classroom:
         from tiniscript.link.transports.broker import Access
 
         user, password = broker_options.user(options, self.language)
-        name, word = (each.decode("utf-8", "surrogateescape") for each in (user, password))
+        name, word = (item.decode("utf-8", "surrogateescape") for item in (user, password))
         return Access(name, word, bool(options.tls), options.trust)
 
     def present(self) -> list[Present]:
         """Return the robots that the broker knows, those that have gone, too."""
         with opening_port(f"mqtt://{self.place}"):
             try:
-                found = self.broker.present(self.group)
+                result = self.broker.present(self.group)
             finally:
                 for topic, size in self.broker.skipped.items():
                     say_aside("class_skipped", self.language, topic=shown(topic), bytes=size)
-        if not any(each.is_here for each in found):
+        if not any(item.is_here for item in result):
             raise CommandError(3, "class_empty", group=self.group, host=str(self.place))
-        return found
+        return result
 
     def targets(self, found: list[Present], verb: str = "class") -> Namespace:
         """Return the options with which a verb reaches these robots.
@@ -85,7 +85,7 @@ class Classroom:
         """
         from tiniscript.link.transports.broker import port_of
 
-        ports = [port_of(*self.place, self.group, each.id) for each in found if each.is_here]
+        ports = [port_of(*self.place, self.group, item.id) for item in found if item.is_here]
         of_fleet = {option.name: option.unset for option in of_verb(UPLOAD)}
         own = Namespace(**{**of_fleet, "port": None, **vars(self.options)})
         own.ports, own.verb = ports, verb
@@ -95,12 +95,12 @@ class Classroom:
 
 
 def list_robots(room: Classroom) -> int:
-    found = room.present()
-    own = room.targets(found)
+    result = room.present()
+    own = room.targets(result)
     code = together(own, inputs.robot(own, room.language), room.language, in_a_line)
-    for each in found:
-        if not each.is_here and not own.json:
-            say("class_gone", room.language, robot=shown(each.name), id=each.id)
+    for item in result:
+        if not item.is_here and not own.json:
+            say("class_gone", room.language, robot=shown(item.name), id=item.id)
     return code
 
 
@@ -122,12 +122,12 @@ def stop(room: Classroom) -> int:
         with suppress(OSError):
             is_published = room.broker.stop(room.group) or is_published
     try:
-        found = room.present()
+        result = room.present()
     except CommandError:
         if is_published:
             say_aside("class_stop_sent", room.language, group=shown(room.group))
         raise
-    own = room.targets(found, "stop")
+    own = room.targets(result, "stop")
     return together(own, inputs.robot(own, room.language), room.language, stop_one)
 
 
@@ -174,9 +174,9 @@ class Listener:
             began_ms=self.began_ms,
         )  # fmt: skip
         try:
-            for found in connection.watch(self.end_s):
-                if found is not None:
-                    printer.tell(*found)
+            for item in connection.watch(self.end_s):
+                if item is not None:
+                    printer.tell(*item)
         except KeyboardInterrupt:
             pass
         return Result(True, text("class_over", connection.language))

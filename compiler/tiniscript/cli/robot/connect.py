@@ -20,14 +20,14 @@ from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import asking
 from tiniscript.cli.terminal.progress import Quiet, waiting
-from tiniscript.cli.texts import say_aside, text
+from tiniscript.cli.texts import Said, say_aside, text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link import known_ports
-from tiniscript.link.connection import PendingRequest, Requester, reason_of
+from tiniscript.link.connection import FOREIGN, PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
 from tiniscript.link.outcomes import LOOK_S, ConnectionLost, Event
@@ -41,7 +41,7 @@ from tiniscript.virtual.directory import is_gone
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.simulator import CommandSimulator
-    from tiniscript.link.ports import Found
+    from tiniscript.link.ports import ListedPort
 
 T = TypeVar("T")
 
@@ -87,21 +87,21 @@ class Connection(Client):
         baud = baud_of(options, robot, language)
         self._is_meeting = False
         self.simulator: CommandSimulator | None = None  # a virtual robot for this command alone
-        found = _chosen(options, language)
-        if found == VIRTUAL:
+        result = _select_port(options, language)
+        if result == VIRTUAL:
             from tiniscript.cli.robot.simulator import CommandSimulator
 
             self.simulator = CommandSimulator(options, robot, language)
-            found = self.simulator.port
-        self.port, self.language = found, language
-        said = text("waits_for_robot", language).format(port=shown(found))
-        self.quiet = Quiet(said, is_seen=not is_one_of_many)
+            result = self.simulator.port
+        self.port, self.language = result, language
+        sentence = text("waits_for_robot", language).format(port=shown(result))
+        self.quiet = Quiet(sentence, is_seen=not is_one_of_many)
         asked_baud = None if options.baud is None else baud
         try:
             verb = options.verb
             with self._waiting(), told():
                 super().__init__(
-                    found, verb, robot, asked_baud, language, is_shared=verb in SHARED,
+                    result, verb, robot, asked_baud, language, is_shared=verb in SHARED,
                     heed=self._pass_interrupt,
                 )  # fmt: skip
         except BaseException:
@@ -194,12 +194,12 @@ class Connection(Client):
         return super().wait(request, watch)
 
     def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
-        found = super().event(limit_s)
-        if found is not None:
+        result = super().event(limit_s)
+        if result is not None:
             self.quiet.note_news()
         elif self._needs_a_reader:
             streams.refuse_unread()
-        return found
+        return result
 
     @property
     def _needs_a_reader(self) -> bool:
@@ -270,12 +270,12 @@ class Connection(Client):
         """
         bookkeeping = Bookkeeping()
         while end_s is None or monotonic() < end_s:
-            found = self.event()
-            if found is not None and bookkeeping.hides(found[1]):
+            result = self.event()
+            if result is not None and bookkeeping.hides(result[1]):
                 continue
-            if found is not None and found[1].name == "LOST":
+            if result is not None and result[1].name == "LOST":
                 raise CommandError(3, "link_lost", port=shown(self.port))
-            yield found
+            yield result
 
     def interrupt(self) -> None:
         """Pass a Ctrl-C to the thread that waits here; Python reports it only to the main one."""
@@ -291,6 +291,9 @@ class Connection(Client):
         reason = reason_of(self.line, reply)
         if reason == "status":
             return CommandError(3, "plain", said=self.said(reply))
+        if reason == FOREIGN:
+            what, then = self.foreign()
+            return CommandError(3, reason, port=shown(self.port), what=Said(what), then=Said(then))
         return CommandError(3, reason, port=shown(self.port), id=f"{reply.detail:08x}")
 
     def said(self, reply: Reply[object]) -> str:
@@ -356,7 +359,7 @@ def remember_profile(options: Namespace, robot: Robot, kit: int) -> None:
     given.remember(name, kit)
 
 
-def _chosen(options: Namespace, language: str) -> str:
+def _select_port(options: Namespace, language: str) -> str:
     """Return the port of `--port`, else the last used one, else the one that the user chooses.
 
     A port is not chosen because a robot answers on it: it may be another group's robot. A running
@@ -386,16 +389,16 @@ def _chosen(options: Namespace, language: str) -> str:
             raise CommandError(3, "last_port_missing", port=shown(last))
         if virtual:
             raise CommandError(
-                3, "which_virtual", known=", ".join(each.address for each in virtual)
+                3, "which_virtual", known=", ".join(item.address for item in virtual)
             )
         raise CommandError(3, "which_port_or_virtual" if can_bring else "which_port")
-    return _asked(language, can_bring, virtual)
+    return _ask_port(language, can_bring, virtual)
 
 
-def about_port(found: Found, language: str) -> str:
+def about_port(listed: ListedPort, language: str) -> str:
     """Return the description of a port; of a built-in one the system has none."""
-    is_told = bool(found.description) or not is_built_in(found.port)
-    return found.description if is_told else text("port_built_in", language)
+    is_told = bool(listed.description) or not is_built_in(listed.port)
+    return listed.description if is_told else text("port_built_in", language)
 
 
 def about_virtual(running: directory.Running, language: str) -> str:
@@ -405,20 +408,20 @@ def about_virtual(running: directory.Running, language: str) -> str:
     world = running.world
     if world in worlds.names():
         world = worlds.load(world).labels[language]
-    said = text("virtual_port", language).format(robot=running.robot, world=world)
-    return f"{running.name}: {said}" if running.name else said
+    sentence = text("virtual_port", language).format(robot=running.robot, world=world)
+    return f"{running.name}: {sentence}" if running.name else sentence
 
 
-def _asked(language: str, can_bring: bool, virtual: list[directory.Running]) -> str:
+def _ask_port(language: str, can_bring: bool, virtual: list[directory.Running]) -> str:
     """Let the person choose a port, or one of the virtual robots."""
     names = known_ports.known().names
     from tiniscript.link import ports
 
-    found = ports.listed()
-    choices = [each.port for each in found]
+    result = ports.listed()
+    choices = [item.port for item in result]
     choices += [port for port in names if port not in choices and is_address(port)
                 and not is_gone(port)]  # fmt: skip
-    choices += [each.address for each in virtual if each.address not in choices]
+    choices += [item.address for item in virtual if item.address not in choices]
     if not choices:
         if can_bring:
             from tiniscript.cli.robot.simulator import offered
@@ -426,8 +429,8 @@ def _asked(language: str, can_bring: bool, virtual: list[directory.Running]) -> 
             if offered(language):
                 return VIRTUAL
         raise CommandError(3, "no_ports")
-    about = {each.port: about_port(each, language) for each in found}
-    about |= {each.address: about_virtual(each, language) for each in virtual}
+    about = {item.port: about_port(item, language) for item in result}
+    about |= {item.address: about_virtual(item, language) for item in virtual}
     say_aside("choose_port", language)
     for number, port in enumerate(choices, 1):
         more = "   ".join(filter(None, (names.get(port), about.get(port))))

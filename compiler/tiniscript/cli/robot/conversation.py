@@ -50,45 +50,45 @@ class Conversation:
         """Ask, and return the line that is typed. Raises NoPerson."""
         if not self.is_asking:
             raise NoPerson
-        found = asking.answer(text(key, self.language).format(**values))
-        if not found:
+        result = asking.answer(text(key, self.language).format(**values))
+        if not result:
             self.is_asking = False
             print(file=sys.stderr)
             raise NoPerson
-        return found.strip()
+        return result.strip()
 
     def choice(self, key: str, high: int, **values: str) -> int:
         """Ask until the answer is a number from 1 to `high`. Raises NoPerson."""
         while True:
-            found = self.answer(key, **values)
-            if found.isascii() and found.isdigit() and 1 <= int(found[:9]) <= high:
-                return int(found)
+            result = self.answer(key, **values)
+            if result.isascii() and result.isdigit() and 1 <= int(result[:9]) <= high:
+                return int(result)
             say_aside("ask_number", self.language, high=high)
 
     def does(self, line: str) -> list[int]:
         """Let the robot do a line now; return what it showed. Raises CommandError."""
         values: list[int] = []
-        told: list[str] = []
+        messages: list[str] = []
 
         def hold(event: Event) -> bool:
             if event.name == "SHOW":
                 values.append(event.value)
             return event.name in ("SHOW", "DONE")
 
-        printer = EventPrinter(self.language, out=told.append, err=told.append)
+        printer = EventPrinter(self.language, out=messages.append, err=messages.append)
         if follow_line(self.connection, line, printer, hold):
-            raise CommandError(3, "plain", said=" ".join(told))
+            raise CommandError(3, "plain", said=" ".join(messages))
         return values
 
     def saw(self, line: str, key: str, again: int, **values: str) -> int:
         """Let the robot do a line, and ask what the person saw; `again` shows it once more."""
-        found = again
-        while found == again:
+        result = again
+        while result == again:
             if not self.is_asking:
                 raise NoPerson
             self.does(line)
-            found = self.choice(key, again, **values)
-        return found
+            result = self.choice(key, again, **values)
+        return result
 
     def lift(self) -> None:
         self.answer("ask_lift")
@@ -96,8 +96,8 @@ class Conversation:
     def turned(self, side: str) -> Turned:
         """Turn the motor of a side; return what the person saw. Raises NoPerson, CommandError."""
         key = "ask_turned" if side == "left" else "ask_turned_other"
-        found = self.saw(f"{MOTORS[side]}; W(1); M(0, 0)", key, AGAIN)
-        return STILL if found == NOTHING else SEEN[found - 1]
+        result = self.saw(f"{MOTORS[side]}; W(1); M(0, 0)", key, AGAIN)
+        return STILL if result == NOTHING else SEEN[result - 1]
 
 
 def as_seen(before: Trim, left: Turned, right: Turned) -> Trim | None:

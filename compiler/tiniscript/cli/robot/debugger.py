@@ -40,16 +40,20 @@ def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, .
     if len(set(lines)) > MOST_BREAKPOINTS:
         raise CommandError(2, "break_most", most=str(MOST_BREAKPOINTS))
     statements = begins(ready.image.code)
-    found = []
+    matches = []
     for line in lines:
-        places = [_first(place, statements) for place in ready.places.places if place.line >= line]
+        places = [
+            _first_statement(place, statements)
+            for place in ready.places.places
+            if place.line >= line
+        ]
         if not places:
             raise CommandError(1, "break_nowhere", line=str(line))
-        found.append(min(places))
-    return tuple(sorted(set(found)))
+        matches.append(min(places))
+    return tuple(sorted(set(matches)))
 
 
-def _first(place: MapLocation, statements: Sequence[int]) -> int:
+def _first_statement(place: MapLocation, statements: Sequence[int]) -> int:
     return next((at for at in statements if at >= place.offset), statements[-1])
 
 
@@ -88,11 +92,11 @@ class Debugger:
         if event.name != "HALTED":
             return False
         place = self.map.at(event.at)
-        is_inside = place is not None and _first(place, self.statements) != event.at
+        is_inside = place is not None and _first_statement(place, self.statements) != event.at
         if self.is_stepping and is_inside:  # of one instruction of the text
             self._resume(RESUME_STEP)
             return True
-        self._tell(event.at, event.task, place)
+        self._print_halt(event.at, event.task, place)
         self.is_halted = True
         if not self.has_keys:
             self._resume(RESUME_GO)
@@ -110,24 +114,24 @@ class Debugger:
         self.is_halted, self.is_stepping = False, how == RESUME_STEP
         self.connection.ask(lambda session: session.resume(how))
 
-    def _tell(self, at: int, task: int, place: MapLocation | None) -> None:
+    def _print_halt(self, at: int, task: int, place: MapLocation | None) -> None:
         language = self.printer.language
         variables = self._variables()
         tasks = self._tasks(task)
         line = 0 if place is None else place.line
         what = "" if place is None else self.map.line(line)[place.column - 1 :].split(";")[0]
-        said = [text("halted", language).format(line=line, what=what.strip())]
+        texts = [text("halted", language).format(line=line, what=what.strip())]
         values = ", ".join(
             f"{name} = {value_text(value, is_yes_no)}" for name, value, is_yes_no in variables
         )
-        said += [f"  {values}"] * bool(values)
+        texts += [f"  {values}"] * bool(values)
         for state, where in tasks:
             key = f"halted_task_{TASK_STATES[state][0]}"
-            said.append("  " + text(key, language).format(line=where))
+            texts.append("  " + text(key, language).format(line=where))
         if self.has_keys:
-            said.append(text("halted_keys", language))
+            texts.append(text("halted_keys", language))
         self.printer.say(
-            0, "HALTED", str(line), "\n".join(said), line=line, at=at,
+            0, "HALTED", str(line), "\n".join(texts), line=line, at=at,
             variables={name: value_of(value, is_yes_no) for name, value, is_yes_no in variables},
             tasks=[{"state": TASK_STATES[state][0], "line": where} for state, where in tasks],
         )  # fmt: skip
@@ -148,9 +152,9 @@ class Debugger:
     def _tasks(self, halted: int) -> list[tuple[int, int]]:
         """Return state and line of each task beside the one that is halted, and has not ended."""
         reply = self.connection.ask(lambda session: session.read_tasks())
-        found = []
+        result = []
         for number, (state, at, _) in enumerate(iter_unpack("<BHI", reply.values.tasks)):
             place = self.map.at(at)
             if number != halted and state and place is not None:
-                found.append((state, place.line))
-        return found
+                result.append((state, place.line))
+        return result

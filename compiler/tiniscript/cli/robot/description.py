@@ -184,13 +184,13 @@ def introduced(connection: Connection, is_json: bool) -> int:
     return 0
 
 
-def measured(connection: Connection, member: Member) -> Result:
+def measure_line(connection: Connection, member: Member) -> Result:
     """Describe one of many robots, and say how soon it answers."""
     result = in_a_line(connection, member)
     member.tell("crew_pinging")
     trips = _trips(connection, COUNT)
-    said = f"{result.said}; {trips_in_words(trips, connection.language)}"
-    return Result(True, said, {**result.fields, **trips_as_data(trips)})
+    text = f"{result.said}; {trips_in_words(trips, connection.language)}"
+    return Result(True, text, {**result.fields, **trips_as_data(trips)})
 
 
 def _trips(connection: Connection, count: int) -> list[float]:
@@ -206,8 +206,8 @@ def _shortest_usual_longest(trips: list[float]) -> dict[str, float]:
 
 
 def trips_as_data(trips: list[float]) -> dict[str, object]:
-    found = _shortest_usual_longest(trips) if trips else {}
-    return {"round_trips": len(trips)} | {f"{name}_ms": round(ms, 1) for name, ms in found.items()}
+    result = _shortest_usual_longest(trips) if trips else {}
+    return {"round_trips": len(trips)} | {f"{name}_ms": round(ms, 1) for name, ms in result.items()}
 
 
 def trips_in_words(trips: list[float], language: str) -> str:
@@ -217,7 +217,7 @@ def trips_in_words(trips: list[float], language: str) -> str:
 
 def trim_in_words(trim: Trim, language: str) -> str:
     """Return a trim in words."""
-    found = [
+    result = [
         text(key, language)
         for key, is_so in (
             ("trim_exchanged", trim.is_exchanged),
@@ -228,14 +228,14 @@ def trim_in_words(trim: Trim, language: str) -> str:
     ] or [text("trim_as_wired", language)]
     key = "trim_left_weaker" if trim.balance > 0 else "trim_right_weaker"
     balance = key if trim.balance else "trim_even"
-    found.append(text(balance, language).format(n=abs(trim.balance)))
+    result.append(text(balance, language).format(n=abs(trim.balance)))
     if trim.least:
-        found.append(text("trim_least", language).format(n=trim.least))
+        result.append(text("trim_least", language).format(n=trim.least))
     if trim.pace is not None:
         lines = (("trim_speed", trim.pace[:2]), ("trim_turn", trim.pace[2:]))
-        found += [
+        result += [
             text(key, language).format(at_40=f"{at_40:g}", at_80=f"{at_80:g}")
             for key, (at_40, at_80) in lines
             if at_80
         ] or [text("trim_kits_pace", language)]
-    return ", ".join(found)
+    return ", ".join(result)

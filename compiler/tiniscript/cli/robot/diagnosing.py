@@ -13,11 +13,11 @@ from contextlib import contextmanager
 from tiniscript.cli import inputs
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, baud_of
-from tiniscript.cli.terminal.asking import agreed, can_ask
+from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
-from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
-from tiniscript.doctor.examination import PINGS, Expected, Heard, examined
+from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
+from tiniscript.doctor.examination import PINGS, Expected, Heard, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
@@ -53,11 +53,11 @@ def diagnosis_of(
         expected,
         int.from_bytes(os.urandom(4), "little"),
         watch_ms,
-        tuple(each.address for each in directory.for_all()),
+        tuple(item.address for item in directory.for_all()),
     )
     doing = Doing(not options.json)
     try:
-        return diagnosed(_doors(options, language, doing, expected.pings, may_open), question)
+        return diagnose(_doors(options, language, doing, expected.pings, may_open), question)
     finally:
         doing.end()
 
@@ -71,7 +71,7 @@ def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expect
 
 def examination_of(
     connection: Connection, expected: Expected,
-    tell: Callable[[str], None] = lambda what: None,
+    on_step: Callable[[str], None] = lambda what: None,
 ) -> tuple[list[Finding], Heard | None]:  # fmt: skip
     """Let the doctor examine a robot that has answered; return what it found and heard."""
     robot = SharedRobot(connection.line, connection.wait)
@@ -79,7 +79,7 @@ def examination_of(
     if reply is None:
         raise connection.failure(Reply(LOST))
     heard: list[Heard] = []
-    findings = examined(robot, reply, expected._replace(hear=heard.append), tell=tell)
+    findings = examine(robot, reply, expected._replace(hear=heard.append), on_step=on_step)
     return findings, heard[-1] if heard else None
 
 
@@ -100,13 +100,13 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
     def open_wire(port: str, baud: int) -> Wire:
         return Wire(ports.opened(port, baud))
 
-    def agrees(port: str) -> bool:
+    def confirms_opening(port: str) -> bool:
         if options.yes or is_agreed:
             return True
         if options.json or not can_ask():
             return False
         doing.end()
-        return agreed(text("doctor_yes", language).format(port=shown(port)))
+        return confirm(text("doctor_yes", language).format(port=shown(port)))
 
     @contextmanager
     def share(port: str) -> Iterator[LinkConnection]:
@@ -116,6 +116,6 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
             yield connection.line
 
     return Doors(
-        System(), open_wire, lambda port: joined(port, "doctor"), agrees, ports.is_radio,
+        System(), open_wire, lambda port: joined(port, "doctor"), confirms_opening, ports.is_radio,
         share, lambda what: doing.tell(text(f"doing_{what}", language).format(n=pings)),
     )  # fmt: skip

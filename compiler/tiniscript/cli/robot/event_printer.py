@@ -32,7 +32,7 @@ def fault_sentence(number: int, at: int, program: int, places: Map | None, langu
     return fault_text(name, at, places, is_other, language)
 
 
-def _out(line: str) -> None:
+def _print_line(line: str) -> None:
     print(line, flush=True)
 
 
@@ -72,7 +72,7 @@ class EventPrinter:
         self.shows = Finder({} if shown is None or program is None else {program: shown})
         self.has_lines = whole is None  # whose numbers a person knows
         self.rows = rows
-        self.out = out or _out
+        self.out = out or _print_line
         self.err = err or _err
         self.about = about or {}
         self.began_ms = began_ms
@@ -107,9 +107,9 @@ class EventPrinter:
         if show is None:
             return ""
         place = f"{show.line}:{show.column}" if show.shares_line else str(show.line)
-        return self._placed(show, place)
+        return self._name_with_place(show, place)
 
-    def _placed(self, show: Show, place: str) -> str:
+    def _name_with_place(self, show: Show, place: str) -> str:
         if not (show.shares_text and self.has_lines):
             return show.text
         return text("shown_line", self.language).format(what=show.text, line=place)
@@ -120,8 +120,8 @@ class EventPrinter:
         if show is None:
             self.say(since_ms, "SHOW", what, value=value_of(*value))
             return
-        said = f"{self._placed(show, str(show.line))} {what}"
-        self.say(since_ms, "SHOW", what, said, self.name_of(event), value=value_of(*value),
+        text = f"{self._name_with_place(show, str(show.line))} {what}"
+        self.say(since_ms, "SHOW", what, text, self.name_of(event), value=value_of(*value),
                  name=show.text, line=show.line, column=show.column)  # fmt: skip
 
     def _tell_fault(self, since_ms: int, number: int, at: int, program: int) -> None:

@@ -36,9 +36,9 @@ NOBODY = (
     "port_not_announced",
 )  # fmt: skip
 NO_ROBOT = (
-    "link_silent", "link_other", "link_echo", "not_confirmed", "port_slow", "port_no_port",
-    "port_broken", "port_busy", "port_forbidden", "port_forbidden_linux", "port_gone",
-    "port_no_robot", "radio_gone", "stop_held", "stop_held_unknown",
+    "link_silent", "link_other", "link_foreign", "link_echo", "not_confirmed", "port_slow",
+    "port_no_port", "port_broken", "port_busy", "port_forbidden", "port_forbidden_linux",
+    "port_gone", "port_no_robot", "radio_gone", "stop_held", "stop_held_unknown",
 )  # fmt: skip
 
 
@@ -113,7 +113,7 @@ class Fleet:
                     self._news.wait(LOOK_S)
                     self._news.clear()
                 self._refuse_unread()
-                self._tell(untold, table)
+                self._print_results(untold, table)
             except KeyboardInterrupt:
                 if self.is_interrupted:
                     return
@@ -132,7 +132,7 @@ class Fleet:
         if is_driving and not self.is_interrupted:
             streams.refuse_unread()
 
-    def _tell(self, untold: list[Member], table: FleetTable | None) -> None:
+    def _print_results(self, untold: list[Member], table: FleetTable | None) -> None:
         """Print the results that are new, and take those robots out of `untold`."""
         for member in [member for member in untold if member.result is not None]:
             if member.bug is not None:

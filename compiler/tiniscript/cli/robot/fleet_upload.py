@@ -11,7 +11,7 @@ from tiniscript.cli import images
 from tiniscript.cli.images import Ready
 from tiniscript.cli.robot import program_upload
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.description import measured
+from tiniscript.cli.robot.description import measure_line
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
@@ -27,7 +27,7 @@ def upload_to_many(
     """Send a program to many robots, keep its source map; return the exit code."""
     images.keep_map(ready)
     is_ping = ready.image.start == "PING"  # a program that asks who is there
-    work = measured if is_ping else partial(_upload, options, ready, name)
+    work = measure_line if is_ping else partial(_upload, options, ready, name)
     return together(options, robot, language, work)
 
 
@@ -54,12 +54,12 @@ def _upload(
     if not runs or options.detach:
         key = "how_waits" if not runs else "how_detached"
         printer.end = text(key, language).format(start=ready.image.start)
-    said = printer.end
+    sentence = printer.end
     if options.verbose:
-        said = text("crew_uploaded", language).format(
-            checksum=receipt["checksum"], code=receipt["code_bytes"], how=said
+        sentence = text("crew_uploaded", language).format(
+            checksum=receipt["checksum"], code=receipt["code_bytes"], how=sentence
         )
-    return Result(code == 0, said, {"checksum": receipt["checksum"]})
+    return Result(code == 0, sentence, {"checksum": receipt["checksum"]})
 
 
 class MemberPrinter(EventPrinter):
@@ -82,7 +82,7 @@ class MemberPrinter(EventPrinter):
         if name == "SHOW":
             self.member.value = line
         elif name != "SAVED":
-            self.end = "  ".join(each.strip() for each in line.splitlines())
+            self.end = "  ".join(item.strip() for item in line.splitlines())
         if self.is_json:
             super().say(since_ms, name, what, said, cell, is_bad=is_bad, **fields)
         elif name == "SHOW" and not sys.stderr.isatty():  # there is no table

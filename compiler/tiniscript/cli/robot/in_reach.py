@@ -40,9 +40,9 @@ class InReach(NamedTuple):
     notes: list[str]
 
 
-def found(known: list[str], language: str) -> InReach:
+def find_robots(known: list[str], language: str) -> InReach:
     """Search for some seconds. A robot that is known by a port of `known` keeps it."""
-    whole = InReach({}, [], [], [])
+    result = InReach({}, [], [], [])
     reasons = set()  # where both packages are missing, one note says it
     with ThreadPoolExecutor(2) as pool:
         searches = [(kind, pool.submit(search, known, language))
@@ -52,13 +52,13 @@ def found(known: list[str], language: str) -> InReach:
                 part = search.result()
             except PortError as failure:
                 if failure.reason not in reasons:
-                    whole.notes.append(port_failure(kind, failure).sentence(language))
+                    result.notes.append(port_failure(kind, failure).sentence(language))
                 reasons.add(failure.reason)
                 continue
-            whole.about.update(part.about)
-            whole.others.extend(part.others)
-            whole.absent.extend(part.absent)
-    return whole
+            result.about.update(part.about)
+            result.others.extend(part.others)
+            result.absent.extend(part.absent)
+    return result
 
 
 def _by_radio(known: list[str], language: str) -> InReach:
@@ -66,10 +66,10 @@ def _by_radio(known: list[str], language: str) -> InReach:
     names = [canonical(each.name) for each in seen]
     rows = []
     for each, name in zip(seen, names, strict=True):
-        said = text("radio_port", language)
-        said = f"{each.name}, {said}" if each.name else said
+        sentence = text("radio_port", language)
+        sentence = f"{each.name}, {sentence}" if each.name else sentence
         means = {canonical(each.address)} | ({name} if names.count(name) == 1 else set())
-        rows.append((BLE + each.address, {BLE + each for each in means}, said))
+        rows.append((BLE + each.address, {BLE + each for each in means}, sentence))
     ours = {port: BLE + name_in(port) for port in known if is_bluetooth(port)}
     return _rows(rows, ours)
 
@@ -95,8 +95,8 @@ def _rows(rows: list[tuple[str, set[str], str]], ours: dict[str, str]) -> InReac
         known = [value for value, meant in ours.items() if meant in means]
         reach.about[known[0] if known else port] = said
         reach.others.extend(known[1:])
-        for each in known:
-            reach.absent.remove(each)
+        for item in known:
+            reach.absent.remove(item)
     return reach
 
 
@@ -106,12 +106,12 @@ AT_ONCE = 16  # servers that are checked at the same time
 def in_use(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
     held = [registration.port for registration in alive()]
-    found = [] if is_virtual else held[:]
+    result = [] if is_virtual else held[:]
     for robot in directory.running():
         names = [robot.address, *([robot.terminal] if robot.terminal else [])]
         through = [port for port in names if same_for_all(port) in held]
-        found.append(through[0] if through else robot.address)  # one robot, one port
-    return _once(found)
+        result.append(through[0] if through else robot.address)  # one robot, one port
+    return _unique_ports(result)
 
 
 def alive() -> list[Registration]:
@@ -123,15 +123,15 @@ def alive() -> list[Registration]:
         return list(compress(registrations, pool.map(is_alive, registrations)))
 
 
-def to_stop(is_virtual: bool = False) -> list[str]:
+def ports_to_stop(is_virtual: bool = False) -> list[str]:
     """Return the ports for `tsc stop` without `--port`.
 
     They include that of the last used robot, which may drive on without any command.
     """
-    found = in_use(is_virtual)
+    result = in_use(is_virtual)
     last = None if is_virtual else opening.last_port()
-    return _once([*found, *([last] if last is not None else [])])
+    return _unique_ports([*result, *([last] if last is not None else [])])
 
 
-def _once(ports: Iterable[str]) -> list[str]:
+def _unique_ports(ports: Iterable[str]) -> list[str]:
     return list({same_for_all(port): port for port in ports}.values())

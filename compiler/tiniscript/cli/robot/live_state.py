@@ -86,24 +86,24 @@ class Known:
         parsed = parse(Source(body)).program.body
         own = {node.name: body[node.span.start : node.span.end] for node in parsed
                if isinstance(node, ast.Def)}  # fmt: skip
-        values, defs = self._before(body, own)
+        values, defs = self._definitions_for(body, own)
         before = values + defs
         plain = compile_text(f"{before}{body}", self.kit)
         if not plain.is_right:
-            return Line(_behind(plain, len(before)), (), own)
+            return Line(_compiled_part(plain, len(before)), (), own)
         shown = _assigned(plain, len(values))
         if all(isinstance(node, ast.Def) for node in parsed):
-            return Line(_behind(plain, len(before)), (), own, does_nothing=True)
+            return Line(_compiled_part(plain, len(before)), (), own, does_nothing=True)
         if shown:
             after = "".join(f"\nSHOW({name})" for name in (as_text(MARK), *shown))
             full = compile_text(f"{before}{body}{after}", self.kit)
             if full.is_right and len(full.code) <= room:
-                line = _behind(full, len(before), len(before + body))
+                line = _compiled_part(full, len(before), len(before + body))
                 return Line(line, shown, own, whole=_map_of(full, len(before + body)))
-        line = _behind(plain, len(before))
+        line = _compiled_part(plain, len(before))
         return Line(line, (), own, forgets=bool(shown), whole=_map_of(plain, len(before + body)))
 
-    def _before(self, text: str, own: dict[str, str]) -> tuple[str, str]:
+    def _definitions_for(self, text: str, own: dict[str, str]) -> tuple[str, str]:
         """Return the variables and the DEFs that a line needs, as text."""
         used: set[str] = set()
         texts = [text]
@@ -123,10 +123,10 @@ def _assigned(compiled: Compiled, start: int) -> tuple[str, ...]:
     program = compiled.program
     assert program is not None
     numbers = {
-        each.variable
+        item.variable
         for body in (program.body, *(procedure.body for procedure in program.procedures))
-        for each in walk(body)
-        if isinstance(each, Assign) and each.span.start >= start
+        for item in walk(body)
+        if isinstance(item, Assign) and item.span.start >= start
     }
     return tuple(program.variables[number] for number in sorted(numbers))
 
@@ -141,7 +141,7 @@ def _map_of(compiled: Compiled, end: int) -> Map:
     return source_map.made(compiled._replace(places=places))
 
 
-def _behind(compiled: Compiled, start: int, end: int | None = None) -> Compiled:
+def _compiled_part(compiled: Compiled, start: int, end: int | None = None) -> Compiled:
     """Return the diagnostics of the text from `start` to `end`, as if it stood alone.
 
     For a mistake before `start` the source is the whole text. An unused DEF or variable gives no

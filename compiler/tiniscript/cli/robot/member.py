@@ -48,16 +48,16 @@ def targets(options: Namespace) -> list[Target]:
     Ports in use come first, then ports of known robots. Opens none.
     """
     known = known_ports.known().names
-    wanted = [inputs.port(port) for port in options.ports]
+    expected = [inputs.port(port) for port in options.ports]
     if options.all:
-        wanted = [registration.port for registration in all_found()]
-        wanted += [port for port in known if is_there(port) and not directory.is_gone(port)]
+        expected = [registration.port for registration in all_found()]
+        expected += [port for port in known if is_there(port) and not directory.is_gone(port)]
         from tiniscript.link import ports
 
-        wanted += [found.port for found in ports.listed()]
-        wanted += [robot.address for robot in directory.running()]
+        expected += [item.port for item in ports.listed()]
+        expected += [robot.address for robot in directory.running()]
     names = {same_for_all(port): name for port, name in reversed(known.items())}
-    chosen = {same_for_all(port): port for port in reversed(wanted)}
+    chosen = {same_for_all(port): port for port in reversed(expected)}
     return [
         Target(port, names.get(same, ""), not options.all, same in names)
         for same, port in reversed(chosen.items())
@@ -120,9 +120,9 @@ class Member:
 
     @property
     def row(self) -> str:
-        said = self.result.said if self.result is not None else ""
+        text = self.result.said if self.result is not None else ""
         name = f"{shown(self.name)} ({shown(self.target.port)})" if self.name else self.target.port
-        return f"{name}: {said}"
+        return f"{name}: {text}"
 
     def as_json(self) -> str:
         assert self.result is not None

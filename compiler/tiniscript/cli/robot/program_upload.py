@@ -169,21 +169,21 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
                     return DONE
                 if key in PUSH:
                     simulator.push()
-            found = connection.event()
+            result = connection.event()
             saving.look()
             if connection.is_time_over:
                 return RunMonitor(connection, printer).stop_in_time()
-            if found is None:
+            if result is None:
                 continue
-            _mind(connection, found[1], saving.program)
-            if found[1].name != "STARTED":
-                printer.tell(*found)
-            code = ended(found[1], None)
-            if code is not None and not (is_person and _is_push(found[1])):
+            _check_event(connection, result[1], saving.program)
+            if result[1].name != "STARTED":
+                printer.tell(*result)
+            code = ended(result[1], None)
+            if code is not None and not (is_person and _is_push(result[1])):
                 return code
 
 
-def _mind(connection: Connection, event: Event, program: int) -> None:
+def _check_event(connection: Connection, event: Event, program: int) -> None:
     """Raise CommandError if the robot is lost or has another program."""
     if event.name == "LOST":
         raise CommandError(3, "link_lost", port=shown(connection.port))

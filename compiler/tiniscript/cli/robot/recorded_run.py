@@ -56,32 +56,34 @@ def record(given: Input, options: Namespace, language: str) -> int:
     known_robot(robot)
     max_ms = thousandths("--max-time", options.max_time, MAX_MS, 0, MOST_MS, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
-    told = sensor_lists(options.sensor, robot, language)
+    message = sensor_lists(options.sensor, robot, language)
     world, form = recordings.kept(world_of(options, language))
-    found = images.ready(given, robot, language, is_strict=True)
-    if found is None:
+    result = images.ready(given, robot, language, is_strict=True)
+    if result is None:
         return 1
-    image = found.image
+    image = result.image
     data = pack(image.start, image.devices, image.code, image.later, image.needs)
     with refusing(world.name, language):
-        run = Simulation(robot.name, world, data, settings=Settings(seed=seed, told=told))
+        run = Simulation(robot.name, world, data, settings=Settings(seed=seed, told=message))
     if image.start == "SB":
         run.push()
-    began_ms = run.robot.started_ms or 0
-    while run.robot.now_ms < began_ms + max_ms and not run.is_full:
-        run.go(min(STEP_MS, began_ms + max_ms - run.robot.now_ms))
+    started_ms = run.robot.started_ms or 0
+    while run.robot.now_ms < started_ms + max_ms and not run.is_full:
+        run.go(min(STEP_MS, started_ms + max_ms - run.robot.now_ms))
         if not run.robot.is_running and run.robot.started_ms is not None:
             break
     rows, fault, fault_at = run.rows(), run.robot.fault, run.fault_at
     end_ms = rows[-1].ms if run.is_full and rows else run.robot.now_ms
     run.close()
-    _print(rows, began_ms)
-    head = recordings.head(VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=told)
+    _print(rows, started_ms)
+    head = recordings.head(
+        VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=message
+    )
     whole = recordings.written(head, rows, end_ms)
     outputs.write(Path(options.record), whole.encode(), "unwritable_more --record")
     if fault:
-        said = fault_text(fault, fault_at or 0, found.places, given.is_image, language)
-        print(said, file=sys.stderr)
+        text = fault_text(fault, fault_at or 0, result.places, given.is_image, language)
+        print(text, file=sys.stderr)
     return int(bool(fault))
 
 
@@ -96,12 +98,14 @@ def play(given: Input, options: Namespace, language: str) -> int:
         played = Played(run, world)
     while not played.is_over:
         played.go(STEP_MS)
-    began_ms = played.robot.started_ms or 0
-    _print(played.rows(), began_ms)
+    started_ms = played.robot.started_ms or 0
+    _print(played.rows(), started_ms)
     played.close()
     sys.stdout.flush()
     parting = played.parting or Parting("empty")
-    print(sentence(parting, began_ms if run.recording.is_virtual else 0, language), file=sys.stderr)
+    print(
+        sentence(parting, started_ms if run.recording.is_virtual else 0, language), file=sys.stderr
+    )
     return int(parting.what not in SAME)
 
 
@@ -113,26 +117,26 @@ def _read(given: Input) -> Ready:
         raise CommandError(2, f"recording_{bad.reason}", **values) from None
 
 
-def _print(rows: list[Row], began_ms: int) -> None:
+def _print(rows: list[Row], started_ms: int) -> None:
     for row in rows:
-        sys.stdout.write(f"{row.ms - began_ms} {row.event}\n")
+        sys.stdout.write(f"{row.ms - started_ms} {row.event}\n")
 
 
-def sentence(parting: Parting, began_ms: int, language: str) -> str:
-    """Return what a person reads of a comparison; the rows count from `began_ms`."""
+def sentence(parting: Parting, started_ms: int, language: str) -> str:
+    """Return what a person reads of a comparison; the rows count from `started_ms`."""
     place = text("replay_line" if parting.line else "replay_end", language)
     return text(f"replay_{parting.what}", language).format(
         count=parting.agreed,
         place=place.format(line=parting.line),
-        robot=_told(parting.robot, began_ms, language),
-        virtual=_told(parting.virtual, began_ms, language),
+        robot=_row_text(parting.robot, started_ms, language),
+        virtual=_row_text(parting.virtual, started_ms, language),
         sensor=parting.sensor,
     )
 
 
-def _told(row: Row | None, began_ms: int, language: str) -> str:
+def _row_text(row: Row | None, started_ms: int, language: str) -> str:
     if row is None:
         return text("replay_nothing", language)
     what = row.event.removeprefix("SHOW ")
-    seconds = f"{(row.ms - began_ms) / 1000:.1f}"
+    seconds = f"{(row.ms - started_ms) / 1000:.1f}"
     return text("replay_at", language).format(what=what, seconds=seconds)

@@ -44,8 +44,8 @@ def settings(options: Namespace, language: str) -> BrokerSettings:
 def _address(place: broker_options.Place) -> IPv4Address:
     """Return where the broker is now. Raises CommandError."""
     try:
-        found = socket.getaddrinfo(place.host, place.port, socket.AF_INET, socket.SOCK_STREAM)
-        return IPv4Address(found[0][4][0])
+        result = socket.getaddrinfo(place.host, place.port, socket.AF_INET, socket.SOCK_STREAM)
+        return IPv4Address(result[0][4][0])
     except (OSError, UnicodeError, ValueError) as why:
         raise CommandError(2, "broker_unknown", host=place.host, why=why) from None
 
@@ -72,12 +72,12 @@ def _certificate(data: bytes) -> bytes | None:
     if len(texts) > 1:
         return None
     try:
-        found = ssl.PEM_cert_to_DER_cert(texts[0]) if texts else data
+        result = ssl.PEM_cert_to_DER_cert(texts[0]) if texts else data
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-        context.load_verify_locations(cadata=found)
+        context.load_verify_locations(cadata=result)
     except (ssl.SSLError, ValueError):
         return None
-    return found if context.cert_store_stats()["x509"] == 1 else None
+    return result if context.cert_store_stats()["x509"] == 1 else None
 
 
 def use(connection: Connection, broker: BrokerSettings | None, options: Namespace) -> None:
@@ -93,7 +93,9 @@ def use(connection: Connection, broker: BrokerSettings | None, options: Namespac
     if broker is None:
         connection.say("broker_off")
         return
-    wifi_reply = awaited(partial(_told, connection), lambda reply: _state(reply) != "SEARCHING")
+    wifi_reply = awaited(
+        partial(_broker_state, connection), lambda reply: _state(reply) != "SEARCHING"
+    )
     tell(connection, wifi_reply, broker.name.decode(), _class_command(options))
 
 
@@ -145,7 +147,7 @@ def _state(wifi_reply: WifiReply) -> str:
     return "SEARCHING" if state in NOT_BEGUN else state
 
 
-def _told(connection: Connection) -> WifiReply:
+def _broker_state(connection: Connection) -> WifiReply:
     return connection.ask(lambda session: session.broker()).values
 
 

@@ -53,14 +53,14 @@ class RunMonitor:
         """
         follower = Follower(run)
         while True:
-            found = self.connection.event(self.look_s)
+            result = self.connection.event(self.look_s)
             if self.look is not None:
                 self.look()
             if self.connection.is_time_over:
                 return self.stop_in_time()
-            if found is None:
+            if result is None:
                 continue
-            time_ms, event = found
+            time_ms, event = result
             try:
                 if not follower.is_about(event, shown(self.connection.port)):
                     continue

@@ -81,16 +81,16 @@ class SelfTest(Conversation):
 
     def _examine(self) -> Robot | None:
         """Let the doctor examine it; return the robot that it is, where this computer knows it."""
-        wanted = self.connection.profile
+        expected = self.connection.profile
         kit = self.connection.device_info.kit
         causes, self.heard = examination_of(self.connection, self.expected)
-        known = wanted if kit == wanted.kit.fingerprint else of_kit(kit)
-        good = self._good(known.name if known is not None else "")
+        known = expected if kit == expected.kit.fingerprint else of_kit(kit)
+        good = self._passed_parts(known.name if known is not None else "")
         for part in PARTS:
             self.found += [cause for cause in causes if cause.part == part] or good.get(part, [])
         return known
 
-    def _good(self, name: str) -> dict[str, list[Finding]]:
+    def _passed_parts(self, name: str) -> dict[str, list[Finding]]:
         """Return what is said of each part of a robot of which nothing is wrong."""
         if self.heard is None:
             return {}
@@ -100,7 +100,7 @@ class SelfTest(Conversation):
             sure("kit_is", robot=name),
             sure("firmware_is", isa=f"{hello.isa_major}.{hello.isa_minor}", **sizes),
             sure("supply_is", reset=row_name(RESETS, hello.reset)),
-            sure(_kept(row_name(SAVED, status.saved))),
+            sure(_saved_cause(row_name(SAVED, status.saved))),
         ]
         if trips_ms:
             times = {"least": min(trips_ms), "ms": median(trips_ms), "most": max(trips_ms)}
@@ -183,7 +183,7 @@ class SelfTest(Conversation):
             self._add("unasked", side)
             return None
         except CommandError as failure:
-            self._ended(side, failure)
+            self._record_failure(side, failure)
             return None
         if not turned.wheel:
             self._add("still", side)
@@ -212,11 +212,11 @@ class SelfTest(Conversation):
         except NoPerson:
             self._add("unasked", "buzzer")
         except CommandError as failure:
-            self._ended("buzzer", failure)
+            self._record_failure("buzzer", failure)
         else:
             self._add("heard" if answer == HEARD else "unheard")
 
-    def _ended(self, part: str, failure: CommandError) -> None:
+    def _record_failure(self, part: str, failure: CommandError) -> None:
         self._add("ended", part, said=failure.sentence(self.language))
         if failure.key not in ANSWERED:
             raise failure
@@ -229,7 +229,7 @@ class SelfTest(Conversation):
         return values
 
 
-def _kept(saved: str) -> str:
+def _saved_cause(saved: str) -> str:
     """Return the cause of what the robot says of its program."""
     return {"STORED": "saved", "NOTHING": "empty"}.get(saved, "unsaved")
 

@@ -40,12 +40,12 @@ def running_address(options: Namespace) -> str | None:
     can_bring = hasattr(options, "world")
     if can_bring and simulator_options.wants_own(options):
         return None
-    found = directory.for_all() if can_bring else directory.running()
-    if not found and not can_bring:
+    result = directory.for_all() if can_bring else directory.running()
+    if not result and not can_bring:
         raise CommandError(3, "no_virtual")
-    if len(found) > 1:
-        raise CommandError(3, "which_virtual", known=", ".join(each.address for each in found))
-    return found[0].address if found else None
+    if len(result) > 1:
+        raise CommandError(3, "which_virtual", known=", ".join(item.address for item in result))
+    return result[0].address if result else None
 
 
 class CommandSimulator(SimulatorThread):
@@ -124,21 +124,21 @@ class CommandSimulator(SimulatorThread):
 
         Of what it has not told itself (that its values did not arrive), the time now.
         """
-        wanted = "STOP" if event == "STOPPED" else event
+        expected = "STOP" if event == "STOPPED" else event
 
         def is_there() -> bool:
-            return any(event.text == wanted for event in self._told)
+            return any(event.text == expected for event in self._told)
 
         with self._drawing:
-            began_ms = self.robot.started_ms or 0
-            if wanted.partition(" ")[0] not in TOLD or not self._drawing.wait_for(
+            started_ms = self.robot.started_ms or 0
+            if expected.partition(" ")[0] not in TOLD or not self._drawing.wait_for(
                 is_there, ROUND_S
             ):
-                return self.robot.now_ms - began_ms
+                return self.robot.now_ms - started_ms
             while True:
-                found = self._told.popleft()
-                if found.text == wanted:
-                    return found.time_ms - began_ms
+                result = self._told.popleft()
+                if result.text == expected:
+                    return result.time_ms - started_ms
 
     def unwatch(self) -> None:
         """Stop drawing; the last picture stays."""
@@ -164,15 +164,17 @@ class CommandSimulator(SimulatorThread):
         if self.options.plot is not None:
             simulator_options.draw_picture(self.options, self.robot, self.language)
         is_json = getattr(self.options, "json", False)
-        said = simulator_options.summary(self.options, self.robot, self.language, self._driven_ms())
-        print(said, file=sys.stderr if is_json else sys.stdout, flush=True)
+        text = simulator_options.summary(
+            self.options, self.robot, self.language, self._driving_ms()
+        )
+        print(text, file=sys.stderr if is_json else sys.stdout, flush=True)
 
-    def _driven_ms(self) -> int:
+    def _driving_ms(self) -> int:
         """Return the time from the start of the first program to the end of the last one."""
-        began_ms, ended_ms = self.robot.started_ms, self.robot.ended_ms
-        if began_ms is None:
+        started_ms, ended_ms = self.robot.started_ms, self.robot.ended_ms
+        if started_ms is None:
             return 0
-        return (self.robot.now_ms if ended_ms is None else ended_ms) - began_ms
+        return (self.robot.now_ms if ended_ms is None else ended_ms) - started_ms
 
     def took_turn(self) -> None:
         with self._drawing:

@@ -45,8 +45,8 @@ def made(
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     noise = number("--noise", options.noise, 0, 0, MOST_NOISE, language) / 100
     motors = _motors(options.motors, language)
-    told = sensor_lists(options.sensor, profile, language)
-    settings = Settings(seed=seed, noise=noise, motors=motors, told=told, baud=baud)
+    message = sensor_lists(options.sensor, profile, language)
+    settings = Settings(seed=seed, noise=noise, motors=motors, told=message, baud=baud)
     with refusing(world.name, language):
         return VirtualRobot(profile.speaking(language), world, settings, memory)
 
@@ -84,10 +84,10 @@ def faults_of(options: Namespace, language: str) -> float:
 
 def end_ms(options: Namespace, language: str) -> int | None:
     """Return the end in milliseconds of the robot's time, or None."""
-    found = getattr(options, "for")
-    if found is None:
+    result = getattr(options, "for")
+    if result is None:
         return None
-    return round(number("--for", found, 0, ONE // 10, LONGEST_S, language) * 1000)
+    return round(number("--for", result, 0, ONE // 10, LONGEST_S, language) * 1000)
 
 
 def check_picture(options: Namespace) -> None:
@@ -118,12 +118,12 @@ def summary(
     driving = robot.driving
     passed_ms = robot.now_ms if passed_ms is None else passed_ms
     key = {0: "drove", 1: "drove_touching_once"}.get(driving.bumps, "drove_touching")
-    said = text(key, language).format(
+    result = text(key, language).format(
         cm=round(driving.driven_cm), seconds=f"{passed_ms / 1000:.1f}", n=driving.bumps
     )
     if options.plot is not None:
-        said += " " + text("picture", language).format(file=shown(options.plot))
-    return said
+        result += " " + text("picture", language).format(file=shown(options.plot))
+    return result
 
 
 def number(

@@ -69,23 +69,23 @@ class TrimWizard(Conversation):
     def trim(self, before: Trim) -> Trim:
         self.lift()
         self._set(Trim())
-        found = self._wired()
-        self._set(found)
-        found = found._replace(least=self._least())
-        self._set(found)
+        trim = self._find_wiring()
+        self._set(trim)
+        trim = trim._replace(least=self._least())
+        self._set(trim)
         self.answer("trim_floor")
-        slow = self._straight(found, POWERS[0])
-        quick = self._straight(found._replace(balance=slow), POWERS[1])
-        found = found._replace(balance=round((slow + quick) / 2))
-        self._set(found)
+        slow = self._balance_wheels(trim, POWERS[0])
+        quick = self._balance_wheels(trim._replace(balance=slow), POWERS[1])
+        trim = trim._replace(balance=round((slow + quick) / 2))
+        self._set(trim)
         if before.pace is None:
             say_aside("trim_no_pace_here", self.language)
-            return found
+            return trim
         if self.choice("trim_measure", 2) != YES:
-            return found._replace(pace=before.pace)
+            return trim._replace(pace=before.pace)
         ahead = self._measured("F", AHEAD_S, "trim_how_far")
         turning = self._measured("R", TURN_S, "trim_how_round")
-        return found._replace(pace=Pace(*ahead, *turning))
+        return trim._replace(pace=Pace(*ahead, *turning))
 
     def does(self, line: str) -> list[int]:
         try:
@@ -96,17 +96,17 @@ class TrimWizard(Conversation):
             print(failure.sentence(self.language), file=sys.stderr)
             raise CommandError(3, "trim_ended") from None
 
-    def _wired(self) -> Trim:
+    def _find_wiring(self) -> Trim:
         """Turn each motor; return the trim with which they are those of their wheels."""
         seen = []
         for side in ("left", "right"):
             seen.append(self.turned(side))
             if not seen[-1].wheel:
                 raise self._failure(sure("still")._replace(of=side))
-        found = as_seen(Trim(), *seen)
-        if found is None:
+        trim = as_seen(Trim(), *seen)
+        if trim is None:
             raise self._failure(sure("same_wheel"))
-        return found
+        return trim
 
     def _least(self) -> int:
         """Return the smallest power that moves both wheels, or 0 if the smallest step does."""
@@ -119,12 +119,14 @@ class TrimWizard(Conversation):
     def _measured(self, move: str, seconds: int, question: str) -> list[float]:
         """Return how much it went, or turned, in a second at each power."""
         while True:
-            found = [self._went(move, power, seconds, question) / seconds for power in POWERS]
-            if found[0] < found[1]:
-                return found
+            result = [
+                self._measure_move(move, power, seconds, question) / seconds for power in POWERS
+            ]
+            if result[0] < result[1]:
+                return result
             say_aside("trim_not_faster_again", self.language)
 
-    def _went(self, move: str, power: int, seconds: int, question: str) -> float:
+    def _measure_move(self, move: str, power: int, seconds: int, question: str) -> float:
         """Return how far it went in centimetres, or turned in degrees, as the person measured."""
         self.answer("trim_mark")
         while True:
@@ -137,15 +139,15 @@ class TrimWizard(Conversation):
                 say_aside(f"{question}_number", self.language)
                 answer = self.answer(question, n=str(power))
 
-    def _straight(self, found: Trim, power: int) -> int:
+    def _balance_wheels(self, trim: Trim, power: int) -> int:
         """Balance the wheels until the robot goes straight; return the balance."""
         step, last = FIRST_STEP, 0
-        self._set(found)
+        self._set(trim)
         while True:
             self.does(f"F(2, {power})")
             answer = self.choice("trim_straight", AGAIN)
             if answer == 1:
-                return found.balance
+                return trim.balance
             if answer == AGAIN:
                 continue
             # to its left: the right wheel is too strong
@@ -153,16 +155,16 @@ class TrimWizard(Conversation):
             if last and side != last:
                 step = max(1, step // 2)
             last = side
-            balance = found.balance + side * step
+            balance = trim.balance + side * step
             if abs(balance) > MOST_BALANCE:
                 raise self._failure(sure("too_uneven", n=str(MOST_BALANCE)))
-            found = found._replace(balance=balance)
-            self._set(found)
+            trim = trim._replace(balance=balance)
+            self._set(trim)
 
     def _failure(self, finding: Finding) -> CommandError:
-        found = said(finding, self.language)
+        result = said(finding, self.language)
         part = label(finding, self.language)
-        return CommandError(3, "trim_found", part=part, found=found.what, then=found.then)
+        return CommandError(3, "trim_found", part=part, found=result.what, then=result.then)
 
     def _set(self, trim: Trim) -> None:
         self.connection.ask(lambda session: session.trim(trim.data()), TAKEN)  # kept at the end
@@ -170,10 +172,10 @@ class TrimWizard(Conversation):
 
 def measured(answer: str, is_turn: bool) -> float | None:
     """Return the centimetres or degrees that a person wrote, with a comma or a point; else None."""
-    found = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
-    if found is None:
+    match = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
+    if match is None:
         return None
-    number, unit = float(found[1].replace(",", ".")), found[2]
+    number, unit = float(match[1].replace(",", ".")), match[2]
     if is_turn:
         return number if unit in ("", *DEGREES) else None
     if unit in INCHES:

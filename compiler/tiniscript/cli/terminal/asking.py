@@ -24,7 +24,7 @@ def answer(question: str) -> str:
     return sys.stdin.readline()
 
 
-def agreed(question: str) -> bool:
+def confirm(question: str) -> bool:
     """Ask, and return whether the answer is a yes: an empty one is none."""
     return answer(question).strip().lower() in YES
 

@@ -58,9 +58,9 @@ def _pressed_on_windows() -> str:
         return ""
     import msvcrt
 
-    found = ""
+    result = ""
     while msvcrt.kbhit():
-        found += msvcrt.getwch()
-    if INTERRUPT in found:
+        result += msvcrt.getwch()
+    if INTERRUPT in result:
         raise KeyboardInterrupt
-    return found
+    return result

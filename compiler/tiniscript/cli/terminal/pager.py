@@ -39,9 +39,9 @@ def _command(language: str) -> str:
     """
     command = os.environ.get("PAGER")
     if command is None:
-        found = which("less") if os.name != "nt" else None  # consoles of Windows scroll
+        result = which("less") if os.name != "nt" else None  # consoles of Windows scroll
         keys = text("pager_keys", language).replace(":", r"\:")
-        command = shlex.join([found, "-R", f"-Ps{keys}"]) if found else ""
+        command = shlex.join([result, "-R", f"-Ps{keys}"]) if result else ""
     return command.strip()
 
 

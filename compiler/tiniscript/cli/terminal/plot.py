@@ -137,8 +137,8 @@ class Plot:
         ends = [*[time_ms for time_ms, _ in values][1:], begin_ms + SECONDS * 1000]
         for (time_ms, value), end_ms in zip(values, ends, strict=True):
             x, end = (
-                round(min(1.0, max(0.0, (each - begin_ms) / (SECONDS * 1000))) * right)
-                for each in (time_ms, end_ms)
+                round(min(1.0, max(0.0, (item - begin_ms) / (SECONDS * 1000))) * right)
+                for item in (time_ms, end_ms)
             )
             y = round((high - value) / (high - low) * bottom)
             canvas.lines([(x, y if before is None else before), (x, y), (end, y)])

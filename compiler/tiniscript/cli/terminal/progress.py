@@ -87,11 +87,11 @@ class Silence:
             import threading
 
             self._lock = threading.Lock()
-            self._timer = threading.Timer(MOMENT_S, self._tell)
+            self._timer = threading.Timer(MOMENT_S, self._print_wait)
             self._timer.daemon = True
             self._timer.start()
 
-    def _tell(self) -> None:
+    def _print_wait(self) -> None:
         with self._lock:
             if self._timer is not None:
                 self.is_told = True

@@ -41,15 +41,15 @@ class Frame:
         """Show these lines in place of the last ones, and print `above` over them, to stay."""
         width = self.console.size.width
         if above or width != self._width or len(lines) != len(self.lines):
-            written = self._whole(lines, above)
+            text = self._full_picture(lines, above)
         else:
-            written = self._changes(lines)
+            text = self._changes(lines)
         self.lines = [line.copy() for line in lines]
         self._width = width
-        if written:
-            self._write(BEGIN + written + END)
+        if text:
+            self._write(BEGIN + text + END)
 
-    def _whole(self, lines: Sequence[Text], above: str) -> str:
+    def _full_picture(self, lines: Sequence[Text], above: str) -> str:
         """Return what writes all of it, from the first line of the last picture on."""
         width = self.console.size.width
         # a terminal that has become narrower has wrapped the last picture
@@ -59,7 +59,7 @@ class Frame:
         parts = [*(f"{line}{TO_LINE_END}\n" for line in above.split("\n"))] if above else []
         parts.append(f"{TO_LINE_END}\n".join(map(self._styled, lines)))
         erased = TO_SCREEN_END if width != self._width else ""
-        return f"\r{_up(rows)}{erased}{''.join(parts)}{TO_SCREEN_END}"
+        return f"\r{_cursor_up(rows)}{erased}{''.join(parts)}{TO_SCREEN_END}"
 
     def _changes(self, lines: Sequence[Text]) -> str:
         """Return what writes the lines that are not as they were; there are as many as before."""
@@ -67,7 +67,7 @@ class Frame:
             "" if new == old and new.style == old.style else self._styled(new) + TO_LINE_END
             for new, old in zip(lines, self.lines, strict=True)
         ]
-        return f"\r{_up(len(rows) - 1)}" + "\r\n".join(rows) if any(rows) else ""
+        return f"\r{_cursor_up(len(rows) - 1)}" + "\r\n".join(rows) if any(rows) else ""
 
     def _styled(self, line: Text) -> str:
         with self.console.capture() as capture:
@@ -79,7 +79,7 @@ class Frame:
         self.console.file.flush()
 
 
-def _up(rows: int) -> str:
+def _cursor_up(rows: int) -> str:
     return f"\x1b[{rows}A" if rows else ""
 
 
@@ -135,9 +135,9 @@ class Screen:
     def flush(self) -> None:
         sys.stdout.flush()
         if self.lines:
-            said = Text("\n".join(self.lines)).plain
+            text = Text("\n".join(self.lines)).plain
             self.lines = []
-            self.frame.draw(self.frame.lines, said)
+            self.frame.draw(self.frame.lines, text)
 
     def warn(self, line: str) -> None:
         """Print a line on standard error, above the picture."""
@@ -176,14 +176,14 @@ class Screen:
             self.console.print(self.last)
         elif not self.is_still:
             sys.stdout.flush()
-            said = Text("\n".join(self.lines)).plain if self.lines else ""
+            text = Text("\n".join(self.lines)).plain if self.lines else ""
             self.lines = []
-            self.frame.draw(lines, said)
+            self.frame.draw(lines, text)
 
 
 def _is_one_terminal() -> bool:
     """Whether both streams of this command, which are terminals, are the same one."""
     if sys.platform == "win32":  # a command has one console
         return True
-    numbers = [os.fstat(each.fileno()).st_rdev for each in (sys.stdout, sys.stderr)]
+    numbers = [os.fstat(item.fileno()).st_rdev for item in (sys.stdout, sys.stderr)]
     return numbers[0] == numbers[1]

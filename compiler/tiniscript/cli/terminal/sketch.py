@@ -25,7 +25,7 @@ _ROUND = (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10, 20)  # scales at which the ruler ha
 def round_scale(cm_per_dot: float) -> float:
     """Return the least scale, not below this one, at which the ruler has a round length."""
     tens = 10.0 ** floor(log10(cm_per_dot))
-    return next(each * tens for each in _ROUND if each * tens >= cm_per_dot)
+    return next(item * tens for item in _ROUND if item * tens >= cm_per_dot)
 
 
 class View(NamedTuple):

@@ -59,11 +59,11 @@ class WorldPicture(Picture):
         return lines
 
     def _title(self, width: int) -> Text:
-        found = super()._title(width)
+        text = super()._title(width)
         name = f"── {self.labels['robot']} ── {self.virtual.world.labels[self.language]} "
         if len(name) + len(self.sketch.ruler()) < width:
-            found.plain = name + found.plain[len(name) :]
-        return found
+            text.plain = name + text.plain[len(name) :]
+        return text
 
 
 class WorldSketch(Sketch):

@@ -34,7 +34,7 @@ class Said(str):
         return self
 
     def format(self, *values: object, **named: object) -> Said:
-        plain = {key: _plain(value) for key, value in named.items()}
+        plain = {key: _printable(value) for key, value in named.items()}
         template = "".join(self)
         for key, value in plain.items():
             if isinstance(value, int | str) and str(value).isdecimal():
@@ -44,10 +44,10 @@ class Said(str):
                         for n in (SEVERAL, int(value))
                     )
                     template = template.replace(several, form)
-        return Said(template.format(*map(_plain, values), **plain))
+        return Said(template.format(*map(_printable, values), **plain))
 
 
-def _plain(value: object) -> object:
+def _printable(value: object) -> object:
     if isinstance(value, str) and not isinstance(value, Said):
         return printable(value, LONGEST)
     return value
@@ -55,9 +55,9 @@ def _plain(value: object) -> object:
 
 def text(key: str, language: str) -> str:
     """Return a sentence as `Said`."""
-    said = Said(languages.text(CATALOGUE, key, language))
-    said.language = language
-    return said
+    result = Said(languages.text(CATALOGUE, key, language))
+    result.language = language
+    return result
 
 
 def say(key: str, language: str, /, **values: object) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from tiniscript.cli.texts import has_text, text
+from tiniscript.cli.texts import Said, has_text, text
 from tiniscript.doctor.findings import CAUSES, Finding
+from tiniscript.link import foreign
 from tiniscript.link.messages import RESETS
 
 
@@ -33,8 +34,15 @@ def said(finding: Finding, language: str, values: Mapping[str, str] | None = Non
         seen, then = "seen_no_permission_other", "next_no_permission_other"
     if cause in ("no_port", "charging_cable") and filled.get("ports"):
         seen, then = "seen_no_port_others", "next_no_port_others"
-    if cause == "other_sketch" and not filled["said"]:
-        seen = "seen_other_sketch_silent"
+    if cause in foreign.NAMES:
+        what, advice = (Said(each) for each in foreign.sentence(cause, language))
+        if cause == foreign.ECHO:
+            seen = "seen_echo_sketch"
+        elif cause == foreign.TEXT and not filled["said"]:
+            seen = "seen_other_sketch_silent"
+        else:
+            seen = "seen_foreign"
+        return Sentences(what, text(seen, language).format(**filled), advice)
     # a part that is looked at whole has no `seen`, and one that is right no next step
     keys = f"found_{cause}", seen if has_text(seen) else "", then if has_text(then) else ""
     return Sentences(*(text(key, language).format(**filled) if key else "" for key in keys))

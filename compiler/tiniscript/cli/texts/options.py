@@ -338,13 +338,13 @@ def chosen(verb: str, words: list[str]) -> tuple[str, list[str]]:
     own = words[: words.index("--")] if "--" in words else words
     flags = {word.partition("=")[0] for word in own if word.startswith("-")}
     at = first_word(verb, own)
-    said = f"{verb} {words[at]}" if at is not None else verb
-    begun = [name for name in steps_of(verb) if STEPS[name].head in (verb, said)]
-    found = next((name for name in begun if flags & {*STEPS[name].choosers}), None)
-    found = found or next((name for name in begun if STEPS[name].typed == said), verb)
-    if found == verb or STEPS[found].head == verb:
-        return found, words
-    return found, [word for k, word in enumerate(words) if k != at]
+    text = f"{verb} {words[at]}" if at is not None else verb
+    begun = [name for name in steps_of(verb) if STEPS[name].head in (verb, text)]
+    result = next((name for name in begun if flags & {*STEPS[name].choosers}), None)
+    result = result or next((name for name in begun if STEPS[name].typed == text), verb)
+    if result == verb or STEPS[result].head == verb:
+        return result, words
+    return result, [word for k, word in enumerate(words) if k != at]
 
 
 def first_word(verb: str, words: list[str]) -> int | None:

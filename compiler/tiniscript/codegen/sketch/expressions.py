@@ -84,13 +84,13 @@ class Expressions:
 
     def _unary(self, op: str, operand: _Operand) -> _Operand:
         if op == "NOT":
-            return operand._replace(text="!" + _inside(operand, _UNARY), binds=_UNARY)
+            return operand._replace(text="!" + _bracketed(operand, _UNARY), binds=_UNARY)
         its = self._calculated(operand)
         if op == "ABS":
             return its._replace(text=f"{self.use('absolute')}({its.text})", binds=_PRIMARY)
         self.use("NEG")
         gap = " " if its.text.startswith("-") else ""
-        return its._replace(text=f"-{gap}{_inside(its, _UNARY)}", binds=_UNARY)
+        return its._replace(text=f"-{gap}{_bracketed(its, _UNARY)}", binds=_UNARY)
 
     def _binary(self, op: str, left: _Operand, right: _Operand) -> _Operand:
         is_random = left.is_random or right.is_random or op == "RANDOM"
@@ -113,7 +113,7 @@ class Expressions:
         low, high = (8, 8) if op in COMPARED else (binds, binds + 1)
         if op == "OR":
             low, high = (6 if left.binds == _BINDS["AND"] else binds), 6
-        made_text = f"{_inside(left, low)} {sign} {_inside(right, high)}"
+        made_text = f"{_bracketed(left, low)} {sign} {_bracketed(right, high)}"
         if first:
             return _Operand(f"({kept}{made_text})", _PRIMARY, is_random=True)
         return _Operand(made_text, binds, is_random=is_random)
@@ -125,7 +125,7 @@ class Expressions:
         return _Operand(f"{self.use('Number')}({operand.text})", _PRIMARY)
 
 
-def _inside(operand: _Operand, binds: int) -> str:
+def _bracketed(operand: _Operand, binds: int) -> str:
     """Return an operand as it stands beside an operator that binds so tightly."""
     return operand.text if operand.binds >= binds else f"({operand.text})"
 

@@ -85,13 +85,13 @@ class Names:
     def of(self, name: str, before: str = "") -> str:
         """Return the name in C++ of a name in capitals; `before` is the verb of a function."""
         words = [word for word in name.lower().split("_") if word]
-        made = "".join(word.capitalize() for word in words)
-        made = before + made if before else words[0] + made[len(words[0]) :]
-        if made in RESERVED or made in self._taken or _COUNTER.fullmatch(made):
-            made = self._prefix + made[0].upper() + made[1:]
-        found, number = made, 2
+        result = "".join(word.capitalize() for word in words)
+        result = before + result if before else words[0] + result[len(words[0]) :]
+        if result in RESERVED or result in self._taken or _COUNTER.fullmatch(result):
+            result = self._prefix + result[0].upper() + result[1:]
+        found, number = result, 2
         while found in self._taken:
-            found, number = f"{made}_{number}", number + 1
+            found, number = f"{result}_{number}", number + 1
         self._taken.add(found)
         return found
 

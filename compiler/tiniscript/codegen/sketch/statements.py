@@ -89,7 +89,7 @@ class Statements:
             if len(padded) <= WIDEST:
                 plain = padded
             else:
-                self.lines.append(f"{indent}// {_shortened(beside, WIDEST - len(indent) - 3)}")
+                self.lines.append(f"{indent}// {_truncated(beside, WIDEST - len(indent) - 3)}")
         self.lines.append(plain)
 
     def said(self, start: int) -> str:
@@ -108,8 +108,8 @@ class Statements:
                 break
             open_brackets += {"(": 1, ")": -1}.get(letter, 0)
             at += 1
-        found = re.sub(r"//[^\r\n]*", " ", text[start:at])
-        return harmless(" ".join(found.split()))
+        result = re.sub(r"//[^\r\n]*", " ", text[start:at])
+        return harmless(" ".join(result.split()))
 
     def remarks(self, start: int) -> None:
         """Add the comments of the program before an offset, and those in its line."""
@@ -130,33 +130,33 @@ class Statements:
             self.if_(statement)
             return
         self.remarks(start)
-        said = self.said(start)
+        text = self.said(start)
         if isinstance(statement, ir.Read):
-            name = said.upper() if said.replace("_", "").isalnum() else ""
+            name = text.upper() if text.replace("_", "").isalnum() else ""
             self.line(self.reading(statement.sensor), name)
         elif isinstance(statement, ir.Move):
-            self.move(statement, said)
+            self.move(statement, text)
         elif isinstance(statement, ir.Motors):
             powers = ((statement.left, (-100, 100)), (statement.right, (-100, 100)))
-            self.call("motors", said, self.arguments(*powers))
+            self.call("motors", text, self.arguments(*powers))
         elif isinstance(statement, ir.Stop):
-            self.line(f"{self.use('stop_motors')}();", said)
+            self.line(f"{self.use('stop_motors')}();", text)
         elif isinstance(statement, ir.Beep):
             parts = ((statement.time, None), (statement.hertz, (31, 20_000)))
-            self.call("beep", said, self.arguments(*parts))
+            self.call("beep", text, self.arguments(*parts))
         elif isinstance(statement, ir.Show):
-            self.show(statement, said)
+            self.show(statement, text)
         elif isinstance(statement, ir.Set):
-            self.set(statement, said)
+            self.set(statement, text)
         elif isinstance(statement, ir.Assign):
             name = self.names.variables[statement.variable]
-            self.line(f"{name} = {self.write.text(statement.value)};", said)
+            self.line(f"{name} = {self.write.text(statement.value)};", text)
         elif isinstance(statement, ir.Loop):
-            self.loop(statement, said)
+            self.loop(statement, text)
         elif isinstance(statement, ir.While):
-            self.while_(statement, said)
+            self.while_(statement, text)
         elif isinstance(statement, ir.Break):
-            self.line("break;", said)
+            self.line("break;", text)
 
     def call_def(self, call: ir.Call, arguments: Sequence[ir.Expression]) -> None:
         """Call a function; of its arguments with a RANDOM all but the last come before."""
@@ -271,7 +271,7 @@ class Statements:
     def if_(self, statement: ir.If) -> None:
         nested = 0
         for k, arm in enumerate(statement.arms):
-            said = self.said(arm.span.start)
+            text = self.said(arm.span.start)
             self.remarks_in(arm.span.start, k)
             before = len(self.lines)
             inline = len(arm.reads) == 1 and reads_once(arm.condition, arm.reads[0])
@@ -280,11 +280,11 @@ class Statements:
                 self.depth += 1
                 nested += 1
                 condition = self.condition(arm.reads, arm.condition)
-                self.line(f"if ({condition}) {{", said)
+                self.line(f"if ({condition}) {{", text)
             else:
                 condition = self.condition(arm.reads, arm.condition)
                 assert before == len(self.lines)
-                self.line(f"{'} else ' if k else ''}if ({condition}) {{", said)
+                self.line(f"{'} else ' if k else ''}if ({condition}) {{", text)
             self.block(arm.body)
         if statement.otherwise:
             self.line("} else {", "ELSE")
@@ -335,7 +335,7 @@ def harmless(text: str) -> str:
     return printable(text).replace("??/", "?? /").rstrip("\\ ")
 
 
-def _shortened(text: str, most: int) -> str:
+def _truncated(text: str, most: int) -> str:
     return text if len(text) <= most else text[: most - 1] + "…"
 
 

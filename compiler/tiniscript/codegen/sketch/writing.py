@@ -316,7 +316,7 @@ class _Sketch:
         baud = str(self.robot.board.baud)
         lines = ["// " + row if row else "//" for row in rows]
         for key in limits:
-            lines += _wrapped(self.says(key, baud=baud), "// - ", "//   ")
+            lines += _wrap(self.says(key, baud=baud), "// - ", "//   ")
         return "\n".join(lines) + "\n"
 
     def constants(self) -> str:
@@ -350,16 +350,16 @@ class _Sketch:
         return "\n".join(pieces) + "\n" if pieces else ""
 
     def prototypes(self, codes: Iterable[str]) -> str:
-        found = [
+        matches = [
             f"{line[: line.index('{')].rstrip()};"
             for code in codes
             for line in code.splitlines()
             if re.match(r"(?!ISR|struct)[\w$]+( [\w$]+)* [\w$]+[^\w$ (]*\(.*\) \{", line)
         ]
-        if not found:
+        if not matches:
             return ""
         last = helpers.FOREVER[self.is_exact] if "FOREVER" in self.needed else ""
-        lines = [f"// {self.says('prototypes')}", *found, *([last] if last else [])]
+        lines = [f"// {self.says('prototypes')}", *matches, *([last] if last else [])]
         return "\n".join(lines) + "\n"
 
     def note(self, key: str) -> str:
@@ -372,7 +372,7 @@ class _Sketch:
         return self.says(key)
 
     def commented(self, note: str, code: str) -> str:
-        comment = "\n".join(_wrapped(note, "// ", "// ")) + "\n" if note else ""
+        comment = "\n".join(_wrap(note, "// ", "// ")) + "\n" if note else ""
         return f"{comment}{code}\n"
 
     def filled(self, text: str) -> str:
@@ -400,5 +400,5 @@ def _heading(text: str) -> str:
     return f"// {'-' * 4} {text} {'-' * max(4, 90 - len(text))}\n"
 
 
-def _wrapped(text: str, first: str, other: str) -> list[str]:
+def _wrap(text: str, first: str, other: str) -> list[str]:
     return wrap(text, WIDEST, initial_indent=first, subsequent_indent=other)

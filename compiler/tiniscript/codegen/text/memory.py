@@ -91,10 +91,10 @@ class Reader:
 
     def has_room(self, more: int) -> None:
         """Note that a byte is wanted after the code and `more` bytes."""
-        wanted = self.length + more + 1 + self.used
-        if wanted > self.most:
-            self.most = wanted
-            self.needs.append(Need(wanted, self.tokens[max(self.i - 1, 0)].span))
+        expected = self.length + more + 1 + self.used
+        if expected > self.most:
+            self.most = expected
+            self.needs.append(Need(expected, self.tokens[max(self.i - 1, 0)].span))
 
     def emit(self, count: int) -> None:
         for _ in range(count):

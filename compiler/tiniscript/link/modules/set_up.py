@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from tiniscript.link.modules.dialects import RESTART_MS, Dialect, is_error, is_ok, value_of
-from tiniscript.link.modules.talk import Module, asked, found, is_there
+from tiniscript.link.modules.talk import Module, ask, find_module, is_there
 from tiniscript.link.wire import Wire
 
 NAME, PIN, BAUD = "name", "pin", "baud"
@@ -79,16 +79,16 @@ def steps(wanted: Wanted, dialect: Dialect) -> list[Step]:
 
 
 def done(
-    wire: Wire, module: Module, plan: list[Step], tell: Callable[[Outcome], None]
+    wire: Wire, module: Module, plan: list[Step], on_outcome: Callable[[Outcome], None]
 ) -> list[Outcome]:
-    """Do the steps, and stop at the first that goes wrong. `tell` gets each outcome at once."""
+    """Do the steps, and stop at the first that goes wrong. `on_outcome` gets each at once."""
     outcomes: list[Outcome] = []
     for step in plan:
         outcome = _set(wire, module.dialect, step)
         if step.what == BAUD and outcome.how != REFUSED:
-            outcome = _at_its_speed(wire, module, outcome)
+            outcome = _check_speed(wire, module, outcome)
         outcomes.append(outcome)
-        tell(outcome)
+        on_outcome(outcome)
         if outcome.how not in GOOD:
             return outcomes
     return outcomes
@@ -99,21 +99,21 @@ def _set(wire: Wire, dialect: Dialect, step: Step) -> Outcome:
     question = {NAME: dialect.ask_name, PIN: dialect.ask_pin, BAUD: dialect.ask_baud}[step.what]
     outcome = Outcome(step, SILENT)
     for command in step.commands:
-        said = asked(wire, command, dialect.ending, dialect.wait_ms)
-        if is_ok(said):
+        text = ask(wire, command, dialect.ending, dialect.wait_ms)
+        if is_ok(text):
             if not question:
-                return Outcome(step, UNSEEN, said)
-            answer = asked(wire, question, dialect.ending, dialect.wait_ms)
+                return Outcome(step, UNSEEN, text)
+            answer = ask(wire, question, dialect.ending, dialect.wait_ms)
             now = value_of(answer)
             if not answer and not is_there(wire, dialect):
-                return Outcome(step, SILENT, said)
+                return Outcome(step, SILENT, text)
             if not now:
-                return Outcome(step, UNSEEN, said)
+                return Outcome(step, UNSEEN, text)
             if _is_same(step, dialect, answer):
                 return Outcome(step, DONE, now)
             outcome = Outcome(step, DIFFERS, now)
-        elif said and outcome.how != DIFFERS:
-            outcome = Outcome(step, REFUSED, said if is_error(said) else "")
+        elif text and outcome.how != DIFFERS:
+            outcome = Outcome(step, REFUSED, text if is_error(text) else "")
     return outcome
 
 
@@ -131,19 +131,19 @@ def _is_same(step: Step, dialect: Dialect, answer: str) -> bool:
     return now == step.value
 
 
-def _at_its_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
+def _check_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
     """Return whether the module is at its new speed, else at which one it is."""
     dialect, step = module.dialect, outcome.step
     baud = int(step.value)
     if dialect.is_fixed:
         return outcome._replace(how=LOST) if outcome.how == SILENT else outcome
     if dialect.restart:
-        asked(wire, dialect.restart, dialect.ending, dialect.wait_ms)
+        ask(wire, dialect.restart, dialect.ending, dialect.wait_ms)
         wire.heard(RESTART_MS, RESTART_MS)
     wire.set_baud(baud)
     if is_there(wire, dialect):
         return Outcome(step, DONE, step.value)
-    elsewhere = found(wire, wakes=False)
+    elsewhere = find_module(wire, wakes=False)
     if elsewhere is None:
         return Outcome(step, LOST, step.value)
     how = DONE if elsewhere.baud == baud else ELSEWHERE

@@ -39,17 +39,17 @@ class Module(NamedTuple):
     version: str
 
 
-def asked(wire: Wire, command: str, ending: bytes, wait_ms: int) -> str:
+def ask(wire: Wire, command: str, ending: bytes, wait_ms: int) -> str:
     """Send a command and return the answer, or an empty text where none comes.
 
     Some clones say a command again before they answer it: that is no part of the answer.
     """
     wire.send(command.encode("ascii") + ending)
-    said = wire.heard(wait_ms).decode("ascii", "replace").strip()
-    return said.removeprefix(command).lstrip()
+    text = wire.heard(wait_ms).decode("ascii", "replace").strip()
+    return text.removeprefix(command).lstrip()
 
 
-def found(
+def find_module(
     wire: Wire,
     bauds: Sequence[int] = BAUDS,
     look: Callable[[int], None] = lambda baud: None,
@@ -76,7 +76,7 @@ def found(
 
 def is_there(wire: Wire, dialect: Dialect) -> bool:
     """Whether a module of this kind answers at the speed that the wire has."""
-    return any(is_ok(asked(wire, "AT", dialect.ending, dialect.wait_ms)) for _ in range(TRIES))
+    return any(is_ok(ask(wire, "AT", dialect.ending, dialect.wait_ms)) for _ in range(TRIES))
 
 
 def _listens(wire: Wire) -> bytes | None:
@@ -85,38 +85,38 @@ def _listens(wire: Wire) -> bytes | None:
     A module that waits for a silence must not hear more before that; one that waits for the end of
     a line has `AT` already when it comes.
     """
-    if _takes(asked(wire, "AT", b"", SLOW_ANSWER_MS)):
+    if _is_accepted(ask(wire, "AT", b"", SLOW_ANSWER_MS)):
         return b""
-    said = asked(wire, "", CRLF, SLOW_ANSWER_MS)
-    if is_error(said):  # it had half a command of before
-        said = asked(wire, "AT", CRLF, ANSWER_MS)
-    return CRLF if _takes(said) else None
+    text = ask(wire, "", CRLF, SLOW_ANSWER_MS)
+    if is_error(text):  # it had half a command of before
+        text = ask(wire, "AT", CRLF, ANSWER_MS)
+    return CRLF if _is_accepted(text) else None
 
 
-def _takes(said: str) -> bool:
+def _is_accepted(said: str) -> bool:
     return "OK" in said.split()
 
 
 def _kind(wire: Wire, ending: bytes) -> tuple[Dialect, str]:
     """Return which module this is, and what it says of itself."""
     if not ending:
-        said = asked(wire, "AT+VERSION", ending, SLOW_ANSWER_MS)
-        if said.startswith("OK") and not said.startswith("OK+") and said != "OK":
-            return HC06, said.removeprefix("OK")
-        more = asked(wire, "AT+VERR?", ending, SLOW_ANSWER_MS)
-        if "HM" in more.upper() or said.startswith("OK+") or "HM" in said.upper():
-            return HM10, more or said
-        return HC06, said
-    said = asked(wire, "AT+VERSION", ending, ANSWER_MS)
-    if "BT05" in said.upper():
-        return BT05, _line(said)
-    if said.startswith("+VERSION="):
-        return CC41, _line(said)
-    role = asked(wire, "AT+ROLE?", ending, ANSWER_MS)
+        text = ask(wire, "AT+VERSION", ending, SLOW_ANSWER_MS)
+        if text.startswith("OK") and not text.startswith("OK+") and text != "OK":
+            return HC06, text.removeprefix("OK")
+        more = ask(wire, "AT+VERR?", ending, SLOW_ANSWER_MS)
+        if "HM" in more.upper() or text.startswith("OK+") or "HM" in text.upper():
+            return HM10, more or text
+        return HC06, text
+    text = ask(wire, "AT+VERSION", ending, ANSWER_MS)
+    if "BT05" in text.upper():
+        return BT05, _line(text)
+    if text.startswith("+VERSION="):
+        return CC41, _line(text)
+    role = ask(wire, "AT+ROLE?", ending, ANSWER_MS)
     if role.startswith("+ROLE"):
-        said = asked(wire, "AT+VERSION?", ending, ANSWER_MS)
-        return (HC05_3 if ":3." in said else HC05), _line(said)
-    return (HC06_3, _line(said)) if not is_error(said) else (HC05, "")
+        text = ask(wire, "AT+VERSION?", ending, ANSWER_MS)
+        return (HC05_3 if ":3." in text else HC05), _line(text)
+    return (HC06_3, _line(text)) if not is_error(text) else (HC05, "")
 
 
 def _line(said: str) -> str:

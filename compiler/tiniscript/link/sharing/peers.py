@@ -53,10 +53,10 @@ def is_of_this_user(peer: socket.socket) -> bool:
     except OSError:  # it has gone
         return False
     try:
-        found = _other_end(there, here)
+        result = _socket_owner(there, here)
     except OSError as why:  # a system that has no answer to that lets everybody in
         return why.errno not in _NOBODY
-    return found.is_open and found.user in (os.geteuid(), ROOT)
+    return result.is_open and result.user in (os.geteuid(), ROOT)
 
 
 def is_of_another(number: int) -> bool:
@@ -67,10 +67,10 @@ def is_of_another(number: int) -> bool:
     if sys.platform == "win32":
         return False
     try:
-        found = _other_end((HOST, number), ("0.0.0.0", 0))
+        result = _socket_owner((HOST, number), ("0.0.0.0", 0))
     except OSError:
         return False
-    return found.user not in (os.geteuid(), ROOT)
+    return result.user not in (os.geteuid(), ROOT)
 
 
 def tells_users() -> bool:
@@ -88,7 +88,7 @@ def is_here(peer: socket.socket) -> bool:
     return True
 
 
-def _other_end(there: tuple[str, int], here: tuple[str, int]) -> End:
+def _socket_owner(there: tuple[str, int], here: tuple[str, int]) -> End:
     """Return what the kernel knows of the socket at `there`. Raises OSError."""
     if sys.platform != "linux":
         raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))

@@ -6,7 +6,8 @@
     {"do": "upload", "id": 1, "limit_ms": 6000, "image": "..", ..}
                                                  {"id": 1, "done_bytes": 54}
                                                  {"id": 1, "status": 0, "detail": 0, "values": {..},
-                                                  "heard": 99, "is_echoed": false, "boot": 7}
+                                                  "heard": 99, "came": "", "is_echoed": false,
+                                                  "boot": 7}
                                                  {"event": "SHOW", "ms": 1234, "values": {..}}
     {"do": "places"}                             {"event": "PLACE", "ms": 1234, "values": {..}}
     {"do": "stop"}
@@ -92,20 +93,20 @@ def written(message: Mapping[str, object]) -> bytes:
 def message_of(line: bytes) -> JsonMessage:
     """Return the object of JSON that these bytes are. Raises BadMessage."""
     try:
-        found = json.loads(line)
+        result = json.loads(line)
     except (ValueError, RecursionError):
         raise BadMessage from None
-    if not isinstance(found, dict):
+    if not isinstance(result, dict):
         raise BadMessage
-    return found
+    return result
 
 
 def field(message: JsonMessage, name: str, kind: type[T]) -> T:
     """Return a field of this kind. Raises BadMessage where it is something else."""
-    found = message.get(name)
-    if type(found) is not kind:  # True is no whole number
+    result = message.get(name)
+    if type(result) is not kind:  # True is no whole number
         raise BadMessage
-    return found
+    return result
 
 
 def number(message: JsonMessage, name: str) -> int:
@@ -129,12 +130,12 @@ def plain(values: Mapping[str, int | bytes]) -> JsonMessage:
 
 def values(message: JsonMessage) -> dict[str, int | bytes]:
     """Return the fields of a reply or an event. Raises BadMessage."""
-    found = message.get("values")
-    if not isinstance(found, dict):
+    result = message.get("values")
+    if not isinstance(result, dict):
         raise BadMessage
     return {
-        key: number(found, key) if type(value) is int else data(found, key)
-        for key, value in found.items()
+        key: number(result, key) if type(value) is int else data(result, key)
+        for key, value in result.items()
     }
 
 

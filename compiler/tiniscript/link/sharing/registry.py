@@ -43,7 +43,7 @@ class Registration(NamedTuple):
     is_alias: bool = False
 
 
-def found(port: str) -> Registration | None:
+def find_registration(port: str) -> Registration | None:
     """Return the registration of the server of a port, or None."""
     registration = _read(_path(port))
     if registration is None or registration.port != same_for_all(port):

@@ -93,22 +93,22 @@ def _as_message(name: str, message: JsonMessage) -> tuple[object, ...]:
     """Return the fields of the link's message of that name, which such a request is given."""
     if name not in vars(Requester) or name.upper() not in BY_NAME:
         raise BadMessage
-    return tuple(_field(message, each) for each in BY_NAME[name.upper()].request)
+    return tuple(_field(message, item) for item in BY_NAME[name.upper()].request)
 
 
-def _field(message: JsonMessage, its: Field) -> int | bytes:
+def _field(message: JsonMessage, field: Field) -> int | bytes:
     """Return what a message says for a field of the link's. Raises BadMessage."""
-    if its.kind == "rest":
-        return _bytes(message, its.name, its.low, min(its.high, SEALED_PAYLOAD_BYTES))
-    bits = 8 * its.high
-    lowest = -(1 << bits - 1) if its.kind.startswith("i") else 0
-    number = protocol.number(message, its.name)
+    if field.kind == "rest":
+        return _bytes(message, field.name, field.low, min(field.high, SEALED_PAYLOAD_BYTES))
+    bits = 8 * field.high
+    lowest = -(1 << bits - 1) if field.kind.startswith("i") else 0
+    number = protocol.number(message, field.name)
     if not 0 <= number - lowest < 1 << bits:
         raise BadMessage
     return number
 
 
-def _below(message: JsonMessage, name: str, limit: int, usual: int | None = None) -> int:
+def _bounded_number(message: JsonMessage, name: str, limit: int, usual: int | None = None) -> int:
     """Return a number from 0 on, below the limit. Raises BadMessage."""
     number = protocol.number(message if usual is None else {name: usual, **message}, name)
     if not 0 <= number < limit:
@@ -124,7 +124,7 @@ def _bytes(message: JsonMessage, name: str, least: int, most: int) -> bytes:
     return data
 
 
-def _pressed(message: JsonMessage) -> tuple[object, ...]:
+def _pressed_keys(message: JsonMessage) -> tuple[object, ...]:
     pressed = Pressed(*(protocol.number(message, name) for name in Pressed._fields))
     if not pressed.is_sound:
         raise BadMessage
@@ -146,7 +146,7 @@ def _trim(message: JsonMessage) -> bytes:
 
 
 def _kit(message: JsonMessage) -> int:
-    return _below(message, "kit", 1 << 16, 0)
+    return _bounded_number(message, "kit", 1 << 16, 0)
 
 
 def _network(message: JsonMessage) -> Network:
@@ -184,12 +184,12 @@ def _image(message: JsonMessage) -> Image:
     major, minor = _bytes(message, "isa", 2, 2)
     return Image(
         start,
-        _below(message, "devices", 1 << 16),
+        _bounded_number(message, "devices", 1 << 16),
         _bytes(message, "code", 0, CODE_BYTES),
-        _below(message, "checksum", 1 << 32),
+        _bounded_number(message, "checksum", 1 << 32),
         (major, minor),
         _bytes(message, "later", 0, LATER_BYTES),
-        _below(message, "needs", 1 << 8, 0),  # without it the image is of 2.0
+        _bounded_number(message, "needs", 1 << 8, 0),  # without it the image is of 2.0
     )
 
 
@@ -205,11 +205,11 @@ _GIVEN: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
         ("hello", "ping", "fetch", "hold_back", "wifi", "forget_wifi", "broker"),
         lambda message: (),
     ),
-    "press": _pressed,
+    "press": _pressed_keys,
     "trim": lambda message: (_trim(message),),
     "break_at": lambda message: (_places(message),),
-    "claim": lambda message: (_below(message, "which", len(KEYS)),),
-    "disown": lambda message: (_below(message, "which", len(KEYS)),),
+    "claim": lambda message: (_bounded_number(message, "which", len(KEYS)),),
+    "disown": lambda message: (_bounded_number(message, "which", len(KEYS)),),
     "allow_text": lambda message: (protocol.field(message, "is_allowed", bool),),
     "start": lambda message: (protocol.field(message, "is_detached", bool),),
     "live": lambda message: (protocol.data(message, "code"), _kit(message)),

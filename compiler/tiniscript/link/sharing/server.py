@@ -220,13 +220,13 @@ class Server:
             else:
                 client.heard_s = monotonic()
             for message in client.messages.put(data) if client.verb else ():
-                self._take(client, message)
+                self._handle_message(client, message)
         except BlockingIOError:
             pass
         except (OSError, BadMessage):
             self._drop(client)
 
-    def _take(self, client: ConnectedClient, message: JsonMessage) -> None:
+    def _handle_message(self, client: ConnectedClient, message: JsonMessage) -> None:
         action = protocol.field(message, "do", str)
         if action == "stop":
             self._line.stop()
@@ -279,19 +279,19 @@ class Server:
                 outcome = request.pending.outcome
                 if outcome is not None:
                     del client.requests[number]
-                    self._own(request, client)
+                    self._note_owner(request, client)
                     self._tell_outcome(client, number, outcome)
                 elif request.pending.done_bytes != request.told_bytes:
                     done_bytes = request.pending.done_bytes
                     client.requests[number] = request._replace(told_bytes=done_bytes)
                     self._send(client, {"id": number, "done_bytes": done_bytes})
         for request in self._left_requests:
-            self._own(request, None)
+            self._note_owner(request, None)
         self._left_requests = [
             request for request in self._left_requests if request.pending.outcome is None
         ]
 
-    def _own(self, request: ServedRequest, client: ConnectedClient | None) -> None:
+    def _note_owner(self, request: ServedRequest, client: ConnectedClient | None) -> None:
         """Note which client's run has begun; stop the run where that client has left."""
         outcome = request.pending.outcome
         if outcome is None or outcome.status != OK:
@@ -303,7 +303,7 @@ class Server:
         if not self._line.runs(run):
             return
         if client is None:
-            self._line.halt(run)
+            self._line.end_run(run)
         else:
             self._owner = client, run
 
@@ -315,6 +315,7 @@ class Server:
             "detail": outcome.detail,
             "values": protocol.plain(values),
             "heard": self._line.heard,
+            "came": self._line.came.hex(),
             "is_echoed": self._line.is_echoed,
             "boot": self._line.boot,
         })  # fmt: skip
@@ -353,7 +354,7 @@ class Server:
     def _end_run(self) -> None:
         """End the run of a client that has left."""
         if self._owner is not None:
-            self._line.halt(self._owner[1])
+            self._line.end_run(self._owner[1])
         self._owner = None
 
     def _drop(self, client: ConnectedClient) -> None:
@@ -395,9 +396,9 @@ class Server:
         except OSError:
             self._drop(client)
             return
-        wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if client.out else 0)
+        expected = selectors.EVENT_READ | (selectors.EVENT_WRITE if client.out else 0)
         if client in self._clients:
-            self._selector.modify(client.peer, wanted, client)
+            self._selector.modify(client.peer, expected, client)
 
     def _part(self) -> None:
         """Tell all clients that the connection has ended, and why."""
@@ -412,5 +413,5 @@ class Server:
     def _close_all(self) -> None:
         for client in self._clients:
             client.peer.close()
-        for each in (self._listening, self._bell, self._wire, self._selector):
-            each.close()
+        for item in (self._listening, self._bell, self._wire, self._selector):
+            item.close()

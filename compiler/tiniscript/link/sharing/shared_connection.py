@@ -130,14 +130,14 @@ class SharedConnection(LinkConnection):
                 raise ConnectionError
             self._unanswered_s = None
             for message in self._messages.put(data):
-                self._take(message)
+                self._handle_message(message)
         except TimeoutError:
             if self._unanswered_s is not None and now_s - self._unanswered_s > DEAF_S:
                 self._over = ConnectionLost("", is_server=True)
         except (OSError, BadMessage) as why:
             self._over = self._over or ConnectionLost(str(why), is_server=True)
 
-    def _take(self, message: JsonMessage) -> None:
+    def _handle_message(self, message: JsonMessage) -> None:
         if "over" in message:
             is_server = message["over"] != "gone"
             self._over = ConnectionLost(protocol.field(message, "why", str), is_server)
@@ -155,6 +155,7 @@ class SharedConnection(LinkConnection):
             request.done_bytes = protocol.number(message, "done_bytes")
             return
         self.heard = protocol.number(message, "heard")
+        self.came = protocol.data(message, "came")
         self.is_echoed = protocol.field(message, "is_echoed", bool)
         self._boot = protocol.number(message, "boot")
         reply = protocol.reply(message, request.kind)
@@ -177,14 +178,14 @@ def joined(port: str, verb: str) -> SharedConnection | None:
 
     Raises OtherVersion where the server is another version of tsc; `stop` works there, too.
     """
-    registration = registry.found(port)
-    return None if registration is None else _joined(registration, verb)
+    registration = registry.find_registration(port)
+    return None if registration is None else _connect_to(registration, verb)
 
 
 def is_alive(registration: Registration) -> bool:
     """Whether a server is still there."""
     try:
-        client = _joined(registration, protocol.LOOKER)
+        client = _connect_to(registration, protocol.LOOKER)
     except OtherVersion:
         return True
     if client is not None:
@@ -192,7 +193,7 @@ def is_alive(registration: Registration) -> bool:
     return client is not None
 
 
-def _joined(registration: Registration, verb: str) -> SharedConnection | None:
+def _connect_to(registration: Registration, verb: str) -> SharedConnection | None:
     peer = None
     try:
         peer = socket.create_connection((protocol.HOST, registration.number), ANSWER_S)
@@ -201,15 +202,15 @@ def _joined(registration: Registration, verb: str) -> SharedConnection | None:
             protocol.written({"tsc": __version__, "token": registration.token, "verb": verb})
         )
         rest = protocol.MessageReader(protocol.LINE_BYTES)
-        found = _first(peer, rest)
-        if protocol.field(found[0], "answer", str) != registration.answer:
+        result = _read_greeting(peer, rest)
+        if protocol.field(result[0], "answer", str) != registration.answer:
             raise BadMessage  # another program listens there now
-        version = protocol.field(found[0], "tsc", str)
+        version = protocol.field(result[0], "tsc", str)
         if version != __version__ and verb != "stop":
             raise OtherVersion(registration, version)
         client = SharedConnection(peer, registration, rest)
-        for message in found[1:]:
-            client._take(message)
+        for message in result[1:]:
+            client._handle_message(message)
         return client
     except (OSError, BadMessage, OtherVersion) as failure:
         if peer is not None:
@@ -220,7 +221,7 @@ def _joined(registration: Registration, verb: str) -> SharedConnection | None:
         return None
 
 
-def _first(peer: socket.socket, rest: protocol.MessageReader) -> list[JsonMessage]:
+def _read_greeting(peer: socket.socket, rest: protocol.MessageReader) -> list[JsonMessage]:
     """Return the greeting of a server and what follows it."""
     end_s = monotonic() + ANSWER_S
     while (left_s := end_s - monotonic()) > 0:
@@ -228,7 +229,7 @@ def _first(peer: socket.socket, rest: protocol.MessageReader) -> list[JsonMessag
         data = peer.recv(65536)
         if not data:
             raise ConnectionError
-        found = rest.put(data)
-        if found:
-            return found
+        result = rest.put(data)
+        if result:
+            return result
     raise TimeoutError

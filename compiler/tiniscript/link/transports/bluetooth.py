@@ -70,18 +70,18 @@ def resolved(port: str) -> str:
     Raises PortError, at the latest after search.SEARCH_S.
     """
     loop = shared()
-    device = _run(loop, search.found(name_in(port)), search.SEARCH_S + search.LEAVE_S * 2)
+    device = _run(loop, search.find_device(name_in(port)), search.SEARCH_S + search.LEAVE_S * 2)
     address = canonical(device.address)
     _found[address] = device
     return BLE + address
 
 
-def listed() -> list[search.Seen]:
+def listed() -> list[search.SeenDevice]:
     """Return the robots in reach. Raises PortError."""
     limit_s = search.LISTED_S + search.LEAVE_S * 2
-    found = _run(shared(), search.robots(), limit_s)
-    _found.update({canonical(seen.address): seen.device for seen in found})
-    return found
+    seen_devices = _run(shared(), search.robots(), limit_s)
+    _found.update({canonical(item.address): item.device for item in seen_devices})
+    return seen_devices
 
 
 def opened(port: str, baud: int, limit_s: float) -> BluetoothPort:

@@ -37,7 +37,7 @@ _Denied = BleakBluetoothNotAvailableReason
 _FORBIDDEN = (_Denied.DENIED_BY_USER, _Denied.DENIED_BY_SYSTEM, _Denied.DENIED_BY_UNKNOWN)
 
 
-class Seen(NamedTuple):
+class SeenDevice(NamedTuple):
     """A device. `is_robot`: it offers a service by which robots are reached."""
 
     device: BLEDevice
@@ -53,7 +53,7 @@ class _Scan:
     """The scan of this process, as long as somebody searches."""
 
     def __init__(self) -> None:
-        self.seen: dict[str, Seen] = {}
+        self.seen: dict[str, SeenDevice] = {}
         self.news = asyncio.Event()
         self._searches = 0
         self._scanner: BleakScanner | None = None
@@ -68,7 +68,7 @@ class _Scan:
                 try:
                     await asyncio.shield(started)  # one that begins cannot be ended yet
                     for device in await _connected():
-                        self._keep(Seen(device, device.name or "", True))
+                        self._keep(SeenDevice(device, device.name or "", True))
                 except BaseException:
                     await asyncio.wait([started])
                     await self._end()
@@ -88,16 +88,16 @@ class _Scan:
             with suppress(Exception):  # the adapter is gone: the scan is over
                 await asyncio.wait_for(scanner.stop(), LEAVE_S)
 
-    def _notice(self, device: BLEDevice, said: AdvertisementData) -> None:
-        services = {service_uuid.lower() for service_uuid in said.service_uuids}
+    def _notice(self, device: BLEDevice, advertisement: AdvertisementData) -> None:
+        services = {service_uuid.lower() for service_uuid in advertisement.service_uuids}
         before = self.seen.get(device.address)
-        name = said.local_name or device.name or (before.name if before else "")
+        name = advertisement.local_name or device.name or (before.name if before else "")
         is_robot = bool(services & set(SERVICES)) or (before is not None and before.is_robot)
-        self._keep(Seen(device, name, is_robot))
+        self._keep(SeenDevice(device, name, is_robot))
 
-    def _keep(self, seen: Seen) -> None:
-        if seen.address in self.seen or len(self.seen) < DEVICES:
-            self.seen[seen.address] = seen
+    def _keep(self, seen_device: SeenDevice) -> None:
+        if seen_device.address in self.seen or len(self.seen) < DEVICES:
+            self.seen[seen_device.address] = seen_device
             self.news.set()
             self.news = asyncio.Event()
 
@@ -118,12 +118,12 @@ def _scan() -> _Scan:
     return _Scan()
 
 
-async def found(name: str) -> BLEDevice:
+async def find_device(name: str) -> BLEDevice:
     """Return the device with a name or an address. Raises PortError: none, or several."""
     is_address = is_device_address(name)
     loop = asyncio.get_running_loop()
     end_s = loop.time() + SEARCH_S
-    matches: dict[str, Seen] = {}
+    matches: dict[str, SeenDevice] = {}
     async with _scan() as scan:
         while loop.time() < end_s:
             news = scan.news
@@ -147,7 +147,7 @@ async def found(name: str) -> BLEDevice:
     return next(iter(matches.values())).device
 
 
-async def robots() -> list[Seen]:
+async def robots() -> list[SeenDevice]:
     """Return all robots in reach, by name."""
     async with _scan() as scan:
         await asyncio.sleep(LISTED_S)
@@ -161,13 +161,13 @@ def reason_of(failure: Exception) -> str:
         if failure.reason in _FORBIDDEN:
             return errors.RADIO_FORBIDDEN
         return errors.RADIO_OFF
-    said = str(failure)
-    if isinstance(failure, PermissionError) or "AccessDenied" in said or "AuthFailed" in said:
+    text = str(failure)
+    if isinstance(failure, PermissionError) or "AccessDenied" in text or "AuthFailed" in text:
         return errors.RADIO_FORBIDDEN
-    if "NotReady" in said or "Resource Not Ready" in said:
+    if "NotReady" in text or "Resource Not Ready" in text:
         return errors.RADIO_OFF
     if isinstance(failure, (FileNotFoundError, ConnectionError)):
         return errors.RADIO_SERVICE
-    if "ServiceUnknown" in said or "NoReply" in said or "NameHasNoOwner" in said:
+    if "ServiceUnknown" in text or "NoReply" in text or "NameHasNoOwner" in text:
         return errors.RADIO_SERVICE
     return errors.RADIO_BROKEN

@@ -205,13 +205,13 @@ class Broker:
                 if asked <= self._acknowledged and monotonic() > self._told_s + QUIET_S:
                     break
                 self._news.wait(READ_S)
-            found = list(self._here.pop(group).values())
+            result = list(self._here.pop(group).values())
             is_whole = asked <= self._acknowledged
             self._acknowledged -= asked
         if not is_whole:
             raise PortError(errors.UNREACHABLE, self.gone or "no answer of a broker")
         self._client.unsubscribe(topics)
-        return sorted(found, key=lambda each: (each.name.casefold(), each.id))
+        return sorted(result, key=lambda each: (each.name.casefold(), each.id))
 
     @property
     def skipped(self) -> dict[str, int]:
@@ -267,7 +267,7 @@ class Broker:
         except ssl.SSLError as why:
             raise PortError(errors.UNTRUSTED, str(why.reason or why)) from None
         except (OSError, ValueError) as why:
-            raise PortError(errors.UNREACHABLE, _said(why)) from None
+            raise PortError(errors.UNREACHABLE, _error_text(why)) from None
         self._client.loop_start()
         end_s = monotonic() + CONNECT_S
         with self._news:
@@ -360,5 +360,5 @@ class BrokerPort(PushedTransport):
         self.bring(data)
 
 
-def _said(why: Exception) -> str:
+def _error_text(why: Exception) -> str:
     return (why.strerror if isinstance(why, OSError) else None) or str(why)

@@ -48,8 +48,8 @@ def resolved(port: str) -> str:
 
 def opened(port: str, baud: int, limit_s: float) -> Port:
     """Open the address of a name, which is searched first. Raises PortError."""
-    found: Port = serial.opened(resolved(port), baud, limit_s)
-    return found
+    result: Port = serial.opened(resolved(port), baud, limit_s)
+    return result
 
 
 def listed() -> list[Announced]:
@@ -67,7 +67,7 @@ def listed() -> list[Announced]:
         def remove_service(self, _: Zeroconf, __: str, name: str) -> None:
             names.discard(name)
 
-    found = []
+    result = []
     with _network() as network:
         browser = ServiceBrowser(network, SERVICE, listener=Listener())  # type: ignore[arg-type]
         Event().wait(LISTED_S)
@@ -79,10 +79,10 @@ def listed() -> list[Announced]:
             if info is None:
                 continue
             try:
-                found.append(Announced(name.removesuffix(f".{SERVICE}"), _address(info)))
+                result.append(Announced(name.removesuffix(f".{SERVICE}"), _address(info)))
             except PortError:  # no robot has such an address
                 continue
-    return found
+    return result
 
 
 def asked(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:

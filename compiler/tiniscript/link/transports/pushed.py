@@ -35,11 +35,11 @@ class PushedTransport:
             if not (self._heard or self._gone or self._is_cancelled):
                 self._news.wait(READ_S)
             self._is_cancelled = False
-            found = bytes(self._heard[:size])
+            result = bytes(self._heard[:size])
             del self._heard[:size]
-            if self._gone and not found:
+            if self._gone and not result:
                 raise OSError(self._gone)
-            return found
+            return result
 
     def cancel_read(self) -> None:
         with self._news:

@@ -106,14 +106,14 @@ def _open(port: str, baud: int) -> serial.SerialBase:
     settings = {"timeout": READ_S, "write_timeout": WRITE_S, "exclusive": True}
     if port.startswith("rfc2217://"):
         del settings["write_timeout"]  # pyserial does not support it here
-    return _made(port, baud, settings)
+    return _make_serial(port, baud, settings)
 
 
 def _open_shared(port: str, baud: int) -> serial.SerialBase:
-    return _made(port, baud, {"timeout": READ_S, "write_timeout": WRITE_S})
+    return _make_serial(port, baud, {"timeout": READ_S, "write_timeout": WRITE_S})
 
 
-def _made(port: str, baud: int, settings: dict[str, Any]) -> serial.SerialBase:
+def _make_serial(port: str, baud: int, settings: dict[str, Any]) -> serial.SerialBase:
     if "://" in port:
         return serial.serial_for_url(port, baudrate=baud, **settings)
     return _Device(port, baudrate=baud, **settings)

@@ -9,7 +9,7 @@ from tiniscript.robots.driver import ActuatorDriver, DiscDriver, Driver, MotorDr
 from tiniscript.robots.profile import Wiring
 
 
-def _found() -> dict[tuple[str, str], Driver]:
+def _load() -> dict[tuple[str, str], Driver]:
     """Return the drivers of this folder, by the table and kind of [board] that uses them."""
     drivers: list[Driver] = [
         import_module(f"{__name__}.{module.name}").DRIVER for module in iter_modules(__path__)
@@ -17,7 +17,7 @@ def _found() -> dict[tuple[str, str], Driver]:
     return {(driver.used_by, driver.name): driver for driver in drivers}
 
 
-DRIVERS = _found()
+DRIVERS = _load()
 
 
 def drivers_for(used_by: str) -> tuple[str, ...]:

@@ -138,11 +138,11 @@ def _is_used(pin: Pin, plan: Plan) -> bool:
 
 def _marks(outlines: Iterable[tuple[bool, str]], style: str = "") -> list[str]:
     """Return the marks of pins or terminals: those that are used, and those that stay free."""
-    found = sorted(outlines, reverse=True)
+    result = sorted(outlines, reverse=True)
     return [
         f'<path d="{"".join(each for _, each in same)}" '
         f'fill="{"#ffffff" if is_used else "#cccccc"}" stroke="{LINE}"{style}/>'
-        for is_used, same in groupby(found, key=lambda each: each[0])
+        for is_used, same in groupby(result, key=lambda each: each[0])
     ]
 
 
@@ -165,7 +165,7 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
     anchor = "start" if pin.side == LEFT else "end"
     style = BOLD if is_used else FAINT
     lines.append(text_at(shown, edge + 10 * inward, pin.y + 4.5, 62, anchor, 14, style))
-    if pin.name in set(BOARD_RAILS) & set(plan.rails) and pin == _first(pin.name, layout):
+    if pin.name in set(BOARD_RAILS) & set(plan.rails) and pin == _tag_pin(pin.name, layout):
         near, far = edge - 5 * inward, edge - 12 * inward
         lines.append(line_to(near, pin.y, far, pin.y, RAIL_INKS[pin.name]))
         lines.append(_tag(pin.name, edge - 29 * inward, pin.y))
@@ -179,7 +179,7 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
     return lines
 
 
-def _first(name: str, layout: Layout) -> Pin:
+def _tag_pin(name: str, layout: Layout) -> Pin:
     """Return the pin of a rail that has its tag: the first one of the left side, if it has one."""
     return min((pin for pin in layout.pins if pin.name == name), key=lambda pin: pin[:2])
 

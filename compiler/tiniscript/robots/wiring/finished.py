@@ -42,11 +42,11 @@ class _Finished:
         self.wheel = wheel_cm[0] * self.scale, wheel_cm[1] * self.scale
         half = max(self.breadth, body.wheel_base_cm * self.scale + self.wheel[1]) / 2
         self.left, self.right = BESIDE, BESIDE + 2 * half
-        places = [0.0, *(place.x_cm for place in body.places.values())]
-        ahead = max(0.0, max(places) * self.scale - self.length / 2)
+        places_x_cm = [0.0, *(place.x_cm for place in body.places.values())]
+        ahead = max(0.0, max(places_x_cm) * self.scale - self.length / 2)
         self.x, self.y = BESIDE + half, MARGIN + ahead + self.length / 2
         self.servos = [part for part in plan.parts if part.is_device and part.shape.icon == "servo"]
-        self.y += JAW if self.servos and self._held() is None else 0
+        self.y += JAW if self.servos and self._caster_place() is None else 0
         self.width = self.right + BESIDE
         self.height = self.y + self.length / 2 + MARGIN
 
@@ -120,7 +120,7 @@ class _Finished:
             top += high + gap
         return lines
 
-    def _held(self) -> Place | None:
+    def _caster_place(self) -> Place | None:
         """Return the touch sensor that is held before the plate, in the middle: between jaws."""
         front_cm = self.plan.body.length_cm / 2
         for place in self.plan.body.places.values():
@@ -134,7 +134,7 @@ class _Finished:
         The profile does not say where they are: they share the edge.
         """
         lines: list[str] = []
-        held = self._held()
+        held = self._caster_place()
         edge = self.y - self.length / 2
         above = sum(
             place.y_cm > 0 for place in self.plan.body.places.values()

@@ -18,15 +18,15 @@ class Sides(NamedTuple):
 
 def _slots(text: str) -> tuple[Slot, ...]:
     """Return the slots of `"5V - 13..8"`: names, a gap, and pins from 13 down to 8."""
-    found: list[Slot] = []
+    slots: list[Slot] = []
     for word in text.split():
         first, _, last = word.partition("..")
         if not first.isdigit():
-            found.append(None if word == "-" else word)
+            slots.append(None if word == "-" else word)
         else:
             step = 1 if int(last or first) >= int(first) else -1
-            found += range(int(first), int(last or first) + step, step)
-    return tuple(found)
+            slots += range(int(first), int(last or first) + step, step)
+    return tuple(slots)
 
 
 RECEIVE_PINS = {"esp32dev": 3, "esp32c3": 20}  # of the link; 0 on the others

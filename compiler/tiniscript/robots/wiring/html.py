@@ -92,8 +92,8 @@ def _block(block: Block, plan: Plan) -> str:
 
 def _row(cells: tuple[str, ...], head: tuple[str, ...]) -> str:
     """Return a row; each cell knows its column, which a narrow screen shows beside it."""
-    found = (
+    result = (
         f'<td data-head="{escape(name)}">{_words(cell)}</td>'
         for cell, name in zip(cells, head, strict=True)
     )
-    return f"<tr>{''.join(found)}</tr>"
+    return f"<tr>{''.join(result)}</tr>"

@@ -137,9 +137,9 @@ class _Layout:
         for part in plan.parts:
             parts[self._side_of(part)].append(part)
         tall = max(len(column) for column in columns) * STEP + BOARD_NAME
-        heights = [sum(_room(part) for part in each) for each in parts]
+        heights = [sum(_room(part) for part in item) for item in parts]
         whole = max(tall, *heights)
-        self.board_top = MARGIN + STEP + _snapped((whole - tall) // 2)
+        self.board_top = MARGIN + STEP + _snap((whole - tall) // 2)
         self.board_height = tall
         self.pins: list[Pin] = []
         for side, column in enumerate(columns):
@@ -149,8 +149,8 @@ class _Layout:
         self.pin_y = {pin.number: pin.y for pin in self.pins if pin.number is not None}
         self.tops: dict[int, int] = {}  # of parts, by their place in the plan
         bottom = MARGIN + STEP + whole
-        for each in parts:
-            self._stack(each, bottom)
+        for item in parts:
+            self._stack(item, bottom)
 
     # -- the board
 
@@ -187,18 +187,18 @@ class _Layout:
         ]
         return sum(offsets) / len(offsets) if offsets else float("inf")
 
-    def _middle(self, part: Part) -> float:
+    def _center_y(self, part: Part) -> float:
         pins = [self.pin_y[end.wire.pin] for end in part.ends if end.wire]
         return sum(pins) / len(pins) if pins else float("inf")
 
     def _stack(self, parts: Sequence[Part], bottom: int) -> None:
         """Put the parts of a side below each other, each as near to its pins as there is room."""
-        ordered = sorted(parts, key=self._middle)
+        ordered = sorted(parts, key=self._center_y)
         y = MARGIN + STEP
         for k, part in enumerate(ordered):
             latest = bottom - sum(_room(part) for part in ordered[k:])
-            wanted = min(self._wanted(part), latest)
-            y = max(y, _snapped(int(wanted)))
+            expected = min(self._wanted(part), latest)
+            y = max(y, _snap(int(expected)))
             self.tops[id(part)] = y
             y += _room(part)
 
@@ -213,7 +213,7 @@ class _Layout:
             for end, row in zip(part.ends, _rows_of(part), strict=True):
                 if end.wire:
                     ends[end.wire.number] = (self._side_of(part), top + row)
-        below = self._below()
+        below = self._free_y()
         lanes: dict[int, int] = {}
         for wire in self.plan.wires:
             side, y = ends[wire.number]
@@ -257,9 +257,9 @@ class _Layout:
         board = (board_left, self.board_top, BOARD_WIDTH, self.board_height)
         return Layout(width, lowest + MARGIN, board, tuple(self.pins), boxes, routes)
 
-    def _below(self) -> int:
+    def _free_y(self) -> int:
         """Return the first height below the board, a quarter step beside pins and terminals."""
-        return self.board_top + _snapped(self.board_height) + STEP + STEP // 4
+        return self.board_top + _snap(self.board_height) + STEP + STEP // 4
 
     def _box(self, part: Part, columns: tuple[int, int]) -> Box:
         side, top = self._side_of(part), self.tops[id(part)]
@@ -282,8 +282,8 @@ class _Layout:
 
 def _room(part: Part) -> int:
     """Return the height that a part takes in its column, a multiple of STEP."""
-    return _snapped(_height_of(part) + GAP + STEP - 1)
+    return _snap(_height_of(part) + GAP + STEP - 1)
 
 
-def _snapped(y: int) -> int:
+def _snap(y: int) -> int:
     return y - y % STEP

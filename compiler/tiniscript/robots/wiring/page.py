@@ -45,7 +45,9 @@ def wire_rows(plan: Plan) -> list[tuple[str, ...]]:
             if end.wire:
                 colour = text(f"colour_{end.wire.colour}", language)
                 name = f"{end.wire.number} {colour}"
-                rows.append((name, end.wire.pin_name, part.title, end.name, _way(end, language)))
+                rows.append(
+                    (name, end.wire.pin_name, part.title, end.name, _route_text(end, language))
+                )
     if plan.has_lamp:
         lamp = text("part_lamp", language)
         on_board = text("on_board", language)
@@ -68,11 +70,11 @@ def rail_rows(plan: Plan) -> list[tuple[str, ...]]:
                 for end in part.ends
                 if end.rail == rail or (end.name == rail and end.wire)
             ]
-        rows += [(rail, colour, each) for each in joined]
+        rows += [(rail, colour, item) for item in joined]
     return rows
 
 
-def _way(end: End, language: str) -> str:
+def _route_text(end: End, language: str) -> str:
     to_ground = "to_ground_pin" if end.beyond else "to_ground"
     pairs = (("series", end.series), ("beyond", end.beyond), (to_ground, end.to_ground))
     return "; ".join(text(key, language).format(value=value) for key, value in pairs if value)
@@ -96,17 +98,17 @@ class _Page:
             Block("heading", say("finished", robot=self.plan.robot)),
             Block("finished", say("finished_drawing")),
             Block("heading", say("need")),
-            Block("list", rows=_column(self._needs())),
+            Block("list", rows=_column(self._shopping_list())),
             Block("heading", say("wires")),
             Block("paragraph", say("wires_intro")),
             Block("ticks", rows=tuple(wire_rows(self.plan))),
             Block("heading", say("rails")),
             Block("paragraph", say("rails_intro")),
             Block("ticks", rows=tuple(rail_rows(self.plan))),
-            *(Block("paragraph", words) for words in self._others()),
+            *(Block("paragraph", words) for words in self._unconnected()),
             Block("list", rows=_column(self._power())),
             Block("heading", say("mind")),
-            Block("list", rows=_column(self._mind())),
+            Block("list", rows=_column(self._warnings())),
             Block("heading", say("bluetooth" if self.plan.has_radio else "usb")),
             Block("list", rows=_column(self._link())),
             Block("heading", say("check")),
@@ -114,7 +116,7 @@ class _Page:
             Block("paragraph", say("made_by", robot=self.plan.robot)),
         ]
 
-    def _needs(self) -> list[str]:
+    def _shopping_list(self) -> list[str]:
         found: dict[str, list[Part]] = {}
         for part in self.plan.parts:
             if part.shape.need:
@@ -134,16 +136,16 @@ class _Page:
         needs += [self.say("need_plate", size=size), self.say("need_power_bank")]
         return needs
 
-    def _others(self) -> list[str]:
+    def _unconnected(self) -> list[str]:
         """Return what is joined to no pin and no rail: motors, and what stays free."""
-        said = []
+        result = []
         motors = self.plan.parts[0].shape.motors
         if motors:
             ends = [
                 self.say("motors_join", motor=self.say(key), terminals=terminals)
                 for key, terminals in zip(("left_motor", "right_motor"), motors, strict=True)
             ]
-            said.append(self.say("motor_wires", ends=", ".join(ends)))
+            result.append(self.say("motor_wires", ends=", ".join(ends)))
         free = [
             f"{part.title} {end.name}"
             for part in self.plan.parts
@@ -151,35 +153,35 @@ class _Page:
             if not end.wire and not end.rail
         ]
         if free:
-            said.append(self.say("free", ends=", ".join(free)))
-        return said
+            result.append(self.say("free", ends=", ".join(free)))
+        return result
 
     def _power(self) -> list[str]:
-        said = [
+        result = [
             self.say("power_own"),
             self.say("power_common"),
             self.say("power_not_5v" if self.plan.has_radio else "power_not_3v3"),
         ]
         shapes = [part.shape for part in self.plan.parts if part.shape.power]
-        said += [self.say(shape.power, model=shape.model) for shape in shapes]
-        return said
+        result += [self.say(shape.power, model=shape.model) for shape in shapes]
+        return result
 
     def _pull_downs(self) -> str:
         ends = self.plan.parts[0].ends
         return ", ".join(end.name for end in ends if end.to_ground == PULL_DOWN)
 
-    def _mind(self) -> list[str]:
-        said = []
+    def _warnings(self) -> list[str]:
+        result = []
         if self._pull_downs():
-            said.append(self.say("mind_floating", ends=self._pull_downs()))
+            result.append(self.say("mind_floating", ends=self._pull_downs()))
         is_5v = self.plan.chip.pin_volts == FIVE_VOLTS
         board = {"rail": BOARD_5V, "volts": "5"} if is_5v else {"rail": BOARD_3V3, "volts": "3.3"}
         for part in self.plan.parts:
             for key in part.shape.notes:
                 sentence = self.say(key, part=part.title, **board)
-                if sentence not in said:
-                    said.append(sentence)
-        return said
+                if sentence not in result:
+                    result.append(sentence)
+        return result
 
     def _link(self) -> list[str]:
         if not self.plan.has_radio:
@@ -195,22 +197,22 @@ class _Page:
 
     def _checks(self) -> list[str]:
         grounded = ", ".join(part.title for part in self.plan.parts if _is_grounded(part))
-        said = [
+        texts = [
             self.say("check_wheels"),
             self.say("check_polarity"),
             self.say("check_ground", parts=grounded),
             self.say("check_5v" if self.plan.has_radio else "check_3v3"),
         ]
         if self._pull_downs():
-            said.append(self.say("check_pull_downs", ends=self._pull_downs()))
-        said += [self.say(key) for part in self.plan.parts for key in part.shape.checks]
+            texts.append(self.say("check_pull_downs", ends=self._pull_downs()))
+        texts += [self.say(key) for part in self.plan.parts for key in part.shape.checks]
         keys: tuple[str, ...] = ("check_bare",)
         if self.plan.has_radio:
             keys = ("check_divider", "check_bare", "check_unplugged")
         elif any(end.series == "1 kΩ" for part in self.plan.parts for end in part.ends):
             keys = ("check_echo", "check_bare")
-        said += [self.say(key) for key in keys]
-        return [*said, self.say("check_hot"), self.say("check_way")]
+        texts += [self.say(key) for key in keys]
+        return [*texts, self.say("check_hot"), self.say("check_way")]
 
 
 def _is_grounded(part: Part) -> bool:

@@ -141,15 +141,15 @@ def plan_of(robot: Robot, language: str) -> Plan:
     def named(key: str) -> str:
         return text(key, language)
 
-    found = []
+    matches = []
     motors = parts.shape_of("motors", board.motors, pin_volts=chip.pin_volts)
     title, label = motors.model, named("part_motors")
     if not motors.model:
         title, label = named("part_servos"), ""
-    found.append(counter.part(title, label, motors, board.motors.pins))
+    matches.append(counter.part(title, label, motors, board.motors.pins))
     if board.discs:
         discs = parts.shape_of("discs", board.discs, pin_volts=chip.pin_volts)
-        found.append(counter.part(discs.model, named("part_discs"), discs, board.discs.pins))
+        matches.append(counter.part(discs.model, named("part_discs"), discs, board.discs.pins))
     groups = (
         ("sensors", kit.sensors, board.sensors),
         ("actuators", kit.actuators, board.actuators),
@@ -164,29 +164,29 @@ def plan_of(robot: Robot, language: str) -> Plan:
                 shape = _with_servo_supply(shape)
             label = robot.labels[language][device.name]
             label = "" if label == device.name else label
-            found.append(counter.part(device.name, label, shape, wiring.pins, is_device=True))
-    found.append(counter.part(named("part_button"), "SB", switch(), {"pin": board.start_button}))
-    found.append(counter.part(named("part_buzzer"), "BEEP", parts.BUZZER, {"pin": board.buzzer}))
+            matches.append(counter.part(device.name, label, shape, wiring.pins, is_device=True))
+    matches.append(counter.part(named("part_button"), "SB", switch(), {"pin": board.start_button}))
+    matches.append(counter.part(named("part_buzzer"), "BEEP", parts.BUZZER, {"pin": board.buzzer}))
     has_radio = chip.pin_volts == FIVE_VOLTS
     has_lamp = has_radio and board.status_led == LAMP_PIN
     if board.status_led is not None and not has_lamp:
         pin = {"pin": board.status_led}
-        found.append(counter.part(named("part_lamp"), "", lamp(is_on_low=False), pin))
+        matches.append(counter.part(named("part_lamp"), "", lamp(is_on_low=False), pin))
     radio = {"rx": RECEIVE_PIN, "tx": TRANSMIT_PIN}
     if board.bluetooth_state is not None:
         radio["state"] = board.bluetooth_state
     if has_radio:
-        found.append(counter.part("HC-05", "Bluetooth", parts.BLUETOOTH, radio))
-    rails = {end.rail for part in found for end in part.ends}
-    rails |= {end.name for part in found for end in part.ends}
+        matches.append(counter.part("HC-05", "Bluetooth", parts.BLUETOOTH, radio))
+    rails = {end.rail for part in matches for end in part.ends}
+    rails |= {end.name for part in matches for end in part.ends}
     for rail, key, supply in (
         (MOTOR_BATTERY, "part_battery", parts.BATTERY_OF_MOTORS),
         (SERVO_SUPPLY, "part_servo_supply", parts.SUPPLY_OF_SERVOS),
     ):
         if rail in rails:
-            found.append(counter.part(named(key), named(f"{key}_volts"), supply, {}))
+            matches.append(counter.part(named(key), named(f"{key}_volts"), supply, {}))
     return Plan(
-        robot.labels[language]["robot"], language, chip, board.baud, tuple(found), has_lamp,
+        robot.labels[language]["robot"], language, chip, board.baud, tuple(matches), has_lamp,
         board.bluetooth_state is not None, body,
     )  # fmt: skip
 

@@ -32,38 +32,40 @@ class Row(NamedTuple):
 
 TABLE = (
     # numbers that nobody means
-    Row((codes.WILL_FAULT,), STATEMENT, numbers.will_fault),
+    Row((codes.WILL_FAULT,), STATEMENT, numbers.report_will_fault),
     Row(
-        (codes.MOVE_OF_NO_TIME, codes.WILL_FAULT, codes.SWAPPED, codes.LONG_TIME,
+        (codes.ZERO_TIME_MOVE, codes.WILL_FAULT, codes.SWAPPED, codes.LONG_TIME,
          codes.LITTLE_POWER, codes.ZERO_BEFORE, codes.CUT_VALUE),
-        ir.Move, numbers.of_move,
+        ir.Move, numbers.check_move,
     ),
-    Row((codes.SWAPPED,), ir.Move, numbers.swapped_names),
-    Row((codes.SWAPPED,), PROGRAM, numbers.swapped_rounds),
-    Row((codes.MOVE_OF_NO_TIME, codes.LONG_TIME, codes.CUT_VALUE), ir.Beep, numbers.of_beep),
-    Row((codes.NEVER_REPEATS, codes.ROUNDED_TIMES), ir.Loop, numbers.of_times),
+    Row((codes.SWAPPED,), ir.Move, numbers.report_swapped_names),
+    Row((codes.SWAPPED,), PROGRAM, numbers.report_swapped_rounds),
+    Row((codes.ZERO_TIME_MOVE, codes.LONG_TIME, codes.CUT_VALUE), ir.Beep, numbers.check_beep),
+    Row((codes.NEVER_REPEATS, codes.ROUNDED_TIMES), ir.Loop, numbers.check_times),
     # conditions whose answer does not come
     Row((codes.FROZEN_UNTIL, codes.TURNED_ROUND, codes.EXACT, codes.KNOWN_ANSWER),
-        ir.Move, conditions.of_until),
-    Row((codes.FROZEN_WHILE, codes.KNOWN_ANSWER), ir.While, conditions.of_while),
+        ir.Move, conditions.check_until),
+    Row((codes.FROZEN_WHILE, codes.KNOWN_ANSWER), ir.While, conditions.check_while),
     Row((codes.FROZEN_WHILE, codes.LATE_ARM, codes.EXACT, codes.KNOWN_ANSWER),
-        ir.If, conditions.of_if),
-    Row((codes.FROZEN_WHILE,), ir.Show, conditions.of_show),
+        ir.If, conditions.check_if),
+    Row((codes.FROZEN_WHILE,), ir.Show, conditions.check_show),
+    Row((codes.ASKED_ONCE,), PROGRAM, conditions.report_asked_once),
     # what comes of a move
-    Row((codes.LATE_CHECK, codes.IDLE_STOP), BODY, moves.late_conditions),
-    Row((codes.UNSEEN_MOTORS,), BODY, moves.unseen_motors),
+    Row((codes.LATE_CHECK, codes.IDLE_STOP), BODY, moves.report_late_conditions),
+    Row((codes.UNSEEN_MOTORS,), BODY, moves.report_unseen_motors),
     # what is written for nothing
-    Row((codes.NEVER_REACHED,), BODY, useless.never_reached),
-    Row((codes.EMPTY_BLOCK,), BODY, useless.empty_blocks),
-    Row((codes.BUSY_LOOP,), ir.Loop, useless.busy_loop),
-    Row((codes.BUSY_LOOP,), ir.While, useless.busy_loop),
-    Row((codes.UNUSED_VARIABLE,), PROGRAM, useless.unused_variables),
-    Row((codes.UNUSED_READING,), PROGRAM, useless.unused_readings),
-    Row((codes.UNUSED_DEF,), PROGRAM, useless.unused_defs),
-    Row((codes.IN_A_NOTE,), PROGRAM, useless.in_notes),
+    Row((codes.NEVER_REACHED,), BODY, useless.report_never_reached),
+    Row((codes.EMPTY_BLOCK,), BODY, useless.report_empty_blocks),
+    Row((codes.BUSY_LOOP,), ir.Loop, useless.report_busy_loop),
+    Row((codes.BUSY_LOOP,), ir.While, useless.report_busy_loop),
+    Row((codes.UNUSED_VARIABLE,), PROGRAM, useless.report_unused_variables),
+    Row((codes.UNUSED_READING,), PROGRAM, useless.report_unused_readings),
+    Row((codes.UNUSED_DEF,), PROGRAM, useless.report_unused_defs),
+    Row((codes.IN_A_NOTE,), PROGRAM, useless.report_instructions_in_notes),
     # tasks
-    Row((codes.NO_MOTORS,), TASKS, tasks.kept_motors),
-    Row((codes.TASK_DONE_ONCE, codes.WHEN_GOES_ON), TASKS, tasks.brief_tasks),
+    Row((codes.NO_MOTORS,), TASKS, tasks.report_kept_motors),
+    Row((codes.TASK_DONE_ONCE, codes.WHEN_GOES_ON), TASKS, tasks.report_brief_tasks),
+    Row((codes.LONE_TASK,), TASKS, tasks.report_lone_task),
 )  # fmt: skip
 
 
@@ -97,12 +99,12 @@ def _look_at(body: ir.Body, around: Around, look: Look) -> None:
             row.find(statement, around, look)
         inner = ir.bodies(statement)
         if inner:
-            inside = _inside(statement, around, is_last=statement is body[-1])
-            for each in inner:
-                _look_at(each, inside, look)
+            inside = _inner_context(statement, around, is_last=statement is body[-1])
+            for item in inner:
+                _look_at(item, inside, look)
 
 
-def _inside(statement: ir.Statement, around: Around, is_last: bool) -> Around:
+def _inner_context(statement: ir.Statement, around: Around, is_last: bool) -> Around:
     """Return what the bodies of a statement are in; `is_last`: no other stands after it."""
     asks = isinstance(statement, (ir.If, ir.While))
     inside = around._replace(

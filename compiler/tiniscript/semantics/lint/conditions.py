@@ -42,24 +42,33 @@ def _is_endless(loop: ir.Loop | ir.While) -> bool:
     return not isinstance(loop, ir.Loop) or loop.times is None
 
 
-def of_until(move: ir.Move, around: Around, look: Look) -> None:
+def check_until(move: ir.Move, around: Around, look: Look) -> None:
     if move.until is not None and not look.program.tasks:
-        _Conditions(look).until(move, move.until.condition, around)
+        _Conditions(look).check_until(move, move.until.condition, around)
 
 
-def of_while(loop: ir.While, around: Around, look: Look) -> None:
+def check_while(loop: ir.While, around: Around, look: Look) -> None:
     if not look.program.tasks:
-        _Conditions(look).while_(loop)
+        _Conditions(look).check_while(loop)
 
 
-def of_if(statement: ir.If, around: Around, look: Look) -> None:
+def check_if(statement: ir.If, around: Around, look: Look) -> None:
     if not look.program.tasks:
-        _Conditions(look).if_(statement, around.outermost)
+        _Conditions(look).check_if(statement, around.outermost)
 
 
-def of_show(show: ir.Show, around: Around, look: Look) -> None:
+def check_show(show: ir.Show, around: Around, look: Look) -> None:
     if around.outermost is not None and not look.program.tasks:
-        _Conditions(look).frozen_show(show, around.outermost)
+        _Conditions(look).report_frozen_show(show, around.outermost)
+
+
+def report_asked_once(look: Look) -> None:
+    """A program that reads no remote control loads nothing for it."""
+    remote = {*range(len(look.kit.sensors), len(look.kit.readings))}
+    if remote & ir.named("SENSOR", look.statements):
+        from tiniscript.semantics.lint import once
+
+        once.report_asked_once(look, remote)
 
 
 class _Conditions:
@@ -71,36 +80,38 @@ class _Conditions:
 
     # -- UNTIL --------------------------------------------------------------------------------
 
-    def until(self, move: ir.Move, condition: ir.Expression, around: Around) -> None:
-        self._known_of_both(condition, move.span)
+    def check_until(self, move: ir.Move, condition: ir.Expression, around: Around) -> None:
+        self._report_known_of_both(condition, move.span)
         variables = _variables(condition)
         if variables and not any(term.op in _CHANGING for term in condition):
             time = known_value(move.time)
             if not (around.is_repeated and time is not None and time < SHORT):
-                self._frozen(move, condition, variables)
+                self._report_frozen_until(move, condition, variables)
             return
         compared = self._comparison(condition)
-        if compared is None or self._known(compared, move.span):
-            self._subtracted(condition, move.span)
+        if compared is None or self._report_known(compared, move.span):
+            self._report_subtracted(condition, move.span)
             return
         device, op, number = compared
         is_ahead = looks_ahead(device)
         is_turned = op in _TURNED.get(move.direction, {}) and is_ahead
         if is_turned and not around.asked & _sensors(condition):
             turned = compared._replace(op=_TURNED[move.direction][op])
-            other = "" if answer_of(turned) else self._with(move, str(turned))
+            other = "" if answer_of(turned) else self._with_condition(move, str(turned))
             is_forward = move.direction == "F"
             number_is, repair = ("number", "fix") if is_forward else ("far", "away")
             values = {"sensor": device.name, number_is: as_text(number), repair: other}
             self._look.report(codes.TURNED_ROUND, move.span, **values)
         else:
             reached = "GE" if device is TIME else _REACHED.get(move.direction, "")
-            written = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
+            text = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
             is_sure = bool(reached) and (is_ahead or device is TIME)
-            fix = self._with(move, written) if is_sure else ""
-            self._exact(compared, move.span, "UNTIL", fix)
+            fix = self._with_condition(move, text) if is_sure else ""
+            self._report_exact(compared, move.span, "UNTIL", fix)
 
-    def _frozen(self, move: ir.Move, condition: ir.Expression, variables: list[int]) -> None:
+    def _report_frozen_until(
+        self, move: ir.Move, condition: ir.Expression, variables: list[int]
+    ) -> None:
         held = self._look.variables.sensors_of(variables)
         name = self._program.variables[variables[0]]
         sign = ">" if move.direction == "B" else "<"
@@ -108,10 +119,10 @@ class _Conditions:
         if held:
             values["sensor"] = held[name]
             asked = self._asking(condition, held, move.span, "UNTIL", move.direction)
-            values["fix"] = self._with(move, asked) if asked else ""
+            values["fix"] = self._with_condition(move, asked) if asked else ""
         self._look.report(codes.FROZEN_UNTIL, move.span, **values)
 
-    def _with(self, move: ir.Move, written: str) -> str:
+    def _with_condition(self, move: ir.Move, written: str) -> str:
         """Return a move as it is written, with another condition after UNTIL."""
         text = self._source[move.span]
         end = max((match.start() for match in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
@@ -119,25 +130,25 @@ class _Conditions:
 
     # -- WHILE and IF -------------------------------------------------------------------------
 
-    def while_(self, loop: ir.While) -> None:
-        self._frozen_while(loop)
+    def check_while(self, loop: ir.While) -> None:
+        self._report_frozen_while(loop)
         head = Span(loop.span.start, loop.span.start + len("WHILE"))
         if compared := self._comparison(loop.condition):
-            self._known(compared, head)
-        self._known_of_both(loop.condition, head)
+            self._report_known(compared, head)
+        self._report_known_of_both(loop.condition, head)
 
-    def if_(self, statement: ir.If, outermost: ir.Loop | ir.While | None) -> None:
-        self._late_arms(statement)
+    def check_if(self, statement: ir.If, outermost: ir.Loop | ir.While | None) -> None:
+        self._report_late_arms(statement)
         for arm in statement.arms:
-            self._subtracted(arm.condition, arm.span)
-            self._known_of_both(arm.condition, arm.span)
+            self._report_subtracted(arm.condition, arm.span)
+            self._report_known_of_both(arm.condition, arm.span)
             compared = self._comparison(arm.condition)
-            if compared and not self._known(compared, arm.span):
-                self._exact(compared, arm.span, "IF", "")
+            if compared and not self._report_known(compared, arm.span):
+                self._report_exact(compared, arm.span, "IF", "")
             if outermost is not None and _is_endless(outermost):
-                self._frozen_if(arm, outermost)
+                self._report_frozen_if(arm, outermost)
 
-    def _frozen_while(self, loop: ir.While) -> None:
+    def _report_frozen_while(self, loop: ir.While) -> None:
         condition = loop.condition
         variables = _variables(condition)
         if not variables or any(term.op in _CHANGING for term in condition):
@@ -163,7 +174,7 @@ class _Conditions:
             values["step"] = f"{name} = {name} {'-' if is_down else '+'} 1"
         self._look.report(codes.FROZEN_WHILE, head, **values)
 
-    def _frozen_if(self, arm: ir.Arm, outermost: ir.Loop | ir.While) -> None:
+    def _report_frozen_if(self, arm: ir.Arm, outermost: ir.Loop | ir.While) -> None:
         """`D = DISTANCE; LOOP(FOREVER); IF(D < 20) …`: it moves, and looks at what was before."""
         variables = _variables(arm.condition)
         held = self._look.variables.held_in(outermost, variables)
@@ -175,10 +186,10 @@ class _Conditions:
         fix = f"{word}({asked})" if asked else ""
         self._look.report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
 
-    def frozen_show(self, show: ir.Show, outermost: ir.Loop | ir.While) -> None:
+    def report_frozen_show(self, show: ir.Show, outermost: ir.Loop | ir.While) -> None:
         """`D = DISTANCE; LOOP(5); SHOW(D); W(1); END_LOOP`: each round shows the same."""
         variables = _variables(show.value) if len(show.value) == 1 else []
-        if variables and self._thrown_once(show, variables[0], outermost):
+        if variables and self._report_thrown_once(show, variables[0], outermost):
             return
         held = self._look.variables.held_in(outermost, variables)
         if not held:
@@ -191,33 +202,35 @@ class _Conditions:
         fix = f"SHOW({held[name]})"
         self._look.report(codes.FROZEN_WHILE, show.span, name=name, sensor=held[name], fix=fix)
 
-    def _thrown_once(self, show: ir.Show, variable: int, loop: ir.Loop | ir.While) -> bool:
+    def _report_thrown_once(self, show: ir.Show, variable: int, loop: ir.Loop | ir.While) -> bool:
         """`DICE = RANDOM(1, 6); LOOP(5); SHOW(DICE); END_LOOP`: five times the same number.
 
         It is said where the loop shows it in each round, shows nothing else that changes, and
         where the number is there for nothing else.
         """
         sets = [
-            each
-            for each in self._program.body
-            if isinstance(each, ir.Assign) and each.variable == variable
+            item
+            for item in self._program.body
+            if isinstance(item, ir.Assign) and item.variable == variable
         ]
         if len(sets) != 1 or self._look.variables.set_to[variable] != [sets[0].value]:
             return False
-        if all(term.op != "RANDOM" for term in sets[0].value) or _goes_once(loop):
+        if all(term.op != "RANDOM" for term in sets[0].value) or _runs_once(loop):
             return False
         term = ir.Term("VARIABLE", variable)
         is_only_shown = all(
-            isinstance(each, ir.Show)
-            for each in ir.every(self._program)
-            if any(term in expression for expression in ir.expressions(each))
+            isinstance(item, ir.Show)
+            for item in ir.every(self._program)
+            if any(term in expression for expression in ir.expressions(item))
         )
         shown = {
             term for show in ir.walk(loop.body) if isinstance(show, ir.Show) for term in show.value
         }
         others = [term for term in shown if term.op in _CHANGING or term.op == "VARIABLE"]
         is_before = sets[0].span.end <= loop.span.start
-        if not (is_before and is_only_shown and others == [term] and show in _each_round(loop)):
+        if not (
+            is_before and is_only_shown and others == [term] and show in _round_statements(loop)
+        ):
             return False
         name, said = self._program.variables[variable], self._source[sets[0].span]
         if not any(diagnostic.values.get("thrown") == name for diagnostic in self._look.found):
@@ -225,7 +238,7 @@ class _Conditions:
             self._look.report(codes.FROZEN_WHILE, show.span, thrown=name, within=within)
         return True
 
-    def _late_arms(self, statement: ir.If) -> None:
+    def _report_late_arms(self, statement: ir.If) -> None:
         """`IF(DISTANCE < 60) … ELSEIF(DISTANCE < 20)`: what is below 20 is below 60, too."""
         widest: dict[tuple[str, str], Comparison] = {}  # by sensor and the way of the sign
         for k, arm in enumerate(statement.arms[:_MOST_ARMS]):
@@ -240,22 +253,22 @@ class _Conditions:
                 self._look.report(codes.LATE_ARM, arm.span, wide=str(before),
                              narrow=str(compared))  # fmt: skip
 
-    def _known(self, compared: Comparison, span: Span) -> bool:
+    def _report_known(self, comparison: Comparison, span: Span) -> bool:
         """Warn where the answer is known: `LIGHT_L > 5000`, of a sensor that goes up to 1023."""
-        device = compared.device
-        answer = answer_of(compared)
+        device = comparison.device
+        answer = answer_of(comparison)
         if answer:
             self._look.report(codes.KNOWN_ANSWER, span, sensor=device.name, low=as_text(device.low),
                          high=as_text(device.high), answer=answer)  # fmt: skip
         return bool(answer)
 
-    def _known_of_both(self, condition: ir.Expression, span: Span) -> None:
+    def _report_known_of_both(self, condition: ir.Expression, span: Span) -> None:
         """`DISTANCE < 10 AND DISTANCE > 40`: no distance is both, and OR was meant."""
         answer, meant = answer_of_both(condition, self._kit)
         if answer:
             self._look.report(codes.KNOWN_ANSWER, span, answer=answer, either=meant)
 
-    def _subtracted(self, condition: ir.Expression, span: Span) -> None:
+    def _report_subtracted(self, condition: ir.Expression, span: Span) -> None:
         """`DISTANCE = 5-20`: no distance is -15, and between is asked with two signs."""
         asked = [term.op for term in condition]
         if asked != ["SENSOR", "NUMBER", "NUMBER", "SUB", "EQ"]:
@@ -268,8 +281,8 @@ class _Conditions:
             self._look.report(codes.KNOWN_ANSWER, span, sensor=name, low=low, high=high,
                          answer="answer_no", between=between)  # fmt: skip
 
-    def _exact(self, compared: Comparison, span: Span, word: str, fix: str) -> None:
-        device, op, number = compared
+    def _report_exact(self, comparison: Comparison, span: Span, word: str, fix: str) -> None:
+        device, op, number = comparison
         if op == "EQ" and is_between(device, number):
             self._look.report(codes.EXACT, span, sensor=device.name, number=as_text(number),
                          word=word, fix=fix)  # fmt: skip
@@ -295,27 +308,27 @@ class _Conditions:
             for term in condition
         )
         comes = comes_true(asking, direction, self._kit)
-        written = self._look.condition(span, word)
+        text = self._look.condition(span, word)
         if not comes and (comes is not None or direction):
             return ""
-        return re.sub(r"[A-Za-z_]\w*", lambda it: held.get(it[0].upper(), it[0]), written)
+        return re.sub(r"[A-Za-z_]\w*", lambda it: held.get(it[0].upper(), it[0]), text)
 
 
-def _goes_once(loop: ir.Loop | ir.While) -> bool:
+def _runs_once(loop: ir.Loop | ir.While) -> bool:
     times = loop.times if isinstance(loop, ir.Loop) else None
     return known_value(times) == 1000
 
 
-def _each_round(loop: ir.Loop | ir.While) -> list[ir.Statement]:
+def _round_statements(loop: ir.Loop | ir.While) -> list[ir.Statement]:
     """Return the statements of a loop that no IF is around."""
-    found: list[ir.Statement] = []
+    statements: list[ir.Statement] = []
     rest: list[ir.Loop | ir.While] = [loop]
     while rest:
-        for each in rest.pop().body:
-            found.append(each)
-            if isinstance(each, (ir.Loop, ir.While)):
-                rest.append(each)
-    return found
+        for item in rest.pop().body:
+            statements.append(item)
+            if isinstance(item, (ir.Loop, ir.While)):
+                rest.append(item)
+    return statements
 
 
 def _variables(condition: ir.Expression) -> list[int]:

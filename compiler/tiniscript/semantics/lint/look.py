@@ -89,31 +89,31 @@ class Variables:
 
     def set_in(self, body: ir.Body) -> set[int]:
         """Return the variables that a body, or a DEF that it calls, gives a value."""
-        found = set()
+        result = set()
         for statement in ir.walk(body):
             if isinstance(statement, ir.Assign):
-                found.add(statement.variable)
+                result.add(statement.variable)
             elif isinstance(statement, ir.Call) and statement.procedure < len(self._sets):
-                found |= self._sets[statement.procedure]
-        return found
+                result |= self._sets[statement.procedure]
+        return result
 
     def sensors_of(self, variables: list[int]) -> dict[str, str]:
         """Return the sensor that each of these variables holds; nothing where one holds another."""
-        held = {}
+        result = {}
         for variable in variables:
             values = set(self.set_to.get(variable, ()))
             value = next(iter(values)) if len(values) == 1 else ()
             if len(value) != 1 or value[0].op != "SENSOR":
                 return {}
             name = self._program.variables[variable]
-            held[name] = self._kit.readings[value[0].value].name
-        return held
+            result[name] = self._kit.readings[value[0].value].name
+        return result
 
     def held_in(self, loop: ir.Loop | ir.While, variables: list[int]) -> dict[str, str]:
         """Return `sensors_of` where a loop drives and gives none of the variables a value."""
         place = loop.span.start
         if place not in self._in_loops:
-            drives = any(isinstance(each, (ir.Move, ir.Motors)) for each in ir.walk(loop.body))
+            drives = any(isinstance(item, (ir.Move, ir.Motors)) for item in ir.walk(loop.body))
             self._in_loops[place] = self.set_in(loop.body) if drives else None
         changed = self._in_loops[place]
         is_held = changed is not None and not changed & set(variables)
@@ -125,9 +125,9 @@ class Variables:
         if place not in self._used:
             self._used[place] = {
                 term
-                for each in ir.walk((loop,))
-                for expression in ir.expressions(each)
+                for item in ir.walk((loop,))
+                for expression in ir.expressions(item)
                 for term in expression
-                if term.op == "SENSOR" or not isinstance(each, ir.Show)
+                if term.op == "SENSOR" or not isinstance(item, ir.Show)
             }
         return self._used[place]

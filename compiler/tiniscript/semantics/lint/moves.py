@@ -25,7 +25,7 @@ _TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
 _POWERS = range(20_000, 100_001)  # and a power
 
 
-def late_conditions(body: ir.Body, around: Around, look: Look) -> None:
+def report_late_conditions(body: ir.Body, around: Around, look: Look) -> None:
     """Look at the statements of a body, not at those within them."""
     _LateConditions(look).look_at(body, around.loop)
 
@@ -43,7 +43,7 @@ class _LateConditions:
             self._in_while(loop)
         for k, statement in enumerate(body):
             if isinstance(statement, ir.If) and k not in late:
-                self._idle_stop(body, k, statement, loop)
+                self._report_idle_stop(body, k, statement, loop)
 
     def _in_loop(self, body: ir.Body) -> set[int]:
         """Find a long move, then a look at a distance: the robot drives blind in between.
@@ -64,13 +64,13 @@ class _LateConditions:
             comes = comes_true(condition, statement.direction, self._kit)
             if sensor is not None and comes:
                 asked = self._look.condition(branch.arms[0].span, "IF")
-                self._late(statement, sensor, asked)
+                self._report_late_check(statement, sensor, asked)
                 late.add(place)
         return late
 
     def _in_while(self, loop: ir.While) -> None:
         """`WHILE(DISTANCE > 20); F(5, 60); END_WHILE`: it looks every 5 s."""
-        body = [each for each in loop.body if not isinstance(each, _PASSED_OVER)]
+        body = [item for item in loop.body if not isinstance(item, _PASSED_OVER)]
         condition = loop.condition
         if len(body) != 1 or len(condition) != 3 or condition[2].op not in _GREATER:
             return
@@ -82,21 +82,21 @@ class _LateConditions:
             sign = OPPOSITES[SIGN_OF[condition[2].op]]
             device, number = self._kit.readings[sensor], condition[1].value
             if looks_ahead(device) and device.low < number <= device.high:
-                self._late(move, sensor, f"{device.name} {sign} {as_text(number)}")
+                self._report_late_check(move, sensor, f"{device.name} {sign} {as_text(number)}")
 
-    def _late(self, move: ir.Move, sensor: int, asked: str) -> None:
+    def _report_late_check(self, move: ir.Move, sensor: int, asked: str) -> None:
         name = self._kit.readings[sensor].name
-        written = self._source[move.span]
+        text = self._source[move.span]
         values = {
             "word": move.direction,
             "time": as_text(_time(move) or 0),
             "sensor": name,
-            "move": written,
-            "fix": f"{written} UNTIL({asked})" if asked else "",
+            "move": text,
+            "fix": f"{text} UNTIL({asked})" if asked else "",
         }
         self._look.report(codes.LATE_CHECK, move.span, **values)
 
-    def _idle_stop(
+    def _report_idle_stop(
         self, body: ir.Body, k: int, branch: ir.If, loop: ir.Loop | ir.While | None
     ) -> None:
         """`F(5, 60); IF(DISTANCE < 20); S; ENDIF`: its S stops what stands."""
@@ -106,7 +106,7 @@ class _LateConditions:
             return
         before = _nearest(body, range(k - 1, -1, -1))
         after = _nearest(body, range(k + 1, len(body)))
-        stands = [each for each in branch.arms[0].body if isinstance(each, (ir.Move, ir.Beep))]
+        stands = [item for item in branch.arms[0].body if isinstance(item, (ir.Move, ir.Beep))]
         if any(isinstance(move, ir.Move) and move.direction == "W" for move in stands):
             return  # S with its wait is a pause
         pauses = bool(stands)
@@ -122,7 +122,7 @@ class _LateConditions:
                     return  # it drives away from what is near
                 values = self._idle(stop, move, place, branch)
                 if values["fix"]:
-                    values |= self._instead(body, move, branch)
+                    values |= self._replacement_values(body, move, branch)
                 if place == "move" or not pauses:
                     self._look.report(codes.IDLE_STOP, stop.span, **values)
                 return
@@ -151,21 +151,21 @@ class _LateConditions:
             values["needless" if place == "move" else "behind"] = written
         return values
 
-    def _instead(self, body: ir.Body, move: ir.Move, branch: ir.If) -> dict[str, str]:
+    def _replacement_values(self, body: ir.Body, move: ir.Move, branch: ir.If) -> dict[str, str]:
         """Return what the move with its UNTIL takes the place of: all of it, or the move alone."""
         first, last = sorted((move.span, branch.span))
         begin, there, end = (
             str(self._source.position(at)[0])
             for at in (first.start, branch.span.start, last.end - 1)
         )
-        between = [each for each in body if first.end <= each.span.start < last.start]
+        between = [item for item in body if first.end <= item.span.start < last.start]
         of = self._source[move.span]
         if len(branch.arms[0].body) > 1:
             return {"of": of, "rest": there}
         text = self._source.text
         beside = text[: first.start].rpartition("\n")[2] + text[last.end :].partition("\n")[0]
         is_alone = begin == end or not beside.partition("//")[0].strip()
-        if any(not isinstance(each, ir.Read) for each in between) or not is_alone:
+        if any(not isinstance(item, ir.Read) for item in between) or not is_alone:
             return {"of": of, "out": there}
         if begin == end:
             return {"all": self._source[Span(first.start, last.end)]}
@@ -219,15 +219,15 @@ def _is_talk(statement: ir.Statement) -> bool:
     return is_wait or isinstance(statement, (ir.Read, ir.Show, ir.Beep))
 
 
-def unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
+def report_unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
     """Warn of each M of a body that the robot does not do for a while."""
     source = look.source
     for k, motors in enumerate(body):
         if not isinstance(motors, ir.Motors) or _is_still(motors):
             continue
         rest = (body[at] for at in range(k + 1, len(body)))
-        after = next((each for each in rest if not isinstance(each, _TAKE_NO_TIME)), None)
-        if isinstance(after, ir.If) and all(map(_takes_no_time, (after, *rest))):
+        after = next((item for item in rest if not isinstance(item, _TAKE_NO_TIME)), None)
+        if isinstance(after, ir.If) and all(map(_is_instant, (after, *rest))):
             after = None
         if isinstance(after, ir.Motors) and after[:2] == motors[:2]:
             continue  # they are set again to the same
@@ -245,14 +245,12 @@ def unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
         look.report(codes.UNSEEN_MOTORS, motors.span, **values)
 
 
-def _takes_no_time(statement: ir.Statement) -> bool:
+def _is_instant(statement: ir.Statement) -> bool:
     """Also an IF that is over at once, whatever the answer is."""
     if not isinstance(statement, ir.If):
         return isinstance(statement, _TAKE_NO_TIME)
     bodies = (statement.otherwise, *(arm.body for arm in statement.arms))
-    return all(
-        isinstance(each, ir.Stop) or _takes_no_time(each) for body in bodies for each in body
-    )
+    return all(isinstance(item, ir.Stop) or _is_instant(item) for body in bodies for item in body)
 
 
 def _is_still(motors: ir.Motors) -> bool:

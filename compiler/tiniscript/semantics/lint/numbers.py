@@ -43,7 +43,7 @@ _OF_ROUND = 4  # tokens after its word, up to the second value
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
-def will_fault(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
+def report_will_fault(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
     for expression in ir.expressions(statement):
         fault = sure_fault(fold(expression))
         if fault:
@@ -51,7 +51,7 @@ def will_fault(statement: ir.Statement | ir.Task, around: Around, look: Look) ->
             return
 
 
-def of_times(loop: ir.Loop, around: Around, look: Look) -> None:
+def check_times(loop: ir.Loop, around: Around, look: Look) -> None:
     """`LOOP(0)`, `LOOP(-1)`, which other languages take for one without an end; `LOOP(4.5)`."""
     times = known_value(loop.times)
     head = Span(loop.span.start, loop.span.start + len("LOOP"))
@@ -61,11 +61,11 @@ def of_times(loop: ir.Loop, around: Around, look: Look) -> None:
         look.report(codes.ROUNDED_TIMES, head, times=as_text(times), right=str(whole(times)))
 
 
-def of_move(move: Move, around: Around, look: Look) -> None:
-    look.found += _of_way(move, look.kit) if move.unit else _of_time(move, look)
+def check_move(move: Move, around: Around, look: Look) -> None:
+    look.found += _check_way(move, look.kit) if move.unit else _check_time(move, look)
 
 
-def _of_time(move: Move, look: Look) -> list[Diagnostic]:
+def _check_time(move: Move, look: Look) -> list[Diagnostic]:
     """Return the warnings about the numbers of a move or a wait by its time.
 
     It is one thing at most, and for `R(03, 2)` what is said of its power, too. With UNTIL a long
@@ -75,9 +75,9 @@ def _of_time(move: Move, look: Look) -> list[Diagnostic]:
     text, is_ended = look.source[move.span], move.until is not None
     zero = None if is_ended else _ZERO.match(text) or _ZERO_OF_TURN.match(text)
     if time is None:
-        return _of_power(move) if is_ended else _measured(move, kit, text)
+        return _check_power(move) if is_ended else _measured(move, kit, text)
     if time <= 0 and not is_ended:
-        return [Diagnostic(codes.MOVE_OF_NO_TIME, move.span, {"word": move.direction})]
+        return [Diagnostic(codes.ZERO_TIME_MOVE, move.span, {"word": move.direction})]
     if zero is not None:  # `L(039, 60)`
         fix = f"{text[: zero.start(1)]}0.{zero[1][1:]}{text[zero.end(1) :]}"
         is_sure = len(zero[1]) > 2 and not zero[1].startswith("00")
@@ -85,7 +85,7 @@ def _of_time(move: Move, look: Look) -> list[Diagnostic]:
         if len(zero[1]) == 2:  # 3 seconds or 0.3
             values["point"] = f"0.{zero[1][1:]}"
         at = Span(move.span.start + zero.start(1), move.span.start + zero.end(1))
-        return [Diagnostic(codes.ZERO_BEFORE, at, values, move.span), *_of_power(move)]
+        return [Diagnostic(codes.ZERO_BEFORE, at, values, move.span), *_check_power(move)]
     if _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
         until = _UNTIL.search(text) if is_ended else None
@@ -93,21 +93,21 @@ def _of_time(move: Move, look: Look) -> list[Diagnostic]:
         values = {"time": seconds, "power": percent, "fix": fix}
         return [Diagnostic(codes.SWAPPED, move.span, values)]
     may_last = is_ended and not (move.direction in ("L", "R") and kit.turn)
-    return ([] if may_last else _long(move, time, power, kit, text)) or _of_power(move)
+    return ([] if may_last else _long(move, time, power, kit, text)) or _check_power(move)
 
 
-def _of_way(move: Move, kit: Kit) -> list[Diagnostic]:
+def _check_way(move: Move, kit: Kit) -> list[Diagnostic]:
     """Return the warning about a move by its way: what its numbers surely make."""
     way = known_value(move.time)
     if way is not None and way <= 0:
         values = {"word": move.direction, "unit": move.unit}
-        return [Diagnostic(codes.MOVE_OF_NO_TIME, move.span, values)]
+        return [Diagnostic(codes.ZERO_TIME_MOVE, move.span, values)]
     try:
         way_ms(move, kit)
     except Fault as fault:
         values = {"fault": fault.name, "unit": move.unit if fault.name == "NO_POWER" else ""}
         return [Diagnostic(codes.WILL_FAULT, move.span, values)]
-    return _of_power(move)
+    return _check_power(move)
 
 
 def _measured(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
@@ -131,7 +131,7 @@ def _measured(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
     return [Diagnostic(codes.LONG_TIME, move.span, values)]
 
 
-def _of_power(move: Move) -> list[Diagnostic]:
+def _check_power(move: Move) -> list[Diagnostic]:
     """Return the warning about a power that moves no robot, or that is too much."""
     time, power = known_value(move.time), known_value(move.power)
     diagnostics = [] if move.power is None else _cut(move.power, POWER, move.span, move.direction)
@@ -191,12 +191,12 @@ def _is_milliseconds(time: int) -> bool:
     return is_whole and (time % (500 * SECOND) == 0 or time % (30 * SECOND) != 0)
 
 
-def of_beep(beep: Beep, around: Around, look: Look) -> None:
+def check_beep(beep: Beep, around: Around, look: Look) -> None:
     """Warn of a sound that lasts longer than anybody can bear."""
     time, hertz = known_value(beep.time), known_value(beep.hertz)
     look.found += _cut(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:
-        look.report(codes.MOVE_OF_NO_TIME, beep.span, word="BEEP")
+        look.report(codes.ZERO_TIME_MOVE, beep.span, word="BEEP")
     if time is None or hertz is None or time < LONG_BEEP:
         return
     # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
@@ -213,7 +213,7 @@ def of_beep(beep: Beep, around: Around, look: Look) -> None:
     look.report(codes.LONG_TIME, beep.span, time=as_text(time), **gaps)
 
 
-def swapped_rounds(look: Look) -> None:
+def report_swapped_rounds(look: Look) -> None:
     """`ROUND(1, DISTANCE)`: a whole number is rounded, to as many decimals as something else."""
     tokens = [token for token in look.scan.tokens if token.kind is not NEWLINE]
     for k, token in enumerate(tokens[:-_OF_ROUND]):
@@ -234,7 +234,7 @@ def swapped_rounds(look: Look) -> None:
             look.report(codes.SWAPPED, span, number=number.text, value=value, fix=fix)
 
 
-def swapped_names(move: Move, around: Around, look: Look) -> None:
+def report_swapped_names(move: Move, around: Around, look: Look) -> None:
     """`F(SPEED, TIME_S)`: variables that are set once, in the wrong order by name and number."""
     if move.until is not None or move.time is None or move.power is None or move.unit:
         return
@@ -264,11 +264,11 @@ def _is_swapped(time: int, power: int | None) -> bool:
     return power is not None and LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER
 
 
-def _cut(expression: Expression, its: Argument, span: Span, word: str) -> list[Diagnostic]:
+def _cut(expression: Expression, argument: Argument, span: Span, word: str) -> list[Diagnostic]:
     """`BEEP(0.2, 440-660)`: the robot takes the lowest or the highest value instead."""
     value = known_value(expression)
-    if value is None or its.low <= value <= its.high:
+    if value is None or argument.low <= value <= argument.high:
         return []
-    taken = as_text(its.low if value < its.low else its.high)
-    values = {"word": word, "value": as_text(value), "unit": its.unit, "taken": taken}
+    taken = as_text(argument.low if value < argument.low else argument.high)
+    values = {"word": word, "value": as_text(value), "unit": argument.unit, "taken": taken}
     return [Diagnostic(codes.CUT_VALUE, span, values)]

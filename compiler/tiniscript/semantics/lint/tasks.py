@@ -1,4 +1,4 @@
-"""Warns of tasks: of two that drive at once, and of one that is over where another was meant.
+"""Warns of tasks: of two that drive at once, of one alone, and of one that is over too soon.
 
 The lower of two waits, or never gets the motors; that is not said where a task lets the motors go
 now and then, as far as that can be seen. `TASK;BEEP(0.2, 440);W(1);END_TASK` waits before nothing,
@@ -21,7 +21,7 @@ _HEAD = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
 _TAKES_NO_TIME = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call)
 
 
-def kept_motors(look: Look) -> None:
+def report_kept_motors(look: Look) -> None:
     """Warn of each task that waits for a higher TASK, or never drives again."""
     program = look.program
     motors = _Motors(program)
@@ -31,11 +31,11 @@ def kept_motors(look: Look) -> None:
     lower = [*(task.body for task in tasks), program.body]
     for task in tasks:
         del lower[0]
-        is_stopped = any(isinstance(each, ir.Stop) for body in higher for each in all_of(body))
+        is_stopped = any(isinstance(item, ir.Stop) for body in higher for item in all_of(body))
         if not is_stopped and motors.are_kept(task.body):
             line = str(look.source.position(task.span.start)[0])
             for body in lower:
-                waiting = next(filter(_drives, all_of(_endless(body))), None)
+                waiting = next(filter(_is_move, all_of(_endless_part(body))), None)
                 if waiting is not None:
                     look.report(codes.NO_MOTORS, waiting.span, line=line)
             return
@@ -45,12 +45,12 @@ def kept_motors(look: Look) -> None:
 
 def _take_turns(tasks: list[ir.Body], look: Look) -> None:
     """`TASK;F(4, 60);END_TASK;TASK;R(4, 60);END_TASK`: they take turns, and make no curve."""
-    begin = [body[0] for body in (*tasks, look.program.body) if body and _drives(body[0])]
+    begin = [body[0] for body in (*tasks, look.program.body) if body and _is_move(body[0])]
     if len(begin) < 2 or not tasks[0] or begin[0] is not tasks[0][0]:
         return
     first = look.source[begin[0].span]
-    for each in begin[1:]:
-        look.report(codes.NO_MOTORS, each.span, first=first, both="M(60, 30);W(4)")
+    for item in begin[1:]:
+        look.report(codes.NO_MOTORS, item.span, first=first, both="M(60, 30);W(4)")
 
 
 class _Motors:
@@ -59,59 +59,62 @@ class _Motors:
 
     def are_kept(self, body: ir.Body) -> bool:
         """Whether a task surely drives for ever at its end, and never lets the motors go there."""
-        rest = _endless(body)
+        rest = _endless_part(body)
         if not any(
-            isinstance(each, ir.Motors) or (_drives(each) and _lasts(each)) for each in rest
+            isinstance(item, ir.Motors) or (_is_move(item) and _takes_time(item)) for item in rest
         ):
             return False
-        return self._repeated(rest, False) is not None or self._repeated(rest, True) is True
+        return (
+            self._wants_motors_in_loop(rest, False) is not None
+            or self._wants_motors_in_loop(rest, True) is True
+        )
 
-    def _after(self, body: ir.Body, wants: bool) -> bool | None:
+    def _wants_motors_after(self, body: ir.Body, wants: bool) -> bool | None:
         """Return whether the motors are wanted after a body, None where it may let them go."""
-        found: bool | None = wants
+        result: bool | None = wants
         for call in body:
-            if found is None or isinstance(call, ir.Break):
+            if result is None or isinstance(call, ir.Break):
                 return None
             if isinstance(call, ir.Motors):
-                found = True
-            elif isinstance(call, ir.Stop) or _drives(call):
-                found = False
+                result = True
+            elif isinstance(call, ir.Stop) or _is_move(call):
+                result = False
             elif isinstance(call, (ir.Move, ir.Beep)):
-                found = found or None
+                result = result or None
             elif isinstance(call, ir.Call):
-                found = self._after(self._procedures[call.procedure].body, found)
+                result = self._wants_motors_after(self._procedures[call.procedure].body, result)
             elif isinstance(call, ir.If):
-                arms = [self._after(arm, found) for arm in ir.bodies(call)]
-                found = None if None in arms else all(arms)
+                arms = [self._wants_motors_after(arm, result) for arm in ir.bodies(call)]
+                result = None if None in arms else all(arms)
             elif isinstance(call, (ir.Loop, ir.While)):
-                found = self._repeated(call.body, found)
-        return found
+                result = self._wants_motors_in_loop(call.body, result)
+        return result
 
-    def _repeated(self, body: ir.Body, wants: bool) -> bool | None:
-        once = self._after(body, wants)
-        if once is None or self._after(body, once) is None:
+    def _wants_motors_in_loop(self, body: ir.Body, wants: bool) -> bool | None:
+        once = self._wants_motors_after(body, wants)
+        if once is None or self._wants_motors_after(body, once) is None:
             return None
-        takes_time = once or any(map(_lasts, body))  # else a turn of it waits for 1 ms
+        takes_time = once or any(map(_takes_time, body))  # else a turn of it waits for 1 ms
         return wants and once if takes_time else None
 
 
-def brief_tasks(look: Look) -> None:
+def report_brief_tasks(look: Look) -> None:
     """Warn of a TASK that is done once, and of a WHEN whose S lasts no longer than its answer."""
     program = look.program
     lower = [program.body, *(task.body for task in program.tasks if task.look is None)]
     driving = [
         body[-1] for body in lower
-        if any(map(_drives, ir.with_calls(_endless(body), program.procedures)))
+        if any(map(_is_move, ir.with_calls(_endless_part(body), program.procedures)))
     ]  # fmt: skip
     for task in program.tasks:
         done = [*ir.with_calls(task.body, program.procedures)]
         if task.look is None:
             if task.body and _is_pause(task.body[-1]) and not any(map(_repeats, done)):
-                look.found.append(_done_once(task, look.source))
+                look.found.append(_single_run_diagnostic(task, look.source))
         elif driving and known_value(task.look.condition) is None:
-            is_brief = all(isinstance(each, _TAKES_NO_TIME) for each in done)
-            if is_brief and any(isinstance(each, ir.Stop) for each in done):
-                _goes_on(task, driving[0], look)
+            is_brief = all(isinstance(item, _TAKES_NO_TIME) for item in done)
+            if is_brief and any(isinstance(item, ir.Stop) for item in done):
+                _report_resumed_move(task, driving[0], look)
 
 
 def _is_pause(statement: ir.Statement) -> bool:
@@ -123,7 +126,7 @@ def _repeats(statement: ir.Statement) -> bool:
     return isinstance(statement, (ir.Loop, ir.While))
 
 
-def _done_once(task: ir.Task, source: Source) -> Diagnostic:
+def _single_run_diagnostic(task: ir.Task, source: Source) -> Diagnostic:
     """It says to write a loop around all of it, on lines of its own where the TASK has them."""
     text = source[task.span]
     end = re.search(r"\w+\Z", text)
@@ -135,7 +138,28 @@ def _done_once(task: ir.Task, source: Source) -> Diagnostic:
     return Diagnostic(codes.TASK_DONE_ONCE, task.word, {}, None, Repair(edits, False))
 
 
-def _goes_on(task: ir.Task, driving: ir.Statement, look: Look) -> None:
+def report_lone_task(look: Look) -> None:
+    """`TASK;F(5, 50);BEEP(5, 440);END_TASK` alone: in it one comes after the other."""
+    program = look.program
+    is_idle = all(isinstance(each, (ir.Read, ir.Assign)) for each in program.body)
+    (task, *others) = program.tasks
+    if others or task.look is not None or not task.body or not is_idle:
+        return
+    text = look.source[task.span]
+    both = [each for each in task.body if not isinstance(each, ir.Read)]
+    beside = sorted(both, key=_is_move)
+    if [*map(_is_move, beside)] != [False, True] or not isinstance(beside[0], ir.Beep):
+        look.report(codes.LONE_TASK, task.word)
+        return
+    parts = ["TASK", look.source[beside[0].span], "END_TASK", look.source[beside[1].span]]
+    edit = Edit(task.span, ("\n" if "\n" in text else ";").join(parts))
+    repair = None if "//" in text or not isinstance(beside[1], ir.Move) else Repair((edit,), False)
+    values = {"fix": ";".join(parts)} if repair else {}
+    place = task.span if repair else None
+    look.found.append(Diagnostic(codes.LONE_TASK, task.word, values, place, repair))
+
+
+def _report_resumed_move(task: ir.Task, driving: ir.Statement, look: Look) -> None:
     head = re.match(_HEAD, look.source[task.span])
     values = {"line": str(look.source.position(driving.span.start)[0])}
     if head is not None:
@@ -147,7 +171,7 @@ def _goes_on(task: ir.Task, driving: ir.Statement, look: Look) -> None:
     look.report(codes.WHEN_GOES_ON, stop.span, **values)
 
 
-def _endless(body: ir.Body) -> ir.Body:
+def _endless_part(body: ir.Body) -> ir.Body:
     """Return what a body does for ever at its end: a move, or what a loop repeats."""
     last = body[-1] if body else None
     if isinstance(last, ir.Loop) and last.times is None:
@@ -156,13 +180,13 @@ def _endless(body: ir.Body) -> ir.Body:
     return body[-1:] if is_move else ()
 
 
-def _drives(statement: ir.Statement) -> bool:
+def _is_move(statement: ir.Statement) -> bool:
     return isinstance(statement, ir.Motors) or (
         isinstance(statement, ir.Move) and statement.power is not None
     )
 
 
-def _lasts(statement: ir.Statement) -> bool:
+def _takes_time(statement: ir.Statement) -> bool:
     """Whether a statement surely takes time."""
     if not isinstance(statement, (ir.Move, ir.Beep)):
         return False

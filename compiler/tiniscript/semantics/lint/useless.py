@@ -33,7 +33,7 @@ LONGEST = 200  # characters of a note that is looked at
 # -- what is never done ----------------------------------------------------------------------
 
 
-def never_reached(body: ir.Body, around: Around, look: Look) -> None:
+def report_never_reached(body: ir.Body, around: Around, look: Look) -> None:
     """What stands after a loop without an end, or after BREAK."""
     for before, after in pairwise(body):
         if not ir.goes_on((before,)):
@@ -46,7 +46,7 @@ def never_reached(body: ir.Body, around: Around, look: Look) -> None:
             return
 
 
-def in_notes(look: Look) -> None:
+def report_instructions_in_notes(look: Look) -> None:
     """`F(2, 80)//R(1, 60)`: instructions that stand in a note.
 
     Only a note that is a row of calls with numbers, or that has such a call after a `;`, is taken
@@ -56,7 +56,7 @@ def in_notes(look: Look) -> None:
     source, tokens = look.source, look.scan.tokens
     short = [comment for comment in look.scan.comments if len(comment.text) <= LONGEST]
     if all(token.kind in AT_END for token in tokens):
-        _all_of_it(short, look)
+        _report_all_notes(short, look)
         return
     rows = [token for token in short if re.fullmatch(_CALLS, token.text) or swallowed(token.text)]
     is_ping = [token.text for token in tokens[:2]] == ["PING", "|"]
@@ -70,11 +70,11 @@ def in_notes(look: Look) -> None:
             continue
         if _ends_instruction(tokens, k) and not is_ping:
             rest = "; ".join(swallowed(note.text))
-            said = rest or note.text.strip("/; \t")
-            look.report(codes.IN_A_NOTE, note.span, found=said, rest=rest)
+            text = rest or note.text.strip("/; \t")
+            look.report(codes.IN_A_NOTE, note.span, found=text, rest=rest)
 
 
-def _all_of_it(notes: Sequence[Token], look: Look) -> None:
+def _report_all_notes(notes: Sequence[Token], look: Look) -> None:
     """`// I go F(1, 80); W(2)`, where the program is nothing but notes."""
     for note in notes:
         rest = "; ".join(re.findall(_CALL, note.text, re.IGNORECASE))
@@ -89,10 +89,10 @@ def swallowed(note: str) -> list[str]:
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
     first, *others = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
-    found = [other for other in others if re.fullmatch(_CALL_IN_IT, other)]
-    is_row = all(each in found or not set("()") & set(each) for each in (first, *others))
-    is_row = is_row and bool(found) and found != ["S"] * len(found)
-    return found if is_row and first else []
+    matches = [other for other in others if re.fullmatch(_CALL_IN_IT, other)]
+    is_row = all(item in matches or not set("()") & set(item) for item in (first, *others))
+    is_row = is_row and bool(matches) and matches != ["S"] * len(matches)
+    return matches if is_row and first else []
 
 
 def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
@@ -113,7 +113,7 @@ def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
 # -- blocks ----------------------------------------------------------------------------------
 
 
-def busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> None:
+def report_busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> None:
     """`WHILE(TRUE);X = DISTANCE;END_WHILE`: it never ends, and nothing in it takes time."""
     procedures = look.program.procedures
     if (
@@ -134,7 +134,7 @@ def _is_forever(loop: ir.Loop | ir.While) -> bool:
     return known_value(loop.condition) == 1
 
 
-def empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
+def report_empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
     """`LOOP(4)`, `END_LOOP`, and the moves below: beside what was probably meant to be in it.
 
     Nothing is said of an endless LOOP or a WHILE, which wait, nor of a block with a note inside or
@@ -150,8 +150,10 @@ def empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
             continue
         word = "IF" if isinstance(statement, ir.If) else "LOOP"
         span = Span(statement.span.start, statement.span.start + _end_of_head(text))
-        after = _said(body[k + 1 :], source)
-        before = [] if after else _said(body[k - 1 :: -1] if k else (), source)[::-1]
+        after = _leading_instructions(body[k + 1 :], source)
+        before = (
+            [] if after else _leading_instructions(body[k - 1 :: -1] if k else (), source)[::-1]
+        )
         if not after and not before:
             continue
         shown, end = " ".join(source[span].split()), BLOCK_ENDS[word]
@@ -180,7 +182,7 @@ def _is_empty(statement: ir.Statement) -> bool:
     return False
 
 
-def _said(statements: Sequence[ir.Statement], source: Source) -> list[str]:
+def _leading_instructions(statements: Sequence[ir.Statement], source: Source) -> list[str]:
     """Return the instructions at the beginning of a row that are no blocks, as written."""
     plain = takewhile(
         lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While, ir.Break)), statements
@@ -191,7 +193,7 @@ def _said(statements: Sequence[ir.Statement], source: Source) -> list[str]:
 # -- what nobody uses ------------------------------------------------------------------------
 
 
-def unused_variables(look: Look) -> None:
+def report_unused_variables(look: Look) -> None:
     program = look.program
     used = ir.named("VARIABLE", look.statements)
     owners = {k: procedure for procedure in program.procedures for k in procedure.values}
@@ -206,7 +208,7 @@ def unused_variables(look: Look) -> None:
             look.report(codes.UNUSED_VARIABLE, statement.span, **values)
 
 
-def unused_readings(look: Look) -> None:
+def report_unused_readings(look: Look) -> None:
     """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
     asked = ir.named("SENSOR", look.statements)
     for statement in look.statements:
@@ -216,7 +218,7 @@ def unused_readings(look: Look) -> None:
             look.report(codes.UNUSED_READING, statement.span, name=name, fix=f"SHOW({name})")
 
 
-def unused_defs(look: Look) -> None:
+def report_unused_defs(look: Look) -> None:
     called = {
         statement.procedure for statement in look.statements if isinstance(statement, ir.Call)
     }

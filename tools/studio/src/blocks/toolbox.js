@@ -4,7 +4,7 @@
 
 import { devices } from './shapes.js';
 import { known, text } from '../page/texts.js';
-import { FIXED } from '../page/words.js';
+import { PLAIN, plainKind } from '../page/words.js';
 
 /** @typedef {'few' | 'usual' | 'all'} Level */
 /** @typedef {{names: string[], words: [string, number][]}} Used names of variables, and own words with the count of their values */
@@ -32,9 +32,9 @@ function item(type, values = [], word = '') {
   return { kind: 'block', type, inputs, ...(word ? { fields: { WORD: word } } : {}) };
 }
 
-/** @param {typeof FIXED[number]} word @returns {Item} */
-function fixed({ text, arguments: values }) {
-  return item(values.length ? `fixed_${values.length}` : 'fixed', values.map(({ sample }) => Number(sample)), text);
+/** @param {typeof PLAIN[number]} word @returns {Item} */
+function plain({ text, arguments: values }) {
+  return item(plainKind(values.length), values.map(({ sample }) => Number(sample)), text);
 }
 
 /** @param {string} name of a word of one's own @param {number} count of its values @returns {Item} */
@@ -90,7 +90,7 @@ function groups(used) {
     ]],
     ['time', [
       ['few', item('wait', [1])], ['few', item('beep', [0.5, 440])], ['usual', item('show', [1])],
-      ...FIXED.map((word) => /** @type {[Level, Item]} */ (['few', fixed(word)])),
+      ...PLAIN.map((word) => /** @type {[Level, Item]} */ (['few', plain(word)])),
       ['usual', until('wait_until', [5])], ['all', item('time')], ['all', item('endless')],
     ]],
     ['control', [

@@ -8,8 +8,6 @@ import { called, hasText, text } from './texts.js';
 
 /** @typedef {{text: string, role: string, example: string}} Word */
 
-/** Words that stand for an instruction with its values. */
-export const FIXED = description.words.filter((word) => word.role === 'fixed');
 export const ROBOTS = description.robots;
 export const MOST_PARAMETERS = description.most_parameters;
 
@@ -60,6 +58,10 @@ export function nameOf(device) {
 export const KINDS = /** @type {Record<string, Kind>} */ (blocks.kinds);
 /** @type {Record<string, string>} */
 const SAYS = blocks.says;
+
+/** @param {number} count of values @returns {string} the kind of the words that have none of their own, as `block_kinds.py` calls it */
+export const plainKind = (count) => (count ? `plain_${count}` : 'plain');
+export const PLAIN = description.words.filter(({ text: word, arguments: values }) => KINDS[plainKind(values.length)]?.words.includes(word));
 
 /** @param {string} name of a kind of block, or of what may be chosen @returns {string} its words; `%1` and so on are where values go */
 export function onBlock(name) {

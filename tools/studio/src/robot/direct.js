@@ -24,6 +24,8 @@ const LOOK_MS = 100; // between two looks at the latest
 const CLOSE_MS = 10_000; // for the last write and the end of a port: the next connection waits no longer
 const STOP = new Uint8Array(LINK.stop_bytes); // zeros stop a robot, whatever it hears
 const LOCK = 'tiniscript-robot';
+/** What is said of bytes that are no robot's yet: it may answer late. */
+const LATE = new Set(['link_other', 'link_foreign']);
 
 /** The connections before, until their ports are closed. @type {Promise<unknown>} */
 let parting = Promise.resolve();
@@ -128,7 +130,7 @@ export class DirectRobot extends Asking {
         answer = await this.ask({ do: 'hello', limit_ms: LINK.cable_answer_ms });
       }
       // What is heard may be a robot that answers late.
-      if (answer.failure === 'link_other') answer = await this.ask({ do: 'hello', limit_ms: LINK.radio_answer_ms });
+      if (LATE.has(answer.failure ?? '')) answer = await this.ask({ do: 'hello', limit_ms: LINK.radio_answer_ms });
     }
     if (!answer.robot) throw new Failed(answer.failure ?? 'bug', [answer.said, answer.advice].join(' ').trim());
     return answer.robot;

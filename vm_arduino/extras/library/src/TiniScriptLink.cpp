@@ -103,7 +103,7 @@ void TiniLink::take(bool is_live) {
   status_.saved = Saved::kMemory;
 }
 
-void TiniLink::seal(const uint8_t* image) {
+void TiniLink::has_checksum(const uint8_t* image) {
   if (image == held()) status_.program = checksum_of(image);
 }
 
@@ -125,7 +125,7 @@ void TiniLink::end(State state) {
 }
 
 void TiniLink::record(uint8_t fault) {
-  link_.seal();  // the record has the checksum of its image
+  link_.write_checksum();  // the record has the checksum of its image
   status_.fault = fault;
   status_.fault_at = player_->fault_at();
   status_.fault_program = checksum_of(run_image_);
@@ -162,7 +162,7 @@ uint8_t* port_memory(uint16_t length, bool is_live) { return only->memory(length
 bool port_may_write_ahead() { return !only->is_running(); }
 void port_forget() { only->forget(); }
 void port_take(uint8_t, bool is_live) { only->take(is_live); }
-void port_seal(const uint8_t* image) { only->seal(image); }
+void port_has_checksum(const uint8_t* image) { only->has_checksum(image); }
 void port_start(bool is_live) { only->start(is_live); }
 void port_end() { only->prepare_upload(); }
 void port_stop(uint8_t fault) { only->stop(fault); }

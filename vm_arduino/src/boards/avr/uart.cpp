@@ -127,8 +127,8 @@ LineErrors uart_errors() { return {framing, overrun}; }
 
 namespace {
 
-// What the interrupt leaves. A byte with a framing error is 0 here: only that the line is bad is
-// known.
+// What comes after the look for a stop. A byte with a framing error is 0 here: only that the line is
+// bad is known.
 void receive(uint8_t byte, uint8_t status) {
   low_turns = 0;
   if ((status & (_BV(DOR0) | _BV(FE0))) != 0) {

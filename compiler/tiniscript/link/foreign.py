@@ -1,0 +1,241 @@
+"""What is at the other end of a line if it is no robot of ours: a table with a row for each kind.
+
+A row looks at the bytes that have come, and may have a probe: a question that such a board answers
+and that changes nothing. What boards send is known from their sources and documents, as of
+November 2026:
+
+- Firmata: `FirmataMarshaller.cpp` and `FirmataParser.cpp` of github.com/firmata/arduino. After it
+  has started, and when it is asked, it reports the version of its protocol, 0xF9 and two bytes, and
+  its firmware, 0xF0 0x79, two bytes and a name, two bytes for each letter, 0xF7. 57600 baud. It
+  sends no 0xFF 0x55: 0xFF is its reset, and only the computer sends that. So the two are told
+  apart by their whole messages, and two bytes alone say nothing.
+- mBot: `mbot_factory_firmware.ino` of github.com/Makeblock-official/Makeblock-Libraries, whose
+  other boards do the same. "Version: 06.01.009" after its start, and answers that begin with
+  0xFF 0x55 and end with CR LF. 115200 baud.
+- Snek: `snek-io.c` and `snek-atmega-serial.c` of github.com/keith-packard/snek. "Welcome to Snek",
+  the prompt "> " or "+ ", and it returns a 0x14 at once. 115200 baud.
+- MicroPython and CircuitPython: docs.micropython.org, "The MicroPython Interactive Interpreter
+  Mode": the prompt ">>> ", and the banner after Ctrl-B. Mostly 115200 baud.
+- ESP32: docs.espressif.com, esptool, "Boot Mode Selection", and ESP-IDF, "Fatal Errors". The chip's
+  ROM says at 115200 baud why it has started, and ESP-IDF when its supply has dropped.
+- ESP-AT: docs.espressif.com, "Basic AT Commands": "ready" after its start, and its answer to
+  AT+GMR. 115200 baud.
+
+Knows no port, no speed and no time.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+from tiniscript.base import languages
+from tiniscript.base.source import printable
+from tiniscript.link.frames import decoded
+from tiniscript.link.messages import FIRST_EVENT
+
+CATALOGUE = "foreign"
+MOST_TEXT = 60  # characters that are told
+FEW = 4  # bytes: fewer say nothing
+READABLE = 0.9  # the share of printable characters in text
+VARIETY = 3  # different bytes in text: the noise of a wrong speed repeats itself
+OUR_MARK = "//"  # a robot's lines begin so
+TEXT = "other_sketch"  # the row of whatever prints text and has no row of its own
+ECHO = "echo_sketch"
+
+
+class Foreign(NamedTuple):
+    """A board that is not ours: the `name` of its row, and what it `said`, as a line of text."""
+
+    name: str
+    said: str
+    is_sure: bool
+
+    @property
+    def has_row(self) -> bool:
+        return self.name in BY_NAME
+
+
+class Row(NamedTuple):
+    """`recognise` returns what such a board has said, and whether that is sure; None where these
+    bytes are not its own. `probe` is what provokes them, or empty."""
+
+    name: str
+    recognise: Callable[[bytes], tuple[str, bool] | None]
+    probe: bytes = b""
+
+
+def _line_with(pattern: str) -> Callable[[bytes], tuple[str, bool] | None]:
+    """Return a recogniser of text: its line that has this pattern."""
+    compiled = re.compile(pattern.encode("ascii"))
+
+    def recognise(heard: bytes) -> tuple[str, bool] | None:
+        match = compiled.search(heard)
+        if match is None:
+            return None
+        first = max(heard.rfind(end, 0, match.start() + 1) for end in (b"\n", b"\r")) + 1
+        rest = re.split(rb"[\r\n]", heard[first:], maxsplit=1)[0]
+        return _shown(rest.decode("utf-8", "replace")), True
+
+    return recognise
+
+
+_NAME_OF_FIRMATA = re.compile(rb"\xf0\x79([\x00-\x7f])([\x00-\x7f])((?:[\x20-\x7e]\x00){2,})\xf7")
+
+
+def _firmata(heard: bytes) -> tuple[str, bool] | None:
+    match = _NAME_OF_FIRMATA.search(heard)
+    if match is None:
+        return None
+    name = match[3][::2].decode("ascii")
+    return _shown(f"{name} {match[1][0]}.{match[2][0]}"), True
+
+
+_VERSION_OF_MBOT = re.compile(rb"(?:^|[\r\n])(Version: [0-9]{2}\.[0-9]{2}\.[0-9]{3})(?:[\r\n]|$)")
+_FRAME_OF_MBOT = re.compile(
+    rb"\xff\x55(?:|.(?:\x01.|\x02.{4}|\x03..|\x04(.)([\x20-\x7e]*)))\r\n", re.DOTALL
+)
+
+
+def _mbot(heard: bytes) -> tuple[str, bool] | None:
+    said = ""
+    for match in _FRAME_OF_MBOT.finditer(heard):
+        if match[1] is not None and match[1][0] != len(match[2]):
+            continue
+        said = match[2].decode("ascii") if match[2] else said or match[0].hex(" ").upper()
+    line = _VERSION_OF_MBOT.search(heard)
+    if line is not None:
+        return line[1].decode("ascii"), bool(said)  # another sketch may print such a line
+    return (_shown(said), True) if said else None
+
+
+_PYTHON = _line_with(r"(?:MicroPython|Adafruit CircuitPython) v?[0-9]|raw REPL; CTRL-B to exit")
+
+
+def _python(heard: bytes) -> tuple[str, bool] | None:
+    if found := _PYTHON(heard):
+        return found
+    return (">>>", False) if re.search(rb"(?:^|\n)>>> *[\r\n\x11\x13]*$", heard) else None
+
+
+_SNEK = _line_with(r"Welcome to [Ss]nek")
+
+
+def _snek(heard: bytes) -> tuple[str, bool] | None:
+    if found := _SNEK(heard):
+        return found
+    said = re.sub(rb"[\x11\x13]", b"", heard)  # XON and XOFF may come anywhere
+    if re.search(rb"(?:^|\n)[>+] \x14?$", said) is None:
+        return None
+    return (">", b"\x14" in said)
+
+
+_AT = _line_with(r"AT version:[0-9]")
+
+
+def _at(heard: bytes) -> tuple[str, bool] | None:
+    if found := _AT(heard):
+        return found
+    return ("ready", False) if re.search(rb"[\r\n]ready\r\n", heard) else None
+
+
+ROWS = (
+    # Its supply first: whatever is on such a board, nothing works before that is right.
+    Row("esp32_brownout", _line_with(r"[Bb]rownout detector was triggered|\([A-Z_]*BROWN_?OUT")),
+    Row("esp32_download", _line_with(r"waiting for download|\(DOWNLOAD\([A-Z0-9_/]*\)\)")),
+    Row("esp32_empty", _line_with(r"flash read err, [0-9]+|invalid header: 0x[0-9a-f]{8}")),
+    Row("firmata", _firmata, b"\xf7\xf9\xf0\x79\xf7"),
+    Row("mbot", _mbot, b"\xff\x55\x03\x66\x01\x00"),
+    Row("micropython", _python, b"\r\n\x02"),
+    Row("snek", _snek, b"\r\n\x14"),
+    Row("at_firmware", _at),
+    Row("esp32", _line_with(r"rst:0x[0-9a-f]+ \([A-Z0-9_]+\),boot:0x[0-9a-f]+ \(")),
+)
+BY_NAME = {row.name: row for row in ROWS}
+NAMES = (*BY_NAME, ECHO, TEXT)
+GENERAL = ("esp32", TEXT)  # of whatever runs there: a question may tell what that is
+ASKS_AT = b"\r\nAT+GMR\r\n"  # what an AT firmware says of itself; modules of radio refuse it
+
+
+def recognised(heard: bytes) -> Foreign | None:
+    """Return what has sent these bytes, if it has a row; None for a robot's, for text and noise."""
+    if is_robot(heard):
+        return None
+    for row in ROWS:
+        found = row.recognise(heard)
+        if found is not None:
+            return Foreign(row.name, *found)
+    return None
+
+
+def stranger(heard: bytes) -> Foreign | None:
+    """Return what has sent these bytes: what has a row, or another sketch if they are text.
+
+    Sure text has a whole line. None for a robot's bytes, and for noise.
+    """
+    found = recognised(heard)
+    if found is not None or is_robot(heard):
+        return found
+    said = readable(heard)
+    return Foreign(TEXT, said, _has_line(heard)) if said else None
+
+
+def is_robot(heard: bytes) -> bool:
+    """Whether a robot of ours has sent some of these bytes: a whole frame, or a line of text."""
+    for packet in heard.split(b"\0"):
+        frame = decoded(packet) if packet else None
+        if frame is not None and (frame.is_reply or frame.number >= FIRST_EVENT):
+            return True
+    return our_line(heard) != ""
+
+
+def our_line(heard: bytes) -> str:
+    """Return the last whole line of a robot's text, `// OK`, or nothing."""
+    lines = re.findall(rb"(?:^|[\r\n\x00])(// [\x20-\x7e]+)[\r\n]", heard)
+    return _shown(lines[-1].decode("ascii")) if lines else ""
+
+
+def readable(heard: bytes) -> str:
+    """Return a line of bytes that are text, else an empty text.
+
+    Where no line ends all of them have to be.
+    """
+    if len(heard) < FEW or len(set(heard)) < VARIETY:
+        return ""
+    least = READABLE if _has_line(heard) else 1.0
+    text = re.sub(r"\x1b\[[0-9;]*m", "", heard.decode("utf-8", "replace"))  # colours
+    good = sum((letter.isprintable() and letter != "�") or letter in "\r\n\t" for letter in text)
+    if not text or good < least * len(text):
+        return ""
+    rows = [row.strip() for row in text.splitlines() if row.strip()]
+    return _shown(rows[len(rows) // 2]) if rows else ""
+
+
+def _has_line(heard: bytes) -> bool:
+    return b"\n" in heard or b"\r" in heard
+
+
+def _shown(line: str) -> str:
+    plain = re.sub(r"\x1b\[[0-9;]*m", "", line).strip()
+    return "".join(letter for letter in plain if letter.isprintable())[:MOST_TEXT]
+
+
+class Sentence(NamedTuple):
+    """What such a board is, perhaps with what it says, and what to do next."""
+
+    said: str
+    advice: str
+
+
+def sentence(name: str, language: str) -> Sentence:
+    """Return the sentences of a row, or of ECHO or TEXT."""
+    said = languages.text(CATALOGUE, f"{name}/said", language)
+    return Sentence(said, languages.text(CATALOGUE, f"{name}/try", language))
+
+
+def told(found: Foreign, language: str) -> Sentence:
+    """Return the sentences of a board, with what it says in the first one."""
+    said, advice = sentence(found.name, language)
+    says = languages.text(CATALOGUE, "says", language)
+    return Sentence(says.format(what=said, said=printable(found.said, MOST_TEXT)), advice)

@@ -1,0 +1,110 @@
+"""A DEF that gives a value back, as a function of other languages does, which no DEF can.
+
+`DEF DOUBLE(N);RETURN N * 2;END_DEF;X = DOUBLE(4)` is one mistake, told where the RETURN stands, or
+else where the call is a value: the result goes into a variable, and the call is an instruction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import said_of
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.syntax.free_names import names_in, numbered
+from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token, scan
+
+_ENDS = (";", NEWLINE, "|", "end")  # what an instruction ends at, or begins behind
+_DEF_ENDS = ("END_DEF", "ENDDEF")
+_RESULT = "RESULT"
+_LONGEST = 4_000  # characters of a text that is looked at
+_YES_NO = ("AND", "OR", "NOT")
+
+
+def given_back(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
+    """Return what is told of DEFs that give a value back, and edits to read the rest with."""
+    text = source.text
+    if "DEF" not in text.upper() or len(text) > _LONGEST:
+        return [], []
+    tokens = scan(text).tokens
+    names = {after.text for token, after in pairwise(tokens) if token.text == "DEF"}
+    calls: dict[str, list[Span]] = {}
+    for name, k in _values(tokens, names):
+        calls.setdefault(name, []).append(_call(tokens, k))
+    told: list[Diagnostic] = []
+    edits: list[Edit] = []
+    returned: set[str] = set()
+    result = _RESULT if _RESULT not in names_in(text) else next(numbered(text, _RESULT))
+    for name, word, value in _returns(tokens):
+        used = calls.get(name, [])
+        values = {"word": name, "back": text[slice(*value)]}
+        values |= {"call": text[slice(*used[0])]} if used else {}
+        edits.append(Edit(Span(word.start, value.start), f"{result} = "))
+        if name not in returned:
+            told.append(Diagnostic(codes.NO_VALUE, word.span, values))
+        returned.add(name)
+    for name, spans in calls.items():
+        if name not in returned:
+            place = Span(spans[0].start, spans[0].start + len(name))
+            values = {"word": name, "called": name, "call": text[slice(*spans[0])]}
+            told.append(Diagnostic(codes.NO_VALUE, place, values))
+        edits += [Edit(span, result if name in returned else _filler(text, span)) for span in spans]
+    return told, edits
+
+
+def _values(tokens: Sequence[Token], names: set[str]) -> Iterator[tuple[str, int]]:
+    """Yield each call of a DEF, with brackets, that stands for a value."""
+    for k, token in enumerate(tokens[:-1]):
+        if token.kind is not WORD or token.text not in names or tokens[k + 1].kind != "(":
+            continue
+        before = tokens[k - 1] if k else None
+        if before is None or before.kind in (*_ENDS, WORD, NUMBER, ")"):
+            if before is None or before.text not in _YES_NO:
+                continue
+        if any(each.kind == ")" for each in _until_end(tokens, k)):
+            yield token.text, k
+
+
+def _call(tokens: Sequence[Token], k: int) -> Span:
+    """Return where a call is, with its brackets, or what there is of them on its line."""
+    depth, last = 0, tokens[k]
+    for token in _until_end(tokens, k + 1):
+        depth += (token.kind == "(") - (token.kind == ")")
+        last = token
+        if not depth:
+            break
+    return Span(tokens[k].start, last.end)
+
+
+def _until_end(tokens: Sequence[Token], k: int) -> Iterator[Token]:
+    """Yield the tokens of an instruction from one on."""
+    for token in tokens[k:]:
+        if token.kind in _ENDS:
+            return
+        yield token
+
+
+def _returns(tokens: Sequence[Token]) -> Iterator[tuple[str, Token, Span]]:
+    """Yield each RETURN with a value in a DEF: the name of that, the word, and the value."""
+    name, begins = "", True
+    for k, token in enumerate(tokens):
+        if token.text == "DEF":
+            name = tokens[min(k + 1, len(tokens) - 1)].text
+        elif token.text in _DEF_ENDS:
+            name = ""
+        elif begins and name and token.kind is WORD and said_of(token.text, "leaves"):
+            value = [*_until_end(tokens, k + 1)]
+            if value:
+                yield name, token, Span(value[0].start, value[-1].end)
+        begins = token.kind in _ENDS
+
+
+def _filler(text: str, span: Span) -> str:
+    """Return a value that may stand for a call: a yes where that is a whole question."""
+    before, after = text[: span.start].rstrip(), text[span.end :].lstrip()
+    word = before.removesuffix("(").rstrip()[-6:].upper()
+    is_asked = before.endswith("(") and word.endswith(("IF", "WHILE", "UNTIL", "WHEN"))
+    is_joined = before.upper().endswith(_YES_NO) or after[:3].upper() in ("AND", "OR ")
+    return "TRUE" if (is_asked and after.startswith(")")) or is_joined else "1"

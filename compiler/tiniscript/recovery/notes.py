@@ -1,0 +1,71 @@
+"""Notes of other languages: `# turn`, `-- turn`, `<!-- turn -->`, `REM turn`, `/* turn */`.
+
+What such a sign begins is a note up to the end of its line, and nothing in it is read. It stands
+where an instruction begins or ends. A note with an order in it, `# F(2, 80)`, may be one that
+counts: rows read it, and conservation says what is lost.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.meanings import plain
+from tiniscript.recovery.writing import without_note
+
+_SIGN = re.compile(
+    r"(?i)(?:^|(?<=[\s;{}|]))(?P<sign>#+|--+>?|<!--+|/\*+|REM\b)[ \t]*(?=[^\W\d]|[¡¿\"'])"
+)
+_END = re.compile(r"[ \t]*(?:\*+/|--+>)\s*$")
+_OPEN = re.compile(r"[=<>*+\-,(][ \t]*$")  # a value has begun, and goes on
+_DEFINES = re.compile(r"(?i)define\b")
+_CALL = re.compile(r"([^\W\d]\w*)\s*\(")
+
+
+def noted(source: Source) -> list[Diagnostic]:
+    """Return what is told of the notes of a text that begin with another sign."""
+    return [
+        Diagnostic(codes.OTHER_NOTE, span, {"found": source[span], "right": right}, span,
+                   Repair(edits, True))
+        for span, right, edits in _notes(source.text)
+    ]  # fmt: skip
+
+
+def note_edits(text: str) -> list[Edit]:
+    """Return the edits that make a text's notes of other languages those of TiniScript."""
+    return [edit for _, _, edits in _notes(text) for edit in edits]
+
+
+def _notes(text: str) -> Iterator[tuple[Span, str, tuple[Edit, ...]]]:
+    """Give the sign of each note, its line as it should be, and the edits that make it so."""
+    start = 0
+    for line in text.split("\n"):
+        body = without_note(line)[0]
+        sign = next((it for it in _SIGN.finditer(body) if _is_note(body, it)), None)
+        if sign is not None:
+            end = _END.search(line, sign.end())
+            begin = Edit(Span(start + sign.start(), start + sign.end()), "// ")
+            edits = (
+                (begin, Edit(Span(start + end.start(), start + end.end()), "")) if end else (begin,)
+            )
+            right = line[: sign.start()] + "// " + line[sign.end() : end.start() if end else None]
+            yield Span(start + sign.start(), start + sign.end("sign")), right.strip(), tuple(edits)
+        start += len(line) + 1
+
+
+def _is_note(body: str, sign: re.Match[str]) -> bool:
+    before, after = body[: sign.start()], body[sign.end() :]
+    is_inside = before.count("(") > before.count(")") or _OPEN.search(before) is not None
+    if is_inside or (sign["sign"] == "#" and _DEFINES.match(after)):
+        return False
+    return not any(_is_order(word) for word in _CALL.findall(after))
+
+
+def _is_order(word: str) -> bool:
+    """Whether a word before a bracket is one of the language, a block's only as it is written."""
+    meant = WORDS.get(plain(word)) or WORDS.get(concept_of(plain(word)) or "")
+    return word in BLOCK_ENDS or (meant is not None and meant.is_call)

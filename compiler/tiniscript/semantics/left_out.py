@@ -1,0 +1,61 @@
+"""What a BREAK outside a loop leaves out: `IF(C);S;BREAK;ENDIF;BEEP(1, 440)`.
+
+A person wants the rest of the program only where the BREAK is not reached: it goes into the other
+branch, `IF(C);S;ELSE;BEEP(1, 440);ENDIF`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.syntax import ast
+
+_LONGEST = 180  # characters that a message can show
+
+
+class LeftOut(NamedTuple):
+    """The IF with the rest in its other branch: in one line, and as an edit of the text."""
+
+    shown: str
+    edit: Edit
+
+
+def left_out(source: Source, parsed: ast.Program, node: ast.Break) -> LeftOut | None:
+    """Return how an IF leaves out the rest without its BREAK, its last instruction in a branch.
+
+    The IF is no part of another block but a DEF or a TASK, whose rest is what follows.
+    """
+    bodies = [parsed.body, *(it.body for it in parsed.body if isinstance(it, (ast.Def, ast.Task)))]
+    for body in bodies:
+        for k, statement in enumerate(body):
+            rest = [it for it in body[k + 1 :] if not isinstance(it, (ast.Def, ast.Task))]
+            if isinstance(statement, ast.If) and len(statement.arms) == 1 and rest:
+                if len(rest) != len(body) - k - 1:
+                    continue  # a DEF among them goes into no block
+                if made := _made(source, statement, rest, node):
+                    return made
+    return None
+
+
+def _made(
+    source: Source, it: ast.If, rest: Sequence[ast.Instruction], node: ast.Break
+) -> LeftOut | None:
+    whole = Span(it.span.start, rest[-1].span.end)
+    arm = it.arms[0]
+    branches = [[*arm.body], [*it.otherwise]]
+    last = [branch[-1] if branch else None for branch in branches]
+    if node not in last or arm.condition is None or "//" in source[whole]:
+        return None
+    ended = last.index(node)
+    said = [[source[each.span] for each in branch if each is not node] for branch in branches]
+    said[1 - ended] += [source[each.span] for each in rest]
+    said[0] = said[0] or ["S"]  # it stands still there
+    head = f"IF({source[arm.condition.span]})"
+    parts = [head, *said[0], *(["ELSE", *said[1]] if said[1] else []), "ENDIF"]
+    shown = ";".join(" ".join(part.split("\n")) for part in parts)
+    if len(shown) > _LONGEST or any("\n" in part for part in parts):
+        return None
+    between = "\n" if "\n" in source[whole] else "; " if "; " in source[whole] else ";"
+    return LeftOut(shown, Edit(whole, between.join(parts)))

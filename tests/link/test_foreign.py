@@ -1,0 +1,261 @@
+"""Boards that are not ours: each is known by a recording, a robot and noise are never one."""
+
+from __future__ import annotations
+
+import random
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.support import foreign_boards as boards
+from tests.support.foreign_boards import RECORDINGS, Recording
+from tests.support.uart import at_speed
+from tiniscript.link import foreign
+from tiniscript.link.connection import FOREIGN, KEPT_BYTES, LinkConnection, reason_of
+from tiniscript.link.foreign import recognised, stranger
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import FIRST_EVENT, MESSAGES
+from tiniscript.link.outcomes import LOST
+from tiniscript.link.requests import Reply
+from tiniscript.studio.page_line import PageKeys, PageRobot
+from tiniscript.studio.robot_link import RobotLink
+
+BAUDS = (9600, 19200, 38400, 57600, 115200)
+CASES = Path(__file__).parent.parent / "cases"
+EACH = pytest.mark.parametrize("recording", RECORDINGS.values(), ids=RECORDINGS)
+
+
+def our_bytes() -> list[bytes]:
+    """Return what robots send in the cases of the link: frames, lines of text, zeros."""
+    found = []
+    for name in ("link.md", "link_text.md"):
+        text = (CASES / name).read_text(encoding="utf-8")
+        for row in re.findall(r"^ *[0-9]* < ((?:[0-9a-f]{2} )*[0-9a-f]{2})\b", text, re.M):
+            found.append(bytes.fromhex(row))
+    return found
+
+
+OURS = our_bytes()
+
+
+def test_there_are_a_robot_s_bytes_to_look_at() -> None:
+    assert len(OURS) > 100
+    assert sum(each.startswith(b"// ") for each in OURS) > 20
+
+
+# -- each board ---------------------------------------------------------------------------------
+
+
+@EACH
+def test_a_board_is_known_by_its_recording(recording: Recording) -> None:
+    found = recognised(recording.data)
+    assert found is not None
+    assert (found.name, found.said, found.is_sure) == (recording.name, recording.said, True)
+
+
+def test_each_row_has_a_recording() -> None:
+    assert {each.name for each in RECORDINGS.values()} == {row.name for row in foreign.ROWS}
+
+
+@EACH
+def test_a_recording_that_is_cut_is_of_that_board_or_of_none(recording: Recording) -> None:
+    """A piece says less, and nothing wrong: an ESP32 starts before what is on it says so."""
+    also = {recording.name, "esp32", None}
+    if recording.data.endswith(b">>> "):
+        also |= {"micropython"}
+    chance = random.Random(recording.said)
+    for _ in range(400):
+        first, last = sorted(chance.randrange(len(recording.data) + 1) for _ in range(2))
+        found = recognised(recording.data[first:last])
+        assert (found and found.name) in also, recording.data[first:last]
+
+
+@EACH
+def test_a_recording_says_the_same_however_its_pieces_come(recording: Recording) -> None:
+    line = LinkLine()
+    for at in range(0, len(recording.data), 3):
+        line.note_heard(recording.data[at : at + 3])
+    assert line.came == recording.data and line.heard == len(recording.data)
+    assert recognised(line.came) == recognised(recording.data)
+
+
+@EACH
+@pytest.mark.parametrize("before", [b"", b"\xf8\x00\x80", b"x\xfe\r\n"])
+def test_noise_before_a_recording_changes_nothing(recording: Recording, before: bytes) -> None:
+    found = recognised(before + b"\r\n" + recording.data)
+    assert found is not None and found.name == recording.name
+
+
+def test_two_bytes_alone_say_nothing() -> None:
+    """Neither those of an mBot nor the version of Firmata's protocol: noise has them, too."""
+    for few in (b"\xff\x55", b"\xf9\x02\x05", b"\xff\x55\r", b"\xf0\x79\x02\x05\xf7", b"\r\n"):
+        assert stranger(few) is None
+
+
+def test_the_two_that_send_high_bytes_are_told_apart() -> None:
+    for data, name in ((boards.FIRMATA, "firmata"), (boards.MBOT_VERSION, "mbot")):
+        found = recognised(data)
+        assert found is not None and found.name == name
+        rows = [row.name for row in foreign.ROWS if row.recognise(data)]
+        assert rows == [name]
+
+
+# -- what is none -------------------------------------------------------------------------------
+
+
+@EACH
+def test_noise_of_a_wrong_speed_is_no_board(recording: Recording) -> None:
+    for sent in BAUDS:
+        for heard in BAUDS:
+            noise = at_speed(recording.data, sent, heard)
+            assert (noise == recording.data) == (sent == heard)
+            if sent != heard:
+                assert recognised(noise) is None, (sent, heard)
+                assert stranger(noise) is None, (sent, heard)
+
+
+@given(st.binary(max_size=300))
+def test_random_bytes_are_no_board(data: bytes) -> None:
+    assert recognised(data) is None
+
+
+def test_much_noise_is_no_board() -> None:
+    chance = random.Random(5)
+    for _ in range(300):
+        assert stranger(bytes(chance.choices(range(256), k=500))) is None
+
+
+@given(st.lists(st.sampled_from(OURS), min_size=1, max_size=6), st.binary(max_size=20))
+def test_a_robot_is_no_board(traffic: list[bytes], noise: bytes) -> None:
+    """With any noise before it and behind: its frames and its lines are looked at first."""
+    for data in (b"".join(traffic), noise + b"\0" + b"".join(traffic) + noise):
+        assert stranger(data) is None or not foreign.is_robot(data)
+        if any(foreign.is_robot(each) for each in traffic):
+            assert stranger(b"\0" + b"".join(traffic)) is None
+
+
+@given(
+    st.sampled_from([each.number for each in MESSAGES if each.number >= FIRST_EVENT]),
+    st.sampled_from([each.data for each in RECORDINGS.values()]), st.booleans(),
+)  # fmt: skip
+def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
+    number: int, data: bytes, is_reply: bool
+) -> None:
+    frame = encoded(Frame(number, 3, 7, data[:50], is_reply))
+    assert foreign.is_robot(frame)
+    assert stranger(b"\0" + frame) is None
+
+
+@pytest.mark.sampled("piece", keep=40)
+@pytest.mark.parametrize("piece", range(200))
+def test_a_piece_of_a_robot_s_bytes_is_no_board(piece: int) -> None:
+    chance = random.Random(piece)
+    data = b"".join(chance.choices(OURS, k=5))
+    first, last = sorted(chance.randrange(len(data) + 1) for _ in range(2))
+    assert recognised(data[first:last]) is None
+
+
+def test_what_a_computer_sends_is_no_robot_s() -> None:
+    """It comes back from what echoes."""
+    assert not foreign.is_robot(b"\0" + encoded(Frame(1, 3, 7, b"123456789")))
+
+
+# -- text ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"Distance: 34 cm\r\n" * 3, "Distance: 34 cm"),
+        (b"0\r\n0\r\n", "0"),
+        ("Distancia: 4 \N{DEGREE SIGN}C\n".encode(), "Distancia: 4 \N{DEGREE SIGN}C"),
+        (b"\x1b[0;32mI (71) boot: chip\x1b[0m\r\n", "I (71) boot: chip"),
+        (b"\xfe Distance: 34 cm\r\n", "\N{REPLACEMENT CHARACTER} Distance: 34 cm"),
+        (b"abc,", "abc,"),
+        (b"x" * 300 + b"\r\n", "x" * 60),
+        (b"ab", ""),
+        (b"UUUUUUUU", ""),
+        (b"\x07\x07\x07\x07\x08\x09", ""),
+        (b"", ""),
+    ],
+)
+def test_what_is_text(data: bytes, said: str) -> None:
+    assert foreign.readable(data) == said
+    found = stranger(data)
+    assert (found.said if found else "") == said
+    assert found is None or found.is_sure == (b"\n" in data)
+
+
+@given(st.text(st.characters(min_codepoint=0x20, max_codepoint=0x2FF, categories=("L", "N", "P")),
+               min_size=4, max_size=50))  # fmt: skip
+def test_any_line_of_text_is_text(line: str) -> None:
+    """Bytes that are text at this speed are never those of a wrong speed."""
+    data = f"{line}\r\n".encode()
+    found = stranger(data)
+    assert found is not None or foreign.is_robot(data)
+
+
+# -- who else says it ---------------------------------------------------------------------------
+
+
+class LinkLine(LinkConnection):
+    """A connection on which no robot has answered."""
+
+    robot = None
+
+    def tell_places(self) -> None:
+        pass
+
+
+@EACH
+def test_a_connection_says_what_answers_instead_of_a_robot(recording: Recording) -> None:
+    line = LinkLine()
+    line.note_heard(recording.data)
+    assert reason_of(line, Reply(LOST)) == FOREIGN
+    line.is_echoed = True
+    assert reason_of(line, Reply(LOST)) == FOREIGN
+    for language, word in (("en", "It says: "), ("es", "Dice: "), ("pt", "Ele diz: ")):
+        answer = RobotLink(line, language)._failure(Reply(LOST))
+        assert answer["failure"] == FOREIGN
+        assert word + recording.said[:20] in answer["said"] and answer["advice"]
+
+
+@pytest.mark.parametrize("name", ["snek", "brownout", "mbot"])
+def test_the_page_says_what_its_port_has_heard(name: str) -> None:
+    recording = RECORDINGS[name]
+    page = PageRobot("tinibot", "es", PageKeys(b""))
+    page.go(recording.data, 5, [{"do": "hello", "id": 1, "limit_ms": 300}])
+    news = [each for now_ms in range(5, 900, 20) for each in page.go(b"", now_ms, [])["news"]]
+    (answer,) = news
+    assert answer["failure"] == FOREIGN
+    assert answer["said"].startswith(foreign.sentence(recording.name, "es").said)
+    assert recording.said in answer["said"]
+
+
+@pytest.mark.parametrize(
+    ("came", "is_echoed", "reason"),
+    [
+        (b"", False, "link_silent"), (b"\xff\xfe\x80\x00", False, "link_other"),
+        (b"Distance: 34 cm\r\n", False, FOREIGN), (b"Distance: 34 cm\r\n", True, "link_echo"),
+        (b"abc,d", False, "link_other"), (b"// OK\r\n", False, "link_other"),
+    ],
+)  # fmt: skip
+def test_what_is_said_where_no_robot_answers(came: bytes, is_echoed: bool, reason: str) -> None:
+    line = LinkLine()
+    line.note_heard(came)
+    line.is_echoed = is_echoed
+    assert reason_of(line, Reply(LOST)) == reason
+
+
+def test_of_what_comes_the_last_is_kept() -> None:
+    line = LinkLine()
+    for _ in range(100):
+        line.note_heard(b"x" * 99)
+    line.note_heard(boards.MBOT_START)
+    assert len(line.came) == KEPT_BYTES and line.came.endswith(boards.MBOT_START)
+    line.robot = object()  # type: ignore[assignment]
+    line.note_heard(b"y")
+    assert line.came.endswith(boards.MBOT_START) and line.heard == 9900 + len(boards.MBOT_START) + 1

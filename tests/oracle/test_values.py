@@ -1,0 +1,63 @@
+"""Programs whose DEFs take values: the compiler and the machines agree with the oracle.
+
+`python -m tests.oracle.test_values 100000` compares more programs than the tests, and the machine
+in C++ as well.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Sequence
+from functools import partial
+
+import pytest
+
+from tests.machines import MACHINES, Machine, Senses
+from tests.machines.python import run_python
+from tests.oracle.interpreter import PAPER_KIT, Mistake, run
+from tests.oracle.task_programs import shared_program
+from tests.support.campaign import each_seed, wanted
+from tiniscript import compile_text, robots
+from tiniscript.base.source import Source
+from tiniscript.syntax.formatter import formatted
+
+KIT = robots.load("tinibot").kit
+MAX_MS = 300
+BATCH = 50
+WHOLE_IN = 4  # of so many programs one is compiled without the optimiser, and formatted, too
+
+
+def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str:
+    """Compare the traces of one random program on some machines; return how it ended."""
+    rng = random.Random(seed)
+    text, readings = shared_program(rng)
+    compiled = compile_text(text, KIT)
+    try:
+        want = run(text, PAPER_KIT, readings, MAX_MS)
+    except Mistake:  # called too deep, or more copies than a machine takes
+        assert not compiled.is_right, f"seed {seed}, the oracle refuses:\n{text}"
+        return "refused"
+    assert compiled.is_right, f"seed {seed}, the oracle accepts:\n{text}"
+    images = [compiled.image]
+    if seed % WHOLE_IN == 0:
+        images.append(compile_text(text, KIT, optimize=False).image)
+        laid_out = formatted(Source(text))
+        assert compile_text(laid_out, KIT).image == compiled.image, f"seed {seed}, formatted"
+    for image in dict.fromkeys(images):
+        for machine in machines:
+            got = machine(image, KIT, Senses(readings, MAX_MS))
+            assert got == want, f"seed {seed}, {image.hex()}:\n{text}"
+    return want.split()[-1]
+
+
+@pytest.mark.sampled("first", keep=3)
+@pytest.mark.parametrize("first", range(0, 400, BATCH))
+def test_random_programs(first: int) -> None:
+    ends = Counter(check_program(seed) for seed in range(first, first + BATCH))
+    assert {"DONE", "LIMIT"} <= set(ends), ends
+
+
+if __name__ == "__main__":
+    both = [MACHINES[name] for name in ("python", "host")]
+    each_seed(partial(check_program, machines=both), wanted(100_000, 0))

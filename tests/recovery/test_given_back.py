@@ -1,0 +1,73 @@
+"""A DEF that gives a value back is told once, wherever its RETURN and its calls stand."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source
+from tiniscript.diagnostics.rendering import message
+
+RETURNS = ["RETURN", "return", "DEVOLVER", "DEVOLVA", "RETORNA"]
+RESULTS = ["N * 2", "(N * 2)", "N", "DISTANCE", "ABS(N - 3)"]
+USES = ["X = DOUBLE(4);SHOW(X)", "SHOW(DOUBLE(4))", "F(DOUBLE(4), 60)", "W(1 + DOUBLE(4))",
+        "IF(DOUBLE(4) > 3);S;ENDIF", "LOOP(DOUBLE(4));S;END_LOOP", "SHOW(MAX(DOUBLE(4), 9))",
+        "SHOW(DOUBLE(4) + DOUBLE(4))", "F(2, 80) UNTIL(DISTANCE < DOUBLE(4))"]  # fmt: skip
+BETWEEN = (";", "\n", ";\n  ")
+
+
+def codes_of(text: str) -> list[str]:
+    return [diagnostic.code.number for diagnostic in check(text)]
+
+
+@pytest.mark.sampled("use", keep=3)
+@pytest.mark.parametrize("use", USES)
+@pytest.mark.parametrize("result", RESULTS)
+@pytest.mark.parametrize("word", RETURNS)
+@pytest.mark.parametrize("between", BETWEEN)
+def test_a_return_and_its_uses_are_one_mistake(
+    use: str, result: str, word: str, between: str
+) -> None:
+    lines = ["SI|DEF DOUBLE(N)", f"{word} {result}", "END_DEF", *use.split(";")]
+    text = between.join(lines)
+    (diagnostic,) = check(text)
+    assert text[slice(*diagnostic.span)] == word
+    said = message(diagnostic, Source(text), "en")
+    assert said.code == "TS051"
+    assert f"RESULT = {result} here, DOUBLE(4) on a line" in said.fix
+
+
+@pytest.mark.parametrize("use", USES)
+@pytest.mark.parametrize("between", BETWEEN)
+def test_what_the_message_says_to_do_is_right(use: str, between: str) -> None:
+    call = ["DOUBLE(4)", *use.replace("DOUBLE(4)", "RESULT").split(";")]
+    after = between.join(["SI|DEF DOUBLE(N)", "RESULT = N * 2", "END_DEF", *call])
+    assert not any(diagnostic.is_mistake for diagnostic in check(after))
+
+
+@pytest.mark.parametrize("use", USES)
+@pytest.mark.parametrize("beside", ["", ";F(2 80)", ";BLA(3)"])
+def test_a_call_as_a_value_without_a_return_is_told_once(use: str, beside: str) -> None:
+    text = f"SI|DEF DOUBLE(N);SHOW(N);END_DEF;{use}{beside}"
+    first, *others = check(text)
+    assert (first.code.number, first.values.get("called")) == ("TS051", "DOUBLE")
+    assert len(others) == bool(beside)
+
+
+def test_questions_and_wholes_are_read_on() -> None:
+    text = "SI|DEF NEAR(N);RETURN DISTANCE < N;END_DEF;IF(NEAR(4) AND KEY_A);S;ENDIF"
+    assert codes_of(text) == ["TS051"]
+    for asked in (
+        "WHILE({});S;END_WHILE",
+        "IF({});S;ENDIF",
+        "F(2, 80) UNTIL({})",
+        "IF(NOT {});S;ENDIF",
+    ):
+        twice = ";".join(asked.format(call) for call in ("A(4)", "A(5)"))
+        assert codes_of(f"SI|DEF A(N);SHOW(N);END_DEF;{twice}") == ["TS051"]
+
+
+def test_a_return_of_nothing_or_outside_a_def_and_right_calls_are_not_of_this_kind() -> None:
+    assert codes_of("SI|DEF A;S;RETURN;END_DEF;A") == ["TS101"]
+    assert codes_of("SI|S;RETURN 5") == ["TS101"]
+    assert not check("DEF A(N);W(N);END_DEF;A(3);IF(DISTANCE < 9);A(2);ENDIF;A(4)")

@@ -1,0 +1,56 @@
+"""A note of another language is a note up to the end of its line, and nothing in it is read."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.fixing import fixed
+
+SIGNS = ("# ", "#", "## ", "-- ", "<!-- ", "REM ", "rem ", "/* ")
+NOTES = (
+    "drive to the wall", "wall!", "turn 90 degrees, then (maybe) 3 more: 0,5 s", "si está cerca",
+    "¡ojo!", "sensor < 10 => parar; e depois?", "while it goes, if it can", "for i in range", "a",
+    '"hola"', "é o fim do LOOP", "don't",
+)  # fmt: skip
+PLACES = (
+    "{}\nSI|F(2, 80)", "SI|{}\nF(2, 80)", "SI|F(2, 80) {}", "SI|F(2, 80); {}\nS",
+    "SI|LOOP(3) {}\n  F(2, 80)\n  {}\nEND_LOOP {}", "SI|IF(DISTANCE < 10)\nS\nELSE {}\nW(1)\nENDIF",
+    "SI|N = 3 {}\nW(N)\t{}", "SI|TASK\n{}\nBEEP(1, 440)\nEND_TASK\nF(2, 80)",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("sign", SIGNS)
+def test_a_note_begins_with_another_sign_and_is_told_once(sign: str, place: str) -> None:
+    for note in NOTES:
+        wrong = place.replace("{}", sign + note)
+        told = check(wrong)
+        assert [each.code for each in told] == [codes.OTHER_NOTE] * len(told), wrong
+        right = place.replace("{}", f"// {note}")
+        assert fixed(wrong, check).text == right
+
+
+@pytest.mark.parametrize("end", [" */", "*/", " -->", " **/"])
+def test_a_note_loses_the_sign_that_ends_it(end: str) -> None:
+    begin = "<!-- " if ">" in end else "/* "
+    wrong = f"SI|F(2, 80) {begin}go{end}\n{begin}wait 3{end}\nW(3)"
+    assert fixed(wrong, check).text == "SI|F(2, 80) // go\n// wait 3\nW(3)"
+
+
+@pytest.mark.parametrize("sign", SIGNS)
+@pytest.mark.parametrize("order", ["F(3, 60)", "IF(DISTANCE < 10);S;ENDIF", "avanza(3)"])
+def test_a_note_that_may_be_an_order_is_not_made_one(sign: str, order: str) -> None:
+    wrong = f"SI|F(2, 80) {sign}{order}"
+    assert check(wrong)
+    assert fixed(wrong, check).text == wrong
+
+
+@pytest.mark.parametrize("sign", ["#", "# ", "--"])
+def test_a_sign_where_a_value_is_begins_no_note(sign: str) -> None:
+    values = ("F({}a, 80)", "F(2, {}a)", "X = {}a", "W(1 + {}a)", "IF(DISTANCE < {}a);S;ENDIF")
+    for value, before in product(values, ("", "SI|", "S;")):
+        assert codes.OTHER_NOTE not in [each.code for each in check(before + value.format(sign))]

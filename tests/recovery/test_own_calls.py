@@ -1,0 +1,145 @@
+"""A DEF with values is read, and told of, alike for each count of values.
+
+The brackets of its header and of its call may be missing, with or without commas, and what is said
+of a word of the program's own ends with no gap.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tests.support.rows import each_row
+from tiniscript.base.languages import languages
+from tiniscript.base.limits import PARAMETERS
+from tiniscript.base.source import Source
+from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.rendering import message
+
+NAMES, NUMBERS = ("SIZE", "V", "ZOOM", "N2"), ("30", "2.5", "7", "0")
+COUNTS = range(1, PARAMETERS + 1)
+JOINTS = (", ", " ", " ,")
+PROGRAM = "DEF SIDE{head}\nSHOW({body})\nEND_DEF\nW(1)\nSIDE{call}"
+
+
+def program(head: str, call: str, count: int) -> str:
+    return PROGRAM.format(head=head, call=call, body=" + ".join(NAMES[:count]))
+
+
+@each_row("count, joint, other", product(COUNTS, JOINTS, JOINTS))
+def test_brackets_may_be_missing_around_any_count(count: int, joint: str, other: str) -> None:
+    names, numbers = NAMES[:count], NUMBERS[:count]
+    right = {"head": f"({', '.join(names)})", "call": f"({', '.join(numbers)})"}
+    bare = {"head": f" {joint.join(names)}", "call": f" {other.join(numbers)}"}
+    for lacks in ({"head"}, {"call"}, {"head", "call"}):
+        wrong = program(count=count, **{**right, **{it: bare[it] for it in lacks}})
+        assert fixed(wrong, check).text == program(count=count, **right), wrong
+
+
+SLIPS = (
+    "{w}(,{a})",
+    "{w}({a},)",
+    "{w}[{a}]",
+    "{w}{{{a}}}",
+    "{w}({a}))",
+    "{w}(,,{a})",
+    "Y = {w}({a})",
+)
+
+
+@pytest.mark.parametrize("language", languages())
+def test_no_sentence_on_a_def_ends_with_a_gap_or_takes_another_word(language: str) -> None:
+    for count, slip in product(COUNTS, SLIPS):
+        names, numbers = (", ".join(its[:count]) for its in (NAMES, NUMBERS))
+        header = slip.format(w="", a=names) if slip[0] == "{" else ""
+        for text in (
+            program(f"({names})", f"({numbers})\n{slip.format(w='SIDE', a=numbers)}", count),
+            *([program(header, f"({numbers})", count)] if header else []),
+        ):
+            for diagnostic in check(text):
+                said = message(diagnostic, Source(text, ""), language)
+                assert not re.search(r":\s*(?:DEF)?\s*$", said.message), said
+                assert not re.match(r"Y\b", said.message), said
+
+
+# -- what is said of each call, in every language -----------------------------------------------
+
+GIVEN = ("3", "30 CM", "-3", "TRUE", "DISTANCE", "DISTANCE < 10", "(1)", "MAX(1, 2)", "X", "1, 2")
+UNTAUGHT = ("A", "Q", "AB", "ABC", "LADO", "SIDE", "CUADRADO", "HOLA_2", "ZIGZAG")  # no other word
+
+
+@pytest.mark.parametrize("name", UNTAUGHT)
+def test_a_word_that_nothing_teaches_is_told_of_def_whatever_its_values(name: str) -> None:
+    for given in GIVEN:
+        text = f"{name}({given})"
+        first = check(text)[0]
+        for language in languages():
+            said = message(first, Source(text, ""), language)
+            assert f"DEF {name}(" in said.fix, (text, language, said)
+
+
+@pytest.mark.parametrize("count", range(1, PARAMETERS + 1))
+def test_another_count_of_values_shows_the_call_and_says_how_many(count: int) -> None:
+    usage = f"SIDE({', '.join(NAMES[:count])})"
+    for given in range(PARAMETERS + 2):
+        text = f"DEF {usage}\nS\nEND_DEF\nSIDE({', '.join(['60'] * given)})"
+        found = [each for each in check(text) if each.code.number == "TS141"]
+        assert len(found) == (given != count), text
+        for language, diagnostic in product(languages(), found):
+            said = message(diagnostic, Source(text, ""), language)
+            assert usage in said.message + said.fix, said
+            assert re.search(rf"\b{count} val(ue|or)e?s?\b", said.message), said
+
+
+KINDS = (
+    ("SHOW(N + 1)", "TRUE", "TS201"), ("F(N, 50)", "FALSE", "TS201"),
+    ("LOOP(N);S;END_LOOP", "TRUE", "TS201"), ("IF(N);S;ENDIF", "3", "TS202"),
+    ("IF(NOT N);S;ENDIF", "3", "TS202"), ("IF(N AND TRUE);S;ENDIF", "3", "TS202"),
+    ("W(1) UNTIL(N)", "3", "TS202"),
+)  # fmt: skip
+
+
+@each_row("body, given, code", KINDS)
+def test_a_body_that_needs_another_kind_names_the_first_call(
+    body: str, given: str, code: str
+) -> None:
+    """Also below a call through another DEF; a variable of the program is told of as before."""
+    for text, called in (
+        (f"DEF SIDE(N);{body};END_DEF;SIDE({given})", "SIDE"),
+        (f"DEF SIDE(n);{body};END_DEF;DEF TWO(K);SIDE(K);END_DEF;TWO({given})", "SIDE"),
+        (f"N = {given};{body}", ""),
+    ):
+        (diagnostic,) = (each for each in check(text) if each.code.number == code)
+        for language in languages():
+            said = message(diagnostic, Source(text, ""), language).fix
+            assert ("SIDE" in said) == bool(called), (text, said)
+
+
+EXTRAS = (" = 5", "=5", " + 1", "=-5", " = (5)", " = MAX(1, 2)", " < 3")
+
+
+@each_row("count, extra", product(COUNTS, EXTRAS))
+def test_what_follows_a_name_in_a_def_is_named_and_its_header_shown(count: int, extra: str) -> None:
+    """Python's values for calls that give none. All names are known below."""
+    names = NAMES[:count]
+    right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
+    for place in range(count):
+        wrong = right.replace(names[place], names[place] + extra, 1)
+        (found,) = check(wrong)
+        assert found.code.number == "TS091", wrong
+        assert found.values["fix"] == right.split("\n")[0], wrong
+
+
+@pytest.mark.parametrize("count", range(2, PARAMETERS + 1))
+def test_a_comma_that_is_missing_in_a_def_is_shown_in_its_header(count: int) -> None:
+    names = NAMES[:count]
+    right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
+    for bits in range(1, 1 << (count - 1)):
+        joints = [" " if bits >> k & 1 else ", " for k in range(count - 1)]
+        head = "".join(map("".join, zip(names, [*joints, ""], strict=True)))
+        wrong = right.replace(", ".join(names), head, 1)
+        (found,) = check(wrong)
+        assert (found.code.number, found.values["fix"]) == ("TS017", right.split("\n")[0]), wrong

@@ -1,0 +1,185 @@
+"""What is written in place of a word that cannot stand there: each offer is a right program."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript import check_text, robots
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, applied
+from tiniscript.base.words import lexicon
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.rendering import message
+
+TINIBOT, LINER = robots.load("tinibot").kit, robots.load("liner").kit
+BETWEEN = (";", "\n", "; ")
+
+
+def fix_of(text: str, lang: str = "en") -> str:
+    return message(check(text)[0], Source(text), lang).fix
+
+
+def mistakes(text: str) -> list[str]:
+    return [diagnostic.code.number for diagnostic in check(text) if diagnostic.is_mistake]
+
+
+# -- a sensor that is set ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("word", "FB")
+@pytest.mark.parametrize("value", ["30", "7.5"])
+@pytest.mark.parametrize("around", ["SI|{}", "SI|W(1);{}", "SI|{};S"])
+def test_a_number_for_a_distance_that_is_driven_is_centimetres(
+    between: str, word: str, value: str, around: str
+) -> None:
+    text = around.format(f"DISTANCE = {value}{between}{word}(DISTANCE, 60){between}S")
+    (diagnostic,) = check(text)
+    assert f"Write {word}({value} CM, 60) instead of {word}(DISTANCE, 60)" in fix_of(text)
+    assert diagnostic.repair is not None and not diagnostic.repair.is_sure
+    right = around.format(f"{word}({value} CM, 60){between}S")
+    assert applied(text, diagnostic.repair.edits) == right and not mistakes(right)
+
+
+def test_each_use_up_to_the_next_number_is_written() -> None:
+    text = "SI|DISTANCE = 30;F(DISTANCE, 60);B(DISTANCE, 40);DISTANCE = 9;F(DISTANCE, 60)"
+    first = check(text)[0]
+    assert first.repair is not None
+    after = applied(text, first.repair.edits)
+    assert after == "SI|F(30 CM, 60);B(30 CM, 40);DISTANCE = 9;F(DISTANCE, 60)"
+
+
+@pytest.mark.parametrize(
+    ("unit", "number", "way"),
+    [("mm", "300", "30 CM"), ("m", "0.5", "50 CM"), ("cm", "30", "30 CM"), ("°", "90", "90 DEG")],
+)
+def test_the_unit_of_the_sensor_says_the_unit_of_the_move(unit: str, number: str, way: str) -> None:
+    sensors = tuple(it._replace(unit=unit) if it.unit == "cm" else it for it in TINIBOT.sensors)
+    word = "R" if way.endswith("DEG") else "F"
+    text = f"SI|DISTANCE = {number};{word}(DISTANCE, 60)"
+    (diagnostic,) = check_text(text, TINIBOT._replace(sensors=sensors)).diagnostics
+    assert diagnostic.values["way"] == f"{word}({way}, 60)"
+
+
+def test_a_move_of_another_unit_and_a_robot_without_one_get_a_number_of_their_own() -> None:
+    assert "CM, 60" not in fix_of("SI|DISTANCE = 30;R(DISTANCE, 60)")
+    assert fix_of("SI|DISTANCE = 30;R(DISTANCE, 60)").startswith("R does not go by CM")
+    kit = TINIBOT._replace(speed=0, turn=0)
+    (diagnostic,) = check_text("SI|DISTANCE = 30;F(DISTANCE, 60)", kit).diagnostics
+    said = message(diagnostic, Source("SI|DISTANCE = 30;F(DISTANCE, 60)"), "en")
+    assert said.fix.startswith("F goes by time here, not by CM")
+    assert fix_of("SI|LIGHT_L = 300;F(LIGHT_L, 60)") == "MY_LIGHT_L = 300"
+
+
+# -- BREAK outside a loop ---------------------------------------------------------------------
+
+HEADS = ["IF(DISTANCE < 10)", "IF(KEY_A AND LIGHT_L > 3)"]
+RESTS = [["BEEP(1, 440)"], ["F(1, 60)", "S"], ["LOOP(2);S;END_LOOP"]]
+
+
+@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize("head", HEADS)
+@pytest.mark.parametrize("inside", [[], ["S"], ["B(1, 60)", "W(1)"]])
+@pytest.mark.parametrize("rest", RESTS)
+@pytest.mark.parametrize(
+    "around", ["SI|{}", "SI|F(2, 60);{}", "DEF A;{};END_DEF;A", "TASK;{};END_TASK;F(9, 60)"]
+)
+def test_the_rest_after_a_break_goes_into_the_other_branch(
+    between: str, head: str, inside: list[str], rest: list[str], around: str
+) -> None:
+    text = around.format(between.join([head, *inside, "BREAK", "ENDIF", *rest]))
+    diagnostic = next(it for it in check(text) if it.code.number == "TS115")
+    right = [head, *(inside or ["S"]), "ELSE", *rest, "ENDIF"]
+    assert diagnostic.values["fix"] == ";".join(right)
+    assert diagnostic.repair is not None
+    after = applied(text, diagnostic.repair.edits)
+    joined = after.replace("\n", ";").replace("; ", ";")
+    assert joined == around.format(";".join(right)).replace("; ", ";")
+    assert not mistakes(after)
+
+
+def test_a_break_in_the_else_leaves_out_the_other_way_round() -> None:
+    text = "SI|IF(DISTANCE < 9);B(1, 60);ELSE;S;BREAK;ENDIF;W(2)"
+    assert check(text)[0].values["fix"] == "IF(DISTANCE < 9);B(1, 60);W(2);ELSE;S;ENDIF"
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["SI|BREAK;F(1, 60)", "SI|IF(DISTANCE < 9);BREAK;ENDIF",
+     "SI|IF(DISTANCE < 9);BREAK;S;ENDIF;W(1)",
+     "SI|IF(DISTANCE < 9);S;ELSEIF(DISTANCE < 20);BREAK;ENDIF;W(1)",
+     "SI|IF(DISTANCE < 9);IF(KEY_A);BREAK;ENDIF;S;ENDIF;W(1)",
+     "SI|IF(DISTANCE < 9);BREAK;ENDIF;DEF A;S;END_DEF;A"],
+)  # fmt: skip
+def test_where_nothing_or_more_is_left_out_no_branch_is_offered(text: str) -> None:
+    said = next(it for it in check(text) if it.code.number == "TS115")
+    assert not said.values.get("fix") and said.repair is None
+
+
+# -- a lamp -----------------------------------------------------------------------------------
+
+LAMPS = sorted(
+    word for word, said in lexicon().items()
+    if any(it.kind == "LED" and not it.value for it in said) and word != "LED"
+)  # fmt: skip
+LIGHTS = ["LIGHT", "LUZ"]
+SWITCHED = ["ON", "OFF", "HIGH", "LOW", "TRUE", "FALSE", "1", "0"]
+
+
+def found_by(text: str, kit: Kit) -> list[Diagnostic]:
+    return check_text(text, kit).diagnostics
+
+
+@pytest.mark.parametrize("around", ["SI|{}", "SI|W(2);{};F(1, 60)", "LOOP(2);{};END_LOOP"])
+@pytest.mark.parametrize("given", SWITCHED)
+@pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
+def test_a_robot_without_a_lamp_says_so(word: str, given: str, around: str) -> None:
+    text = around.format(f"{word}({given})")
+    (said,) = [message(it, Source(text), "en") for it in found_by(text, TINIBOT)]
+    assert (said.code, f"no lamp that a program can switch with {word}" in said.message) == (
+        "TS122", True,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("given", SWITCHED)
+@pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
+def test_a_robot_with_a_lamp_names_it(word: str, given: str) -> None:
+    text = f"SI|{word}({given});W(1)"
+    (diagnostic,) = found_by(text, LINER)
+    answer = "TRUE" if given in ("ON", "HIGH", "TRUE", "1") else "FALSE"
+    assert f"LED({answer})" in message(diagnostic, Source(text), "en").fix
+
+
+def test_lamps_are_told_once_and_a_light_that_is_not_switched_is_none() -> None:
+    assert len(found_by("SI|LIGHT(ON);W(2);LIGHT(OFF)", TINIBOT)) == 1
+    assert LAMPS and "L\u00c2MPADA" in str(found_by("SI|L\u00c2MPADA(1)", TINIBOT)[0].values)
+    for text in ("SI|LIGHT(300)", "SI|LIGHT", "SI|LED(ON)"):
+        assert found_by(text, TINIBOT)[0].code.number != "TS122"
+    assert not found_by("DEF LAMP(N);W(N);END_DEF;LAMP(1)", TINIBOT)
+
+
+# -- a number in the brackets of a DEF ---------------------------------------------------------
+
+
+@pytest.mark.parametrize(("lang", "name"), [("en", "SIZE"), ("es", "LARGO"), ("pt", "TAMANHO")])
+@pytest.mark.parametrize("between", BETWEEN)
+@pytest.mark.parametrize(
+    "inside", ["F({} CM, 60)", "R({}, 60)", "W(1 + {})", "LOOP({});S;END_LOOP"]
+)
+def test_a_number_in_a_def_gets_its_name_in_the_body_too(
+    lang: str, name: str, between: str, inside: str
+) -> None:
+    lines = ["SI|DEF SIDE(40)", "B(1, 60)", *inside.format("40").split(";"), "END_DEF", "SIDE(40)"]
+    text = between.join(lines)
+    fix = fix_of(text, lang)
+    assert inside.format(name).split(";")[0] in fix and f"DEF SIDE({name})" in fix
+    assert "SIDE(40)" in fix
+    right = text.replace("DEF SIDE(40)", f"DEF SIDE({name})")
+    assert not mistakes(right.replace(inside.format("40"), inside.format(name)))
+
+
+def test_another_number_of_the_body_is_not_named() -> None:
+    for head in ("4", "40, 60"):
+        fix = fix_of(f"SI|DEF SIDE({head});F(40 CM, 60);END_DEF;SIDE(40)")
+        assert "F(SIZE" not in fix and "SIDE(30)" in fix

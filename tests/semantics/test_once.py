@@ -1,0 +1,141 @@
+"""What is done or read only once, or alone, where its writer meant more.
+
+A key of the remote control outside all that repeats, and a TASK with nothing beside it.
+"""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.pupils.corpus import check
+from tests.support.casefile import ROOT
+from tiniscript import check_text, robots
+from tiniscript.base.kit import REMOTE
+from tiniscript.base.source import applied
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+
+KIT = robots.load("tinibot").kit
+QUESTIONS = [
+    device.name if device.is_yes_no else f"{device.name} > 20" for device in REMOTE
+] + ["NOT KEY_A", "DISTANCE < 9 OR KEY_B"]  # fmt: skip
+AROUND = [
+    "{}", "SI|{}", "SI|F(1, 60);{};S", "SI|W(2)\n{}\nS", "IF(DISTANCE < 9);{};ENDIF",
+    "IF(DISTANCE < 9);S;ELSE;W(1);{};ENDIF", "SI|TASK;{};END_TASK;F(9, 60)",
+    "W(FOREVER) UNTIL(DISTANCE < 9);{}", "LOOP(3);F(1, 60);END_LOOP;{}",
+    "WHEN(KEY_LEFT);L(1, 60);END_WHEN;{}",
+]  # fmt: skip
+READ = ["IF({q});F(1, 60);ENDIF", "IF(DISTANCE < 5);S;W(1);ELSEIF({q});F(1, 60);ENDIF"]
+VALUES = ["F(2, {v})", "M({v}, {v});W(1)", "SHOW({v})", "X = {v};SHOW(X)", "LOOP({v});S;END_LOOP",
+          "W({v});S", "DEF A(N);W(N);END_DEF;A({v})"]  # fmt: skip
+REPEATED = [
+    "LOOP(FOREVER);{};W(0.1);END_LOOP", "WHILE(DISTANCE > 9);{};W(1);END_WHILE",
+    "WHEN(DISTANCE < 9);{};END_WHEN", "DEF A;{};END_DEF;LOOP(FOREVER);A;W(1);END_LOOP",
+    "TASK;LOOP(FOREVER);{};W(1);END_LOOP;END_TASK;S", "W(FOREVER) UNTIL(KEY_A);{}",
+    "WHILE(NOT KEY_B);W(0.1);END_WHILE;{}", "DEF WAIT;W(9) UNTIL(KEY_A);END_DEF;WAIT;{}",
+    "LOOP(FOREVER);IF(KEY_A);BREAK;ENDIF;W(0.1);END_LOOP;{}",
+]  # fmt: skip
+
+
+def of(code: codes.Code, text: str) -> list[Diagnostic]:
+    found = check_text(text, KIT)
+    assert found.is_right, text
+    return [diagnostic for diagnostic in found.diagnostics if diagnostic.code is code]
+
+
+@pytest.mark.sampled("around", keep=3)
+@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("read", READ)
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_a_question_that_is_asked_once_is_told(around: str, read: str, question: str) -> None:
+    asked = read.format(q=question)
+    text = around.format(asked)
+    (diagnostic,) = of(codes.ASKED_ONCE, text)
+    name = re.findall(r"(?:KEY|PAD)_\w+", question)[0]
+    assert text[slice(*diagnostic.span)] == name
+    assert name in (diagnostic.values.get("early"), diagnostic.values.get("name"))
+    is_early = around in ("{}", "SI|{}", *AROUND[4:5], AROUND[6], AROUND[9])
+    assert ("early" in diagnostic.values) == is_early or "W(1);ELSEIF" in asked
+    if diagnostic.repair and "IF(DISTANCE < 9)" not in text and "WHEN" not in text:
+        assert not of(codes.ASKED_ONCE, applied(text, diagnostic.repair.edits))
+
+
+@pytest.mark.parametrize("value", ["PAD_X", "ABS(PAD_Y) + 5"])
+@pytest.mark.parametrize("text", VALUES)
+def test_a_stick_that_is_read_once_is_told_in_each_place_of_a_value(text: str, value: str) -> None:
+    assert len(of(codes.ASKED_ONCE, text.format(v=value))) == 1
+
+
+@pytest.mark.sampled("around", keep=3)
+@pytest.mark.parametrize("around", REPEATED)
+@pytest.mark.parametrize("read", READ)
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_what_is_asked_again_or_waited_for_is_not_told(
+    around: str, read: str, question: str
+) -> None:
+    assert not of(codes.ASKED_ONCE, around.format(read.format(q=question)))
+
+
+def test_several_are_told_once_and_the_loop_is_around_all() -> None:
+    text = "SI|IF(KEY_UP)\nF(0.2, 60)\nENDIF\nIF(KEY_DOWN)\nB(0.2, 60)\nENDIF"
+    (diagnostic,) = check(text)
+    assert diagnostic.repair is not None and not diagnostic.repair.is_sure
+    body = text.removeprefix("SI|")
+    assert applied(text, diagnostic.repair.edits) == f"SI|LOOP(FOREVER)\n{body}\nEND_LOOP"
+    assert not check(applied(text, diagnostic.repair.edits))
+
+
+def test_a_variable_that_is_called_as_a_key_is_no_key() -> None:
+    assert not of(codes.ASKED_ONCE, "KEY_A = 3;LOOP(KEY_A);S;END_LOOP;SHOW(KEY_A)")
+
+
+def test_no_right_program_of_the_examples_asks_once_or_is_a_lone_task() -> None:
+    places = [*(ROOT / "examples").glob("*.ts")]
+    assert places
+    for place in places:
+        text = place.read_text()
+        told = [it.code for it in check(text) if it.code in (codes.ASKED_ONCE, codes.LONE_TASK)]
+        assert not told, place
+
+
+# -- a TASK alone -----------------------------------------------------------------------------
+
+MOVES = ["F(5, 50)", "R(90 DEG, 60)", "B(2, 50) UNTIL(DISTANCE > 30)"]
+BEEP = "BEEP(5, 440)"
+
+
+@pytest.mark.parametrize("between", [";", "\n"])
+@pytest.mark.parametrize("order", [0, 1])
+@pytest.mark.parametrize("move", MOVES)
+def test_of_a_lone_task_that_drives_and_beeps_one_goes_outside(
+    move: str, order: int, between: str
+) -> None:
+    inside = [move, BEEP][:: -1 if order else 1]
+    text = f"SI|{between.join(['TASK', *inside, 'END_TASK'])}"
+    (diagnostic,) = of(codes.LONE_TASK, text)
+    assert diagnostic.repair is not None
+    after = applied(text, diagnostic.repair.edits)
+    assert after == f"SI|{between.join(['TASK', BEEP, 'END_TASK', move])}"
+    assert not of(codes.LONE_TASK, after)
+    assert diagnostic.values["fix"] == f"TASK;{BEEP};END_TASK;{move}"
+
+
+@pytest.mark.parametrize("inside", [*MOVES, f"F(1, 50);{BEEP};S", "LOOP(FOREVER);F(1, 50);END_LOOP",
+                                    f"{BEEP} // F\nF(1, 50)"])  # fmt: skip
+@pytest.mark.parametrize("before", ["SI|", "N = 3;", "DEF A;S;END_DEF;"])
+def test_each_task_with_nothing_beside_it_is_told(inside: str, before: str) -> None:
+    text = f"{before}TASK\n{inside}\nEND_TASK"
+    assert "fix" not in of(codes.LONE_TASK, text)[0].values
+
+
+@pytest.mark.parametrize("beside", ["S", "F(1, 50)", "TASK;W(9);END_TASK", "SHOW(1)",
+                                    "WHEN(DISTANCE < 9);S;W(1);END_WHEN"])  # fmt: skip
+def test_a_task_with_anything_beside_it_is_not_told(beside: str) -> None:
+    for text in (f"TASK;{BEEP};END_TASK;{beside}", f"{beside};TASK;F(5, 50);END_TASK"):
+        assert not of(codes.LONE_TASK, text)
+
+
+def test_a_lone_when_is_no_lone_task() -> None:
+    assert not of(codes.LONE_TASK, "WHEN(KEY_A);BEEP(1, 440);END_WHEN")
