@@ -19,6 +19,7 @@ from tiniscript.base.words import (
     ALIASES,
     BLOCK_ENDS,
     MOVES,
+    POWER,
     QUESTION,
     SINCE,
     UNIT_OF,
@@ -50,7 +51,7 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.recovery.orders import Order, block, condition_in, made_up, orders, written
 from tiniscript.recovery.suggestions import Gaps, NoGap, Row, holding
-from tiniscript.recovery.trailing_tokens import label, width
+from tiniscript.recovery.trailing_tokens import label, set_in, width
 from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import (
     instruction_at,
@@ -92,6 +93,7 @@ _DEF_ENDS = ("END_DEF", "ENDDEF")
 _WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
 _MOST_OF_END = 4  # words: `fin del bucle`
 _NO_CALLS = ("leaves", "again", "etc", "end")
+_NUMBERED = ("unit", "value", "number", "often", "times", "to", "at", "by")  # behind a number
 _NO_NAMES = (*_NO_CALLS, "filler", "same")  # without values
 
 
@@ -331,10 +333,10 @@ class Usage:
     def question(self, word: str) -> str:
         """Return a header with the question that was written, without numbers that were not.
 
-        Nothing where no number is asked for.
+        Nothing where no number is asked for, and no yes or no.
         """
         asked = self.asked(word)
-        if not any(item.kind is NUMBER for item in asked):
+        if not any(item.kind is NUMBER or self.names.is_yes_no(item.text) for item in asked):
             return ""
         text = laid_out(condition_in(asked, self.names))
         return f"{word}({text})" if text else WORDS[word].usage
@@ -457,6 +459,31 @@ class Usage:
         begun = "SB|" if self.around.begun == "SB" else ""
         when = self.source[self.piece] if self.signs[:1] == ["WHEN"] and not begun else ""
         return {"begun": begun, "asked": asked or "BUTTON", "when": when}
+
+    def one_number(self, word: str) -> dict[str, str]:
+        """How far a move goes that has one number, which no robot drives so many seconds.
+
+        `forward 50` is a way as in Logo, or a power; what is no power is a way.
+        """
+        number, *rest = [item for item in self.row[1:] if item.text not in ("(", ")")] or [None]
+        if UNIT_OF.get(word) != "CM" or number is None or number.kind is not NUMBER:
+            return {}
+        is_more = bool(rest) and (rest[0].kind is not WORD or said_of(rest[0].text, *_NUMBERED))
+        if is_more or float(number.text) < LONG_S:
+            return {}
+        way = f"{word}({number.text} CM, {POWER.sample})"
+        if float(number.text) > MOST_POWER:
+            return {"fix": way, "usage": ""}
+        return {"number": number.text, "way": way, "power": f"{word}(2, {number.text})"}
+
+    def reading(self, word: str) -> str:
+        """The sensor on the side of an L or R that stands for a value, and is no name."""
+        is_other = self.behind_it.lstrip(" ").startswith("(") or word in set_in(self.text)
+        return "" if is_other else self.names.on_side(word)
+
+    def lamp(self, call: str) -> str:
+        """What is said of the robot's lamp, "" where it has none."""
+        return call if "LED" in self.names.actuators else ""
 
     def in_words(self, word: str) -> dict[str, str]:
         """A question in words without brackets: `IF BRIGHT THEN STOP`."""
@@ -998,7 +1025,7 @@ _SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "amount": lambda it, _: it.amount, "button": lambda it, _: it.button(),
     "dots": lambda it, _: it.dots(), "unended": lambda it, _: it.unended(),
     "instead": lambda it, _: said_instead(it.signs[0]), "in_words": Usage.in_words,
-    "in_brackets": Usage.in_brackets,
+    "in_brackets": Usage.in_brackets, "one_number": Usage.one_number,
     "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
 }  # fmt: skip
 GAPS: dict[str, Callable[[Gaps], str]] = {
@@ -1008,6 +1035,9 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "step": _gap_of(lambda it: it.signs[1][0]), "number": _gap_of(lambda it: it.number),
     "found": _gap_of(lambda it: it.found.values["found"]),
     "word": _gap_of(lambda it: it.found.values["word"]),
+    "reading": _gap_of(lambda it: it.reading(it.found.values["word"])),
+    "lamp": _gap_of(lambda it: it.lamp("LED")), "lamp_on": _gap_of(lambda it: it.lamp("LED(TRUE)")),
+    "lamp_off": _gap_of(lambda it: it.lamp("LED(FALSE)")),
     "right": _offered_word, "named": _intended_word,
     "named_first": lambda gaps: _usage_at(gaps).named(_offered_word(gaps),
         _usage_at(gaps).signs[0]),
