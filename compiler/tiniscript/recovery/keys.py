@@ -180,7 +180,13 @@ class _Part:
         signs: list[str] = []
         if not side:
             behind = self._while(
-                end, lambda it: it in _EQUAL or _is_key(it) or _is_key_word(it, *_LINKS)
+                end,
+                lambda it: (
+                    it in _EQUAL
+                    or _is_key(it)
+                    or _is_key_word(it, *_LINKS)
+                    or bool(said_of(it, "to"))
+                ),
             )
             letters = (n for n in range(end, behind + 1) if self._word(n) in ("A", "B"))
             side = _side(self._word(behind))

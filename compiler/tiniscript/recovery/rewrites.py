@@ -460,4 +460,6 @@ def _sensor_of_side(tokens: Sequence[Lexeme], k: int, names: Names) -> tuple[str
     name = "_".join((tokens[k].text, *signs[at : at + 1]))
     sensor = name if name in names.sensors else names.meant(name)
     count = 2 if not at else 4 if signs[0] in "([" else 3
-    return (sensor, count) if is_closed and signs[at:] and sensor in names.sensors else None
+    is_call = not at and signs[1:2] == ("(",)  # an order after it: `IF LIGHT L(1, 60)`
+    is_said = is_closed and signs[at:] and not is_call
+    return (sensor, count) if is_said and sensor in names.sensors else None

@@ -711,8 +711,8 @@ DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩
 DEF n=@word ( v=@noparen+ ) ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩
     | DEF $n ( $v ) ; ⟨¦$b⟩ | 1 | TS014 | applied
     | DEF LADO(X)⟨: ¦ ⟩F(X, 50)⏎LADO(3) => DEF LADO(X);F(X, 50);END_DEF⏎LADO(3)
-n=@defw ( a=@noparen* b=@num seconds c=@noparen* )
-    | $n ( $a $b $c ) | 1 | TS049 | offered
+n=@defw ( a=@noparen* b=@num u=seconds|@in_cm|@in_m|@in_deg c=@noparen* )
+    | $n ( $a @own:b:u $c ) | 1 | TS049 | offered
     | DEF LADO(X)⏎F(X, 50)⏎END_DEF⏎LADO(2 s) => DEF LADO(X)⏎F(X, 50)⏎END_DEF⏎LADO(2)
 ^ call|do|make|the the|one? b=@def
     | $b | 1 | TS044 | applied

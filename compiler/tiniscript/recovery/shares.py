@@ -45,7 +45,10 @@ def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic
     for k, token in enumerate(tokens):
         size = _percent(tokens, k + 1, names) if token.kind is NUMBER else 0
         at = _compared(tokens, k) if size and float(token.text) <= _WHOLE else -1
-        sensor = _sensor(tokens[at].text, names) if at >= 0 else None
+        side = "".join(said_of(tokens[at].text, "left", "right")) if at > 0 else ""
+        at -= bool(side)  # `luz izquierda`
+        asked = "_".join((tokens[at].text, *([side[0].upper()] if side else [])))
+        sensor = _sensor(asked, names) if at >= 0 else None
         if sensor is None or sensor.low:
             continue
         begin, end = ends[k] - len(token.source or ""), ends[k + size]

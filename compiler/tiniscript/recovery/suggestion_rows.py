@@ -272,7 +272,7 @@ SUGGESTIONS = """
 ^ @strange
     | TS074 offered here | fix={several}; example={made_up?}
     | esperar 2 segundos luego avanzar => fix=W(2);F(2, 80)
-^ @switched | TS122 | | PRENDER => TS122
+^ @switched | TS122 | found={lamp_named?}; fix={lamp_set?} | PRENDER => TS122
 ^ @button | TS120 | *=button | SB|botão⏎F(2, 80) => begun=SB|
 ^ @strange
     | TS102 offered | ?={endless}; fix=LOOP(FOREVER); right=LOOP; found={named_endless};

@@ -45,6 +45,7 @@ from tiniscript.recovery.meanings import (
     closed,
     concept_of,
     lexemes,
+    made,
     plain,
     said_of,
     words_of,
@@ -90,6 +91,7 @@ _OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
 _BEGINS = (";", "newline", "|")  # what an instruction begins behind
 _DEF_ENDS = ("END_DEF", "ENDDEF")
+_FAR_CM = 400  # more is rather in milliseconds
 _WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
 _MOST_OF_END = 4  # words: `fin del bucle`
 _NO_CALLS = ("leaves", "again", "etc", "end")
@@ -344,9 +346,13 @@ class Usage:
     def asked(self, word: str) -> list[Lexeme]:
         """Return what stands behind a header, up to what is done."""
         behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.row)][1:]
-        begun = DONE - {"L", "R"}  # `pared a la derecha`
-        meant = [_is_over(item) or self.names.meant(item.text) in begun for item in behind]
-        return behind[: [*meant, True].index(True)]
+        meant = [self.names.meant(item.text) for item in behind]
+        begun = (
+            it in DONE and (it not in ("L", "R") or after.text == "(")  # `pared a la derecha`
+            for it, after in zip(meant, [*behind, made(";")][1:], strict=True)
+        )
+        over = [_is_over(item) or is_begun for item, is_begun in zip(behind, begun, strict=True)]
+        return behind[: [*over, True].index(True)]
 
     def is_button(self, word: str) -> bool:
         return "BUTTON" not in self.names.sensors and concept_of(word) == "BUTTON"
@@ -465,11 +471,12 @@ class Usage:
 
         `forward 50` is a way as in Logo, or a power; what is no power is a way.
         """
-        number, *rest = [item for item in self.row[1:] if item.text not in ("(", ")")] or [None]
-        if UNIT_OF.get(word) != "CM" or number is None or number.kind is not NUMBER:
+        items = [item for item in self.row[1:] if item.text not in ("(", ")")]
+        if UNIT_OF.get(word) != "CM" or not items or items[0].kind is not NUMBER:
             return {}
+        number, *rest = items
         is_more = bool(rest) and (rest[0].kind is not WORD or said_of(rest[0].text, *_NUMBERED))
-        if is_more or float(number.text) < LONG_S:
+        if is_more or not LONG_S <= float(number.text) <= _FAR_CM:
             return {}
         way = f"{word}({number.text} CM, {POWER.sample})"
         if float(number.text) > MOST_POWER:
@@ -487,7 +494,7 @@ class Usage:
 
     def in_words(self, word: str) -> dict[str, str]:
         """A question in words without brackets: `IF BRIGHT THEN STOP`."""
-        text = worded(self.asked(word), self.names) or {}
+        text = worded([made("THE"), *self.asked(word)], self.names) or {}  # one alone is asked
         return text if text.get("asked") or text.get("question") else {}
 
     def in_brackets(self, word: str) -> dict[str, str]:
@@ -986,6 +993,13 @@ def _lamp_here(gaps: Gaps) -> str:
     return word if usage.is_first and not has_lamp and concept_of(plain(word)) == "LED" else ""
 
 
+def _lamp_set(gaps: Gaps) -> str:
+    """The lamp that words switch on or off."""
+    usage = _usage_at(gaps)
+    words = (*usage.words, "_".join(usage.words[:2]))
+    return usage.lamp(f"LED({'FALSE' if any(said_of(it, 'off') for it in words) else 'TRUE'})")
+
+
 def _leading_filler(gaps: Gaps) -> str:
     """A word that says nothing, or the button, and begins an instruction."""
     found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
@@ -1038,6 +1052,7 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "reading": _gap_of(lambda it: it.reading(it.found.values["word"])),
     "lamp": _gap_of(lambda it: it.lamp("LED")), "lamp_on": _gap_of(lambda it: it.lamp("LED(TRUE)")),
     "lamp_off": _gap_of(lambda it: it.lamp("LED(FALSE)")),
+    "lamp_named": _gap_of(lambda it: it.lamp(it.source[it.piece])), "lamp_set": _lamp_set,
     "right": _offered_word, "named": _intended_word,
     "named_first": lambda gaps: _usage_at(gaps).named(_offered_word(gaps),
         _usage_at(gaps).signs[0]),
