@@ -71,12 +71,51 @@ def test_an_order_for_a_key_is_asked_for_it(side: str, order: str, sign: str) ->
         assert found.values["fix"] == f"IF(KEY_{side});{order};ENDIF"
 
 
+STICK = {"UP": "PAD_Y > 0", "DOWN": "PAD_Y < 0", "LEFT": "PAD_X < 0", "RIGHT": "PAD_X > 0"}
+
+
+@pytest.mark.parametrize("stick", ["PAD", "joystick", "palanca", "ALAVANCA"])
+@pytest.mark.parametrize("side", STICK)
+def test_a_side_of_the_stick_is_shown_as_its_number_and_as_an_arrow(stick: str, side: str) -> None:
+    forms = ("{k} {s}", "{k}_{s}", "{k} = {s}", "{s} {k}", "{k}({s})", "{k} {s} = TRUE")
+    for place, form, word in product(PLACES, forms, SIDES[side]):
+        wrong = place.replace("{}", form.format(k=stick, s=word), 1).replace("{}", "KEY_A")
+        (found,) = check(wrong)
+        values = {"fix": STICK[side], "arrow": f"KEY_{side}"}
+        assert {name: found.values.get(name) for name in values} == values, wrong
+        assert fixed(wrong, check).text == wrong
+
+
+@pytest.mark.parametrize("side", STICK)
+def test_an_axis_with_its_side_is_asked_for_its_number(side: str) -> None:
+    for place, form in product(PLACES, ("PAD_X {}", "PAD_X = {}", "STICK_X_{}", "PAD_Y == {}")):
+        wrong = place.replace("{}", form.replace("{}", side), 1).replace("{}", "KEY_A")
+        (found,) = check(wrong)
+        assert (found.values["fix"], found.values["arrow"]) == (STICK[side], "")
+
+
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_a_letter_for_a_sensor_is_shown_as_that_sensor(side: str) -> None:
+    for text in (f"IF({side} > 500);S;ENDIF", f"SHOW({side})", f"W(2) UNTIL({side} < 9)"):
+        for place in (
+            "{}",
+            "W(1);{}",
+            "W(1)\n{}\nW(2)",
+            "LOOP(2);{};END_LOOP",
+            "DEF A1;{};END_DEF",
+        ):
+            (found,) = (it for it in check(place.replace("{}", text)) if it.is_mistake)
+            assert found.values["reading"] == f"LIGHT_{side}", place
+
+
 @pytest.mark.parametrize("stem", ["LIGHT", "luz"])
 @pytest.mark.parametrize(
     ("way", "side"), [(way, side) for side in ("LEFT", "RIGHT") for way in SIDES[side]]
 )
 def test_a_light_in_own_words_becomes_its_reading(stem: str, way: str, side: str) -> None:
-    for form, place in product(("{0}_{1}", "{1}_{0}", "{0}{1}", "{1}{0}"), PLACES):
+    for form, place in product(
+        ("{0}_{1}", "{1}_{0}", "{0}{1}", "{1}{0}", "{0}({1})", "{0} {1}"), PLACES
+    ):
         asked = f"{form.format(stem, way)} > 300"
         assert fixed(place.replace("{}", asked), check).text == place.replace(
             "{}", f"LIGHT_{side[0]} > 300"

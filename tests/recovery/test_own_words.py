@@ -230,7 +230,7 @@ def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
         ("L(1, 50) 2X", {"fix": "LOOP(2);L(1, 50);END_LOOP"}),
         ("turn(right, 45)", {"right": "R(45 DEG, 60)"}),
         ("VOLTA(2, 80)", {"to_left": "L(2, 80)", "to_right": "R(2, 80)"}),
-        ("WHEN DISTANCE < 37 BEEP", {"usage": "WHEN(DISTANCE < 37)"}),
+        ("WHEN DISTANCE < 37 BEEP", {"fix": "WHEN(DISTANCE < 37);BEEP(1, 440);END_WHEN"}),
         ("SE(DISTANCE < 37 E NÃO ESCURO)", {"question": "DISTANCE < 37 AND LIGHT_L > 500"}),
         (
             "IF(DISTANCE < 9)\nS\nELSE DISTANCE < 37\nF(1, 30)\nENDIF",

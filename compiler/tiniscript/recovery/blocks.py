@@ -9,14 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from tiniscript.base.kit import REMOTE
 from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery.lines import ANY_END, Reading
-from tiniscript.recovery.meanings import ENDED, Lexeme, made
+from tiniscript.recovery.meanings import ENDED, Lexeme, made, texts
 from tiniscript.recovery.rewrites import negated
 from tiniscript.syntax.outline import Item
 
 _ASKING = ("IF", "WHILE", "WHEN")
+_REMOTE = frozenset(device.name for device in REMOTE)
 LONGEST = 200  # items behind an ELSE whose ends are counted
 
 
@@ -179,11 +181,16 @@ class Matching:
         return is_begun and end == len(tokens) and all(it.source is None for it in around)
 
     def is_when(self) -> bool:
-        """Whether an IF is meant as a WHEN: at the top level, with lines and an end of its own."""
+        """Whether an IF is meant as a WHEN: at the top level, with lines and an end of its own.
+
+        A key is asked for so anyway: who asks once, as the program begins, never sees it pressed.
+        """
         if self.open or not self.line.is_when or self.item.word != "IF":
             return False
         line, part = next(self.parts(), (self.k, self.item))
         ended = ENDED.get(part.word)
+        if not _REMOTE.isdisjoint(texts(self.line.reading.tokens[slice(*self.item[2:4])])):
+            return part.kind != "end" or ended != "IF"
         return part.kind == "end" and (ended == "WHEN" or (line != self.k and ended != "IF"))
 
     def is_end_of_do(self) -> bool:

@@ -1,7 +1,8 @@
-"""Keys of a remote control in a pupil's own words: `KEY = UP`, `botón A`, `flecha arriba`.
+"""Keys and the stick of a remote control in a pupil's own words: `botón A`, `palanca izquierda`.
 
 Each leads to one of the readings that a robot has of them, and a key that there is not to all of
-these. Where an order is given to a key, `flecha arriba = F(1, 60)`, the key is asked.
+these. Where an order is given to a key, `flecha arriba = F(1, 60)`, the key is asked. A side of the
+stick, `PAD LEFT`, is a number below or above 0, and may be meant as the arrow: both are shown.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from tiniscript.recovery.writing import without_note
 
 KEYS = tuple(device.name for device in REMOTE if device.is_yes_no)
 _SIDES = {"F": "UP", "B": "DOWN", "L": "LEFT", "R": "RIGHT"}  # what arrows say alone
+_STICK = {"LEFT": "PAD_X < 0", "RIGHT": "PAD_X > 0", "UP": "PAD_Y > 0", "DOWN": "PAD_Y < 0"}
 _PART = re.compile(r"([^;{}|]*)(\|?)")
 _PIECE = re.compile(r"\d[\d.]*|[^\W\d_]+|<>|!=|==|\S")
 _HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # of `upKey`
@@ -29,6 +31,7 @@ _EQUAL = ("=", "==", "_", "-", ".", '"', "'", "<>", "!=", "(")
 _GIVEN = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
 _SET = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
 _LINKS = ("the", "of", "to", "is", "filler", "small", "pressed")
+_BEFORE, _BEHIND = ("(", "AND", "OR", "NOT"), (")", "AND", "OR")  # what is asked alone
 
 
 class _Piece(NamedTuple):
@@ -39,11 +42,16 @@ class _Piece(NamedTuple):
 
 
 class _Key(NamedTuple):
-    """Pieces that say a key, from `first` up to `end`; `right` is "" for one that there is not."""
+    """Pieces that say a key, from `first` up to `end`; `right` is "" for one that there is not.
+
+    `arrow` is the key that may be meant where `right` asks the stick. What is not sure is shown.
+    """
 
     first: int
     end: int
     right: str
+    arrow: str = ""
+    is_sure: bool = True
 
 
 def asked_keys(source: Source, kit: Kit) -> list[Diagnostic]:
@@ -103,11 +111,13 @@ class _Part:
             return
         asks = (k for k, each in enumerate(self.pieces) if self._key_of(each) in ASKING)
         k = next(asks, len(self.pieces))
+        asked = None
         while k < len(self.pieces):
-            key = self._key(k) or self._side(k)
+            key = self._key(k) or self._stick(k) or self._side(k, asked)
             if key is not None:
                 yield from self._key_diagnostics(key)
             k = key.end if key else k + 1
+            asked = key or (asked if self._word(k) in ("AND", "OR") else None)
 
     def _key_of(self, piece: _Piece) -> str:
         return self.names.meant(piece.word) if piece.word.isalpha() else ""
@@ -122,14 +132,14 @@ class _Part:
         if not key.right:
             yield Diagnostic(codes.UNKNOWN_NAME, span, {"no_key": result, "keys": ", ".join(KEYS)})
         elif result.upper() != key.right:
-            values = {"found": result, "right": key.right, "fix": key.right}
-            repair = Repair((Edit(span, key.right),), True)
+            values = {"found": result, "right": key.right, "fix": key.right, "arrow": key.arrow}
+            repair = Repair((Edit(span, key.right),), key.is_sure)
             yield Diagnostic(codes.OTHER_LANGUAGE, span, values, span, repair)
 
     # -- an order that is given to a key ----------------------------------------------------------
 
     def _assigned_key(self) -> tuple[_Key, str] | None:
-        key = self._key(0) if self.pieces else None
+        key = (self._key(0) or self._stick(0)) if self.pieces else None
         if key is None or not key.right:
             return None
         match = _GIVEN.fullmatch(self.text, self.pieces[key.end - 1].span.end)
@@ -170,7 +180,13 @@ class _Part:
         signs: list[str] = []
         if not side:
             behind = self._while(
-                end, lambda it: it in _EQUAL or _is_key(it) or _is_key_word(it, *_LINKS)
+                end,
+                lambda it: (
+                    it in _EQUAL
+                    or _is_key(it)
+                    or _is_key_word(it, *_LINKS)
+                    or bool(said_of(it, "to"))
+                ),
             )
             letters = (n for n in range(end, behind + 1) if self._word(n) in ("A", "B"))
             side = _side(self._word(behind))
@@ -203,13 +219,62 @@ class _Part:
             first = k  # with its article
         return _Key(first, end, f"{'NOT ' if is_not else ''}KEY_{side}" if side else "")
 
-    def _side(self, k: int) -> _Key | None:
-        """Return the key that a side alone says, which nothing else is asked with: `WHEN(UP)`."""
+    def _stick(self, k: int) -> _Key | None:
+        """Return what the stick is asked: the number that says its side."""
+        start = self._while(k, lambda it: _is_key_word(it, "the"))
+        side = _side(self._word(start))
+        at = (
+            self._while(start + 1, lambda it: it == "_" or _is_key_word(it, "the", "of"))
+            if side
+            else start
+        )
+        if not _is_stick(self._word(at)):
+            return None
+        axis = self._while(at + 1, lambda it: it in ("_", ".") or _is_stick(it))
+        has_axis = self._word(axis) in ("X", "Y")
+        end = axis + 1 if has_axis else at + 1
+        is_not = False
+        if not side:
+            behind = self._while(end, lambda it: it in _EQUAL or bool(said_of(it, *_LINKS)))
+            side = _side(self._word(behind))
+            signs = {self._word(n) for n in range(end, behind)}
+            is_not = bool(signs & {"<>", "!="})
+            end = behind + 1 if side else end
+            closing = self._while(end, lambda it: it in ('"', "'"))
+            end = closing if signs & {'"', "'"} else end
+            end += bool(side and "(" in signs and self._word(end) == ")")
+        if not side:
+            is_button = self._word(end) in ("A", "B") and self._word(end + 1) in ("", *_BEHIND)
+            return _Key(k, end + 1, f"KEY_{self._word(end)}", is_sure=False) if is_button else None
+        end = self._while(end, lambda it: _is_key_word(it, "is", "pressed"))
+        is_no, end = self._as_yes_no(end)
+        no, arrow = "NOT " * (is_not or is_no), "" if has_axis else f"KEY_{side}"
+        return _Key(k, end, f"{no}{_STICK[side]}", arrow and f"{no}{arrow}", is_sure=False)
+
+    def _side(self, k: int, before: _Key | None) -> _Key | None:
+        """Return the key that a side alone says, which nothing else is asked with: `WHEN(UP)`.
+
+        Left and right may be those of a line that a robot sees; `before` is what is asked before.
+        """
         side = _side(self._word(k))
         end = self._while(k + 1, lambda it: _is_key_word(it, "is", "pressed"))
-        is_alone = self._word(k - 1) == "(" and self._word(end) == ")"
+        is_not, end = self._as_yes_no(end)
+        is_alone = self._word(k - 1) in _BEFORE and self._word(end) in _BEHIND
+        is_call = self._word(k - 1) == "(" and self._word(k - 2).isalpha()
+        is_alone = is_alone and not (is_call and self._key_of(self.pieces[k - 2]) not in ASKING)
         is_upright = side in ("UP", "DOWN") or self._mentions_pressed(k + 1, end)
-        return _Key(k, end, f"KEY_{side}") if side and is_alone and is_upright else None
+        if not side or not is_alone or not (is_upright or "LINE_L" not in self.names.sensors):
+            return None
+        no, arrow = "NOT " * is_not, f"KEY_{side}"
+        if before and before.arrow:
+            return _Key(k, end, f"{no}{_STICK[side]}", f"{no}{arrow}", is_sure=False)
+        return _Key(k, end, f"{no}{arrow}", is_sure=is_upright)
+
+    def _as_yes_no(self, k: int) -> tuple[bool, int]:
+        """Return whether a `= FALSE` or `= 0` stands at a place, and where what says so ends."""
+        if self._word(k) in ("=", "==") and self._word(k + 1) in ("0", "1", "TRUE", "FALSE"):
+            return self._word(k + 1) in ("0", "FALSE"), k + 2
+        return False, k
 
     def _word(self, k: int) -> str:
         return self.pieces[k].word if 0 <= k < len(self.pieces) else ""
@@ -238,6 +303,10 @@ def _is_key(word: str) -> bool:
     return bool(said_of(plain(word), "key")) or concept_of(plain(word)) == "BUTTON"
 
 
+def _is_stick(word: str) -> bool:
+    return said_of(plain(word), "stem") == ("PAD",)
+
+
 def _side(word: str) -> str:
     if word and not word.isascii():
         return _SIDES.get(concept_of(word) or "", "")
@@ -247,7 +316,11 @@ def _side(word: str) -> str:
 @cache
 def _guard() -> str:
     """Return the pattern of what is in a text that speaks of keys."""
-    return rf"{words_of('key', 'up', 'down', 'pressed', 'BUTTON')}"
+    return rf"{words_of('key', 'up', 'down', 'left', 'right', 'pressed', 'BUTTON')}|{_sticks()}"
+
+
+def _sticks() -> str:
+    return "|".join(word for word in lexicon() if _is_stick(word))
 
 
 @cache

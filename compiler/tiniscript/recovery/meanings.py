@@ -184,13 +184,14 @@ def meanings(word: str) -> tuple[Meaning, ...]:
 
 
 def _sensor_with_side(parts: Sequence[str]) -> str:
-    """Return the sensor that two words say, one of them its side: `LEFT_LIGHT`, `luzDer`."""
+    """Return the sensor that two words say: `LEFT_LIGHT`, `luzDer`, `JOYSTICK_X`."""
     glued = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
     pairs = [tuple(parts)] if len(parts) == 2 else glued if len(parts) == 1 else []
     for stem, side in (*pairs, *(pair[::-1] for pair in pairs)):
         named = next((it.value for it in lexicon().get(stem, ()) if it.kind == "stem"), "")
-        way = side if side in ("L", "R") else concept_of(side)
-        if named and way in ("L", "R"):
+        ways = ("X", "Y") if named == "PAD" else ("L", "R")
+        way = side if side in ways else concept_of(side)
+        if named and way in ways:
             return f"{named}_{way}"
     return ""
 
@@ -402,10 +403,31 @@ class Names:
         end, _, block = word.partition("_")
         if said_of(end, "end") and block in (*WORDS, *self.defs):
             return (Meaning(SOME_END, KNOWN),)
+        if said := self.sided(word) or self._lamp(word):
+            return (Meaning(said, KNOWN),)
         result = meanings(word)
         return tuple(
             meaning for meaning in result if meaning.concept in WORDS or self.has(meaning.concept)
         )
+
+    def sided(self, word: str) -> str:
+        """Return the sensor of a side that `SENSOR_L` says, "" for none."""
+        parts = word.split("_")
+        bare = [part for part in parts if not said_of(part, "sensing")]
+        if len(bare) != 1 or len(parts) == 1:
+            return ""
+        side = "".join(said_of(bare[0], "left", "right"))[:1].upper()
+        return self.on_side(side or concept_of(bare[0]) or bare[0])
+
+    def _lamp(self, word: str) -> str:
+        """Return the lamp that a word for light says of a robot which sees none."""
+        is_light = said_of(word, "stem") == ("LIGHT",) and "LED" in self.actuators
+        return "LED" * (is_light and not any(it.startswith("LIGHT_") for it in self.sensors))
+
+    def on_side(self, side: str) -> str:
+        """Return the one sensor of the robot on L or R, "" for none or several."""
+        found = [name for name in self.sensors if name.endswith(f"_{side}")]
+        return found[0] if len(found) == 1 and side in ("L", "R") else ""
 
     def meant(self, word: str, most: int = MISSPELT) -> str:
         """Return the word of the language that a word means, "" for none or a less likely one."""

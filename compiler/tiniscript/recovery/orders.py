@@ -202,8 +202,9 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     `is_open`: it goes on further down.
     """
     word = names.meant(tokens[0].text)
-    if word not in ("IF", "WHILE", "LOOP") or len(tokens) > LONGEST:
+    if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > LONGEST:
         return ""
+    is_when = bool(said_of(tokens[0].text, "whenever"))
     tokens = [tokens[0], *_join_words(tokens[1:], names)]  # `si no hay` is no ELSE
     while tokens[-1].text in ENDED or said_of(tokens[-1].text, "end"):
         tokens = tokens[:-1]
@@ -213,12 +214,15 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     comma = next((k for k in range(2, arm) if texts[k] == "," and word != "LOOP"), 0)
     for k in [comma] if comma else range(2, arm):
         header = _head(word, tokens[1:k], names)
+        if is_when and ("(KEY_" in header or "(PAD_" in header):
+            word, header = "WHEN", f"WHEN{header[2:]}"
         body = orders(tokens[k:arm], names) if header else []
         if header and not body and _begins_order(tokens[k], names):
             return ""  # another order than the words after it say
         if not body or any(order.is_side_free for order in (*body, *other)):
             continue
-        if word != "LOOP" and tokens[k].source and names.meant(texts[k]) in _SIDES:
+        is_side = names.meant(texts[k]) in _SIDES and texts[k + 1 : k + 2] != ["("]
+        if word != "LOOP" and tokens[k].source and is_side:
             return ""  # where the wall is, or where to go
         place = next((j for j in range(k, arm) if not said_of(texts[j], "filler")), k)
         if said_of(texts[place], "front") and place + 1 < arm:

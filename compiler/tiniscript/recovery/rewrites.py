@@ -427,6 +427,12 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
             if texts(tokens[k : k + len(row)]) == row:
                 name = made(joined(row))._replace(space=tokens[k].space)
                 return [*tokens[:k], name, *tokens[k + len(row) :]], True
+    for k in range(len(tokens)):
+        if sided := _sensor_of_side(tokens, k, names):
+            sensor, count = sided
+            word = made(sensor)._replace(space=tokens[k].space)
+            is_own = joined(texts(tokens[k : k + count])) == sensor  # `LIGHT-L`
+            return [*tokens[:k], word, *tokens[k + count :]], is_own
     for k, count in product(range(len(tokens)), (3, 2)):
         row = texts(tokens[k : k + count])
         if len(row) < count or any(token.kind is not WORD for token in tokens[k : k + count]):
@@ -442,3 +448,18 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
             word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)
             return [*tokens[:k], word, *tokens[k + count :]], False
     return None
+
+
+def _sensor_of_side(tokens: Sequence[Lexeme], k: int, names: Names) -> tuple[str, int] | None:
+    """Return the sensor of a side from a token on, and of how many: `LIGHT L`, `luz(izquierda)`."""
+    if not said_of(tokens[k].text, "stem", "sensing") or names.is_name(tokens[k].text):
+        return None
+    signs = texts(tokens[k + 1 : k + 4])
+    at = 1 if signs[:1] in (("(",), ("[",), ("-",), (".",)) else 0
+    is_closed = signs[:1] not in (("(",), ("[",)) or signs[2:3] in ((")",), ("]",))
+    name = "_".join((tokens[k].text, *signs[at : at + 1]))
+    sensor = name if name in names.sensors else names.meant(name)
+    count = 2 if not at else 4 if signs[0] in "([" else 3
+    is_call = not at and signs[1:2] == ("(",)  # an order after it: `IF LIGHT L(1, 60)`
+    is_said = is_closed and signs[at:] and not is_call
+    return (sensor, count) if is_said and sensor in names.sensors else None

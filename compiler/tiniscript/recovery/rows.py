@@ -216,7 +216,6 @@ SIGNS = r"""
 \b(END|FIN)(?: _|[. -](?=(?:LOOP|IF|WHILE|DEF|TASK|WHEN)\b))
     | `END_` | TS022 | applied
     | IF(DISTANCE < 10);S;END IF => IF(DISTANCE < 10);S;END_IF
-\b(LIGHT|LUZ)[ -](?=[LRID]\b) | `\1_` | TS056 | applied | SHOW(LIGHT-R) => SHOW(LIGHT_R)
 """
 
 TOKENS = r"""
@@ -267,11 +266,6 @@ o=(|AND|OR|NOT l=@val is|equal+ to|than? n=@num|@val
 l=@val is? between a=@num and b=@num
     | $l > $a AND $l < $b | 1 | TS037 | offered
     | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
-# a side of the stick, which is a number: kind
-⟨PAD_X¦PAD_X¦PAD_Y¦PAD_Y⟩ is|=|== ⟨L|left¦R|right¦F|up¦B|down⟩
-    | ⟨PAD_X <¦PAD_X >¦PAD_Y >¦PAD_Y <⟩ 0 | 1 | TS010 | first offered
-    | IF(⟨PAD_X = LEFT¦PAD_X = DERECHA¦PAD_Y = UP¦PAD_Y = ABAJO⟩);S;ENDIF =>
-    IF(⟨PAD_X <¦PAD_X >¦PAD_Y >¦PAD_Y <⟩ 0);S;ENDIF
 # questions and sums: kind, branch
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val
     | $a $s $b AND $b $t $c | 1 | TS037 | applied
@@ -664,9 +658,12 @@ LOOP|count v=@usedname =|from 1 to|until n=@num do|:?
     | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered
     | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
 # words behind a call, shown and not made: branch
-^ a=S|STOP ⟨( n=@num seconds? )¦during? n=@num seconds?⟩ $
-    | $a ; W ( $n ) | 2 | ⟨TS039¦TS013⟩ | offered
-    | S⟨(2)¦ 2 segundos⟩ => S;W(2)
+^ a=S|STOP ( ⟨n=@num|@val seconds?¦n=@num u=@unit⟩ )|$
+    | $a ; W ( ⟨$n¦@own:n:u⟩ ) | 1 | TS039 | offered
+    | S(⟨2¦500 ms⟩) => S;W(⟨2¦0.5⟩)
+^ a=S|STOP during? n=@num seconds? ⟨$¦,? then* b=@start⟩
+    | $a ; W ( $n ) ⟨¦; $b⟩ | 2 | TS013 | offered
+    | S 2 segundos⟨¦ F(2, 80)⟩ => S;W(2)⟨¦;F(2, 80)⟩
 ^ b=F|B|L|R|S|STOP|BEEP|SHOW|W r=@any* IF c=@cond+ ELSE d=@start s=@all* $
     | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS071 | offered
     | F(2, 80) if DISTANCE > 10 else S => IF(DISTANCE > 10);F(2, 80);ELSE;S;ENDIF
@@ -714,6 +711,9 @@ DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩
 DEF n=@word ( v=@noparen+ ) ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩
     | DEF $n ( $v ) ; ⟨¦$b⟩ | 1 | TS014 | applied
     | DEF LADO(X)⟨: ¦ ⟩F(X, 50)⏎LADO(3) => DEF LADO(X);F(X, 50);END_DEF⏎LADO(3)
+n=@defw ( a=@noparen* b=@num u=seconds|@in_cm|@in_m|@in_deg c=@noparen* )
+    | $n ( $a @own:b:u $c ) | 1 | TS049 | offered
+    | DEF LADO(X)⏎F(X, 50)⏎END_DEF⏎LADO(2 s) => DEF LADO(X)⏎F(X, 50)⏎END_DEF⏎LADO(2)
 ^ call|do|make|the the|one? b=@def
     | $b | 1 | TS044 | applied
     | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO

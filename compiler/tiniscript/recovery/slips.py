@@ -321,7 +321,7 @@ def before_it(slip: Slip) -> str:
         return written(slip.old[slip.start - 1 : slip.start])
     result = written(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
     if slip.code is codes.HEADER_SEPARATOR and (
-        not result or lexemes(result)[0].text not in OF_BLOCKS
+        not result or result[-1] == "(" or lexemes(result)[0].text not in OF_BLOCKS
     ):
         begun = (part for part in without_setup(slip.line) if part[0].text in OF_BLOCKS)
         return laid_out(next(begun)) if result else slip.now[0].text  # `CADA VEZ QUE … S`

@@ -133,6 +133,9 @@ SUGGESTIONS = """
 ^ @none RANDOM ( n=@num to|, m=@num ) $
     | TS042 | found=RANDOM; given={words}; number={number} = RANDOM({n}, {m})
     | RANDOM(440 a 880) => number=N = RANDOM(440, 880)
+^ @none @any* SHOW|UNTIL|M (|, s=L|R ) $
+    | TS051 | word={s}; reading={reading}
+    | F(2, 80) UNTIL(L) => reading=LIGHT_L
 ^ @none w=F|B|L|R|M|BEEP ( u=-|@num|@val+ , v=-|@num|@val+ , s=@order ) $
     | TS051 | word={s}; apart={w}({u}, {v});{next}
     | F(1, 60, S) => apart=F(1, 60);S
@@ -148,6 +151,12 @@ SUGGESTIONS = """
 ^ <does> <lead> <often> <close> $
     | TS062 | found={text}; fix={loop?}; once={once?}
     | F(2, 80) 3 veces => fix=LOOP(3);F(2, 80);END_LOOP
+^ c=⟨S|STOP¦M⟩ (? during? n=@number u=@in_s⟨?¦⟩ )? $
+    | TS085 | fix={c};W({n})⟨¦;S⟩
+    | ⟨S 2¦M(50, 50) 2 segundos⟩ => fix=⟨S¦M(50, 50)⟩;W(2)⟨¦;S⟩
+^ c=S|STOP during? n=@number u=@in_s? ,? then* w=@start @any* $
+    | TS085 | fix={c};W({n});{behind}
+    | STOP 2 s THEN F(2, 80) => fix=STOP;W(2);F(2, 80)
 ^ c=M (? n=@time )? $
     | TS085 | seconds={n}; waiting={c};W({n});S
     | M(50, 80) 2 => waiting=M(50, 80);W(2);S
@@ -164,9 +173,6 @@ SUGGESTIONS = """
     | TS044 | found={s}; fix=TASK;{r};END_TASK
     | TASK 1: F(5, 60) => fix=TASK;F(5, 60);END_TASK
 # how long: number
-^ c=⟨S|STOP¦M⟩ (? during? n=@number u=@in_s )? $
-    | TS085 | fix={c};W({n})⟨¦;S⟩
-    | ⟨S¦M(50, 50)⟩ 2 segundos => fix=⟨S¦M(50, 50)⟩;W(2)⟨¦;S⟩
 ^ c=@clock <lead> during|to|then|X? n=@number u=@in_s <close> t=UNTIL? q=@any* $
     | TS085 | time={n} s; longer={longer}{until?}
     | F(2,80) por 5 segundos => longer=F(5,80)
@@ -266,7 +272,7 @@ SUGGESTIONS = """
 ^ @strange
     | TS074 offered here | fix={several}; example={made_up?}
     | esperar 2 segundos luego avanzar => fix=W(2);F(2, 80)
-^ @switched | TS122 | | PRENDER => TS122
+^ @switched | TS122 | found={lamp_named?}; fix={lamp_set?} | PRENDER => TS122
 ^ @button | TS120 | *=button | SB|botão⏎F(2, 80) => begun=SB|
 ^ @strange
     | TS102 offered | ?={endless}; fix=LOOP(FOREVER); right=LOOP; found={named_endless};
@@ -287,7 +293,10 @@ SUGGESTIONS = """
     | TS102 offered | fix={concept_alone}; right={concept}; found={word_said}; usage={usage}; takes=
     | EXIT => right=BREAK
 ^ @strange | TS074 here | ?={concept_numbered} | salir 3 => TS074
-^ @strange | TS102 | found={word_said}; right={concept}; usage={concept_usage?} | fd 50 => found=FD
+^ @strange
+    | TS102 | found={word_said}; right={concept}; word={concept}; *=one_number
+    | fd 50 => way=F(50 CM, 80)
+^ @strange | TS102 | found={word_said}; right={concept}; usage={concept_usage?} | fd x => found=FD
 ^ @sentence
     | TS073 here | name={variable}; example={variable} = {variable} {plus} {number}; fix=
     | N = 5⏎cambiar N por -1 => example=N = N - 1
@@ -305,7 +314,14 @@ SUGGESTIONS = """
     | TS074 offered here | fix={several}; example={made_up?}
     | F 2 segundos y luego S => fix=F(2, 80);S
 ^ TS015 | TS135 | word={bare_asking}; *=in_words | IF BRIGHT THEN STOP => word=IF
+^ TS015 | = | word={word}; *=one_number | F 50 => way=F(50 CM, 80)
 ^ TS015 | = | example={bare_example?}; usage={bare_usage?} | SHOW => example=SHOW(DISTANCE)
+# a side of what a robot sees, or a lamp, in a letter that turns the robot: other
+^ TS051 | = | reading={reading} | IF(L > 500)⏎S⏎ENDIF => reading=LIGHT_L
+^ TS020 L ( ⟨lit|on|TRUE¦dark|off|FALSE⟩ ) $
+    | TS122 here | lamp={said}; switch={lamp?}; fix={lamp_⟨on¦off⟩?}
+    | L(⟨ON¦OFF⟩) => lamp=L(⟨ON¦OFF⟩)
+^ TS039 S|STOP ( @num ) $ | = offered | fix={first};W({number}) | F(50);S(1) => fix=S;W(1)
 # what is no value, in brackets or behind one: number, branch
 ^ TS017
     | TS049 offered | ?={unit}; fix={without_seconds}; found={here}

@@ -34,7 +34,7 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.recovery.orders import Order, condition_in, made_up, orders, written
 from tiniscript.recovery.slots import filled
-from tiniscript.recovery.trailing_tokens import Around, Trailing, whole, width
+from tiniscript.recovery.trailing_tokens import Around, Trailing, set_in, whole, width
 from tiniscript.recovery.worded import sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import free_number_name
@@ -372,6 +372,12 @@ def _measured(gaps: Gaps) -> str:
     return (worded(words, gaps.part.names) or {}).get("asked", "") if is_said else ""
 
 
+def _reading(gaps: Gaps) -> str:
+    """The sensor on the side of an L or R, which is no name."""
+    word, part = gaps["s"].upper(), gaps.part
+    return "" if word in set_in(part.text) else part.names.on_side(word)
+
+
 def _lone_condition(gaps: Gaps) -> str:
     """A condition that stands alone, and sets nothing."""
     signs = {token.text for token in gaps.tokens("s")}
@@ -483,6 +489,7 @@ _GAPS: dict[str, Callable[[Gaps], str]] = {
     "choice": lambda gaps: _choice(gaps, is_exact=True).replace("; ", ";"),
     "choices": _choice, "number": lambda gaps: free_number_name(gaps.part.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
+    "reading": _reading,
     "next": lambda gaps: WORDS[plain(gaps["s"])].example,
     "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
     "measured": _measured, "alone": _lone_condition, "then": _consequence, "free": _free_name,

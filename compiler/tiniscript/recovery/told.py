@@ -34,6 +34,7 @@ from tiniscript.recovery.notes import noted
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
 from tiniscript.recovery.setup import SEAL, beginning, other_word
+from tiniscript.recovery.shares import shares
 from tiniscript.recovery.suggestions import suggested
 from tiniscript.recovery.usage import with_usage
 from tiniscript.syntax.parser import ENOUGH
@@ -104,7 +105,10 @@ def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
         left = wrong.check(rest)
         if any(each.is_mistake for each in left):  # else its warnings come when it is repaired
             later = _read(Wrong(Source(rest), left, wrong.check, wrong.kit), rounds - 1)
-            message = [*message, *(moved_back(each, edits, wrong.source) for each in later)]
+            sure = {it for each in message for it in _sure_edits(each)}
+            later = [moved_back(each, edits, wrong.source) for each in later]
+            guessed = [edit for edit in edits if edit not in sure]
+            message = [*message, *(_unless_guessed(each, guessed) for each in later)]
     return dedupe(message, wrong.source)
 
 
@@ -129,6 +133,11 @@ def _keys(wrong: Wrong) -> Findings:
     message = asked_keys(wrong.source, wrong.kit)
     edits = _with_edits(message).edits
     return Findings(message, edits + [Edit(it.span, KEYS[0]) for it in message if not it.repair])
+
+
+def _shares(wrong: Wrong) -> Findings:
+    """Return what is wrong with sensors that are asked for a percentage (`shares`)."""
+    return Findings(*shares(wrong.source, wrong.kit))
 
 
 def _beginning(wrong: Wrong) -> Findings:
@@ -206,8 +215,8 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 # Laws of their own come before what a search finds surely, and what it guesses comes last.
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _notes, _labels, _given_back, _beginning, _keys, _calls, _counters, _frame, _wrong_start,
-    _sure_findings, _leftovers, _words_after, _likely_findings, _words_of_blocks,
+    _notes, _labels, _given_back, _beginning, _keys, _shares, _calls, _counters, _frame,
+    _wrong_start, _sure_findings, _leftovers, _words_after, _likely_findings, _words_of_blocks,
 )  # fmt: skip
 
 
@@ -218,6 +227,21 @@ def _with_edits(diagnostics: list[Diagnostic]) -> Findings:
 
 
 # -- places ---------------------------------------------------------------------------------------
+
+
+def _sure_edits(diagnostic: Diagnostic) -> Sequence[Edit]:
+    return diagnostic.repair.edits if diagnostic.repair and diagnostic.repair.is_sure else ()
+
+
+def _unless_guessed(diagnostic: Diagnostic, guessed: Sequence[Edit]) -> Diagnostic:
+    """Return a diagnostic whose repair is not sure where it writes what is only shown."""
+    repair = diagnostic.repair
+    spans = [edit.span for edit in repair.edits] if repair else []
+    if repair is None or not any(
+        a.start <= b.start and b.end <= a.end for a in spans for b, _ in guessed
+    ):
+        return diagnostic
+    return diagnostic._replace(repair=repair._replace(is_sure=False))
 
 
 def moved_back(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:

@@ -185,7 +185,7 @@ class Trailing:
         is_many = is_many or self.means(before) == "LOOP"
         concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
-        is_own = token.source == "l" or text in _set_in(self.text)
+        is_own = token.source == "l" or text in set_in(self.text)
         known = None if is_own else WORDS.get(text)
         labels = {
             "@number": is_number,
@@ -294,7 +294,7 @@ class Trailing:
 
 
 @lru_cache(maxsize=1)
-def _set_in(text: str) -> frozenset[str]:
+def set_in(text: str) -> frozenset[str]:
     """Return the words that a text sets, which is told at their own lines."""
     return frozenset(re.findall(r"\b(\w+)\s*=", text.upper()))
 

@@ -19,6 +19,7 @@ from tiniscript.base.words import (
     ALIASES,
     BLOCK_ENDS,
     MOVES,
+    POWER,
     QUESTION,
     SINCE,
     UNIT_OF,
@@ -44,13 +45,14 @@ from tiniscript.recovery.meanings import (
     closed,
     concept_of,
     lexemes,
+    made,
     plain,
     said_of,
     words_of,
 )
 from tiniscript.recovery.orders import Order, block, condition_in, made_up, orders, written
 from tiniscript.recovery.suggestions import Gaps, NoGap, Row, holding
-from tiniscript.recovery.trailing_tokens import label, width
+from tiniscript.recovery.trailing_tokens import label, set_in, width
 from tiniscript.recovery.worded import worded
 from tiniscript.recovery.writing import (
     instruction_at,
@@ -89,9 +91,11 @@ _OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
 _BEGINS = (";", "newline", "|")  # what an instruction begins behind
 _DEF_ENDS = ("END_DEF", "ENDDEF")
+_FAR_CM = 400  # more is rather in milliseconds
 _WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
 _MOST_OF_END = 4  # words: `fin del bucle`
 _NO_CALLS = ("leaves", "again", "etc", "end")
+_NUMBERED = ("unit", "value", "number", "often", "times", "to", "at", "by")  # behind a number
 _NO_NAMES = (*_NO_CALLS, "filler", "same")  # without values
 
 
@@ -331,10 +335,10 @@ class Usage:
     def question(self, word: str) -> str:
         """Return a header with the question that was written, without numbers that were not.
 
-        Nothing where no number is asked for.
+        Nothing where no number is asked for, and no yes or no.
         """
         asked = self.asked(word)
-        if not any(item.kind is NUMBER for item in asked):
+        if not any(item.kind is NUMBER or self.names.is_yes_no(item.text) for item in asked):
             return ""
         text = laid_out(condition_in(asked, self.names))
         return f"{word}({text})" if text else WORDS[word].usage
@@ -342,9 +346,13 @@ class Usage:
     def asked(self, word: str) -> list[Lexeme]:
         """Return what stands behind a header, up to what is done."""
         behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.row)][1:]
-        begun = DONE - {"L", "R"}  # `pared a la derecha`
-        meant = [_is_over(item) or self.names.meant(item.text) in begun for item in behind]
-        return behind[: [*meant, True].index(True)]
+        meant = [self.names.meant(item.text) for item in behind]
+        begun = (
+            it in DONE and (it not in ("L", "R") or after.text == "(")  # `pared a la derecha`
+            for it, after in zip(meant, [*behind, made(";")][1:], strict=True)
+        )
+        over = [_is_over(item) or is_begun for item, is_begun in zip(behind, begun, strict=True)]
+        return behind[: [*over, True].index(True)]
 
     def is_button(self, word: str) -> bool:
         return "BUTTON" not in self.names.sensors and concept_of(word) == "BUTTON"
@@ -458,9 +466,35 @@ class Usage:
         when = self.source[self.piece] if self.signs[:1] == ["WHEN"] and not begun else ""
         return {"begun": begun, "asked": asked or "BUTTON", "when": when}
 
+    def one_number(self, word: str) -> dict[str, str]:
+        """How far a move goes that has one number, which no robot drives so many seconds.
+
+        `forward 50` is a way as in Logo, or a power; what is no power is a way.
+        """
+        items = [item for item in self.row[1:] if item.text not in ("(", ")")]
+        if UNIT_OF.get(word) != "CM" or not items or items[0].kind is not NUMBER:
+            return {}
+        number, *rest = items
+        is_more = bool(rest) and (rest[0].kind is not WORD or said_of(rest[0].text, *_NUMBERED))
+        if is_more or not LONG_S <= float(number.text) <= _FAR_CM:
+            return {}
+        way = f"{word}({number.text} CM, {POWER.sample})"
+        if float(number.text) > MOST_POWER:
+            return {"fix": way, "usage": ""}
+        return {"number": number.text, "way": way, "power": f"{word}(2, {number.text})"}
+
+    def reading(self, word: str) -> str:
+        """The sensor on the side of an L or R that stands for a value, and is no name."""
+        is_other = self.behind_it.lstrip(" ").startswith("(") or word in set_in(self.text)
+        return "" if is_other else self.names.on_side(word)
+
+    def lamp(self, call: str) -> str:
+        """What is said of the robot's lamp, "" where it has none."""
+        return call if "LED" in self.names.actuators else ""
+
     def in_words(self, word: str) -> dict[str, str]:
         """A question in words without brackets: `IF BRIGHT THEN STOP`."""
-        text = worded(self.asked(word), self.names) or {}
+        text = worded([made("THE"), *self.asked(word)], self.names) or {}  # one alone is asked
         return text if text.get("asked") or text.get("question") else {}
 
     def in_brackets(self, word: str) -> dict[str, str]:
@@ -959,6 +993,13 @@ def _lamp_here(gaps: Gaps) -> str:
     return word if usage.is_first and not has_lamp and concept_of(plain(word)) == "LED" else ""
 
 
+def _lamp_set(gaps: Gaps) -> str:
+    """The lamp that words switch on or off."""
+    usage = _usage_at(gaps)
+    words = (*usage.words, "_".join(usage.words[:2]))
+    return usage.lamp(f"LED({'FALSE' if any(said_of(it, 'off') for it in words) else 'TRUE'})")
+
+
 def _leading_filler(gaps: Gaps) -> str:
     """A word that says nothing, or the button, and begins an instruction."""
     found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
@@ -998,7 +1039,7 @@ _SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "amount": lambda it, _: it.amount, "button": lambda it, _: it.button(),
     "dots": lambda it, _: it.dots(), "unended": lambda it, _: it.unended(),
     "instead": lambda it, _: said_instead(it.signs[0]), "in_words": Usage.in_words,
-    "in_brackets": Usage.in_brackets,
+    "in_brackets": Usage.in_brackets, "one_number": Usage.one_number,
     "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
 }  # fmt: skip
 GAPS: dict[str, Callable[[Gaps], str]] = {
@@ -1008,6 +1049,10 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "step": _gap_of(lambda it: it.signs[1][0]), "number": _gap_of(lambda it: it.number),
     "found": _gap_of(lambda it: it.found.values["found"]),
     "word": _gap_of(lambda it: it.found.values["word"]),
+    "reading": _gap_of(lambda it: it.reading(it.found.values["word"])),
+    "lamp": _gap_of(lambda it: it.lamp("LED")), "lamp_on": _gap_of(lambda it: it.lamp("LED(TRUE)")),
+    "lamp_off": _gap_of(lambda it: it.lamp("LED(FALSE)")),
+    "lamp_named": _gap_of(lambda it: it.lamp(it.source[it.piece])), "lamp_set": _lamp_set,
     "right": _offered_word, "named": _intended_word,
     "named_first": lambda gaps: _usage_at(gaps).named(_offered_word(gaps),
         _usage_at(gaps).signs[0]),

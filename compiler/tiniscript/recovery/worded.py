@@ -49,6 +49,8 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     own = [text for text in texts if names.is_name(text) and text != number]
     if [number] == texts != [row[-1].text] or (number and not own and sentence == {"little"}):
         sentence.add("ahead")  # `20 cm`, `less than 10`
+    if any(names.is_yes_no(text) for text in own):
+        return None  # which nothing is compared with
     is_alone = len(texts) == 1 and not (
         sentence & {"light", "ahead"} and not said_of(texts[0], "sensor")
     )

@@ -81,7 +81,9 @@ class WrongValues:
             suggestion = "" if aside or alike else only or suggestion
             said = {"alike": alike} if alike and not which else {}
             is_said = not (suggestion or said or which or only or is_variable)
-            if is_said and meant in OTHER_WAY:
+            if is_said and self._is_compared(span) and (seen := self._on_side(meant)):
+                suggestion = seen
+            elif is_said and meant in OTHER_WAY:
                 said = {"way": meant, "call": WORDS[meant].example}
             elif is_said and said_of(name + "4", "note") and _TONE_BEFORE.search(before):
                 said = {"pitch": said_of(name + "4", "note")[0]}
@@ -92,6 +94,17 @@ class WrongValues:
                 said = {"colour": name}
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=suggestion,
                          value=value_of(name), only=only, aside=aside, **said, **which)  # fmt: skip
+
+    def _is_compared(self, span: Span) -> bool:
+        """Whether a name stands beside `<` or `>`."""
+        text = self.scope.source.text
+        around = text[: span.start].rstrip()[-2:], text[span.end :].lstrip()[:2]
+        return any(it in "".join(around) for it in "<>")
+
+    def _on_side(self, way: str) -> str:
+        """Return the one sensor of the robot on L or R, which measures, "" for none."""
+        found = [it.name for it in self.scope.kit.sensors if it.name.endswith(f"_{way}")]
+        return found[0] if len(found) == 1 and way in OTHER_WAY else ""
 
     def _amount(self, span: Span, name: str) -> dict[str, str]:
         """Return how the call around `poco` is written, or around the `lento` beside it."""

@@ -1,0 +1,88 @@
+"""A share of what a sensor sees, `LIGHT_L > 80%`: a sensor goes from 0 up to a number of its own.
+
+The number that the share is and the number without its sign are both shown, and none is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import accumulate
+
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import Device, Kit
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.recovery.meanings import NEAR, Lexeme, Names, lexemes, number_text, said_of
+from tiniscript.recovery.trailing_tokens import width
+from tiniscript.recovery.worded import sensors_of
+from tiniscript.recovery.writing import without_note
+from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.syntax.operators import COMPARISONS
+
+_WHOLE = 100
+_COMPARING = ("less", "more", "than", "is", "equal", "to", "extra", "or", "one")
+
+
+def shares(source: Source, kit: Kit) -> tuple[list[Diagnostic], list[Edit]]:
+    """Return what is told of sensors that are compared with a number in percent.
+
+    The rest is read with the shares.
+    """
+    bodies = [without_note(line)[0] for line in source.text.split("\n")]
+    names = Names([lexemes(body) for body in bodies], kit)
+    found: list[tuple[Diagnostic, Edit]] = []
+    start = 0
+    for body, line in zip(bodies, source.text.split("\n"), strict=True):
+        found += _shares_of(body, start, names)
+        start += len(line) + 1
+    return [each for each, _ in found], [edit for _, edit in found]
+
+
+def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic, Edit]]:
+    tokens = lexemes(body)
+    ends = [*accumulate(map(width, tokens))]
+    for k, token in enumerate(tokens):
+        size = _percent(tokens, k + 1, names) if token.kind is NUMBER else 0
+        at = _compared(tokens, k) if size and float(token.text) <= _WHOLE else -1
+        side = "".join(said_of(tokens[at].text, "left", "right")) if at > 0 else ""
+        at -= bool(side)  # `luz izquierda`
+        asked = "_".join((tokens[at].text, *([side[0].upper()] if side else [])))
+        sensor = _sensor(asked, names) if at >= 0 else None
+        if sensor is None or sensor.low:
+            continue
+        begin, end = ends[k] - len(token.source or ""), ends[k + size]
+        named = ends[at] - len(tokens[at].source or "")
+        before = body[named:begin] if tokens[at].text in names.asked else ""
+        share = number_text(round(sensor.high * float(token.text) / _WHOLE, -3) / ONE)
+        values = {"sensor": body[named : ends[at]], "low": "0", "high": f"{sensor.high / ONE:g}",
+                  "found": body[begin:end], "number": token.text,
+                  "share": before + share, "kept": before + token.text}  # fmt: skip
+        span = Span(start + begin, start + end)
+        yield Diagnostic(codes.UNIT, span, values), Edit(span, share)
+
+
+def _percent(tokens: Sequence[Lexeme], k: int, names: Names) -> int:
+    """Return how many tokens say percent, 0 where `%` stands between two values, as in `7 % 2`."""
+    text, after = (tokens[n].text if n < len(tokens) else "" for n in (k, k + 1))
+    if said_of(text, "by") and said_of(after, "number") == ("100",):
+        return 2
+    if text != "%":
+        return int(said_of(text, "unit")[:1] == ("%",))
+    is_value = after[:1].isdigit() or after in ("(", "-") or names.is_name(after)
+    return int(not is_value)
+
+
+def _compared(tokens: Sequence[Lexeme], k: int) -> int:
+    """Return the place of the word that is compared with the number at a place, -1 for none."""
+    at = k - 1
+    while at >= 0 and (tokens[at].text in COMPARISONS or said_of(tokens[at].text, *_COMPARING)):
+        at -= 1
+    return at if at < k - 1 and tokens[at].kind is WORD else -1
+
+
+def _sensor(word: str, names: Names) -> Device | None:
+    """Return the sensor that a word names, or one of those that it may mean."""
+    found = [word, names.meant(word, NEAR)]
+    found += sensors_of(word, names) if said_of(word, "stem", "ahead") else []
+    return next((names.asked[name] for name in found if name in names.asked), None)

@@ -1,0 +1,35 @@
+"""A percentage of a sensor: both numbers that may be meant are shown, and none is made."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source
+from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.rendering import message
+
+PLACES = (
+    "IF({});S;ENDIF", "F(FOREVER, 60) UNTIL({})", "WHEN({});S;END_WHEN",
+    "SI|W(1);WHILE({});F(1, 50);END_WHILE;S", "IF(DISTANCE < 9);S;ELSEIF({});W(1);ENDIF",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("percent", ["%", " %", " percent", " por ciento", " PORCIENTO"])
+@pytest.mark.parametrize(
+    ("asked", "share"), [("LIGHT_L > 80", "LIGHT_L > 818"), ("DISTANCE < 50", "DISTANCE < 200")]
+)
+def test_a_percentage_of_a_sensor_is_shown_as_its_number(
+    asked: str, share: str, percent: str
+) -> None:
+    for place in PLACES:
+        wrong = place.replace("{}", asked + percent)
+        (found,) = check(wrong)
+        tried = message(found, Source(wrong), "en").fix
+        assert f"write {share};" in tried and tried.endswith(f"write {asked}"), place
+        assert fixed(wrong, check).text == wrong
+
+
+@pytest.mark.parametrize("right", ["IF(LIGHT_L > 80 % 7)", "IF(LIGHT_L % 2 = 0)"])
+def test_a_remainder_is_no_percentage(right: str) -> None:
+    assert not check(f"{right};S;ENDIF")
