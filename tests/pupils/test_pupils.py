@@ -135,7 +135,8 @@ def helps_and_keeps_the_numbers(entry: Entry) -> None:
         if mistakes(after) == mistakes(diagnostics):  # it has uncovered another one
             assert diagnostic not in after
         fix = diagnostic.values.get("fix", "")
-        is_counted = fix.startswith(("LOOP(", "W(")) and diagnostic.code is codes.OTHER_LANGUAGE
+        is_counted = re.match(r"LOOP\(|W\(|\w+ = \d+;LOOP\(", fix) is not None
+        is_counted &= diagnostic.code is codes.OTHER_LANGUAGE
         shifted = [diagnostic.span, *(edit.span for edit in edits)]
         is_counted = is_counted or any(SHIFTED.search(source[span]) for span in shifted)
         is_counted = is_counted or CONVERTED.search(entry.program) is not None
