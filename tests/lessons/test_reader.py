@@ -33,7 +33,7 @@ CASES = [
     (HEAD, "The lesson has no criteria. Add one"),
     (HEAD + '[[criteria]]\nkind = "never_touch"\n', "Did you mean never_touches?"),
     (HEAD + '[[criteria]]\nkind = "flies"\n', "which is not a criterion. Write one of these: ends_in"),
-    (HEAD + TOUCH + "within_cm = 3\n", "criteria[1].within_cm has no meaning in a lesson."),
+    (HEAD + TOUCH + "within_cm = 3\n", "A lesson has no key criteria[1].within_cm."),
     (HEAD + '[[criteria]]\nkind = "ends_in"\n', 'criteria[1].at is missing. Add it, for example: at = "start"'),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = 5\n', "criteria[1].at is not a place."),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = []\n', "criteria[1].at is not a place."),
@@ -66,7 +66,7 @@ CASES = [
     (HEAD + TOUCH + PRESS.replace("_A", "_C"), "Write one of these: KEY_UP"),
     (HEAD + TOUCH + PRESS.replace("KEY_A", "PAD_X"), "Write one of these: KEY_UP"),
     (HEAD + TOUCH + PRESS.replace("= 2", "= 0"), "presses[1].seconds"),
-    (HEAD + TOUCH + PRESS + "x = 1\n", "presses[1].x has no meaning in a lesson."),
+    (HEAD + TOUCH + PRESS + "x = 1\n", "A lesson has no key presses[1].x."),
     ("x", "Line 1 is not valid TOML."),
 ]  # fmt: skip
 

@@ -176,7 +176,7 @@ enum class Answer : uint8_t {
   kWrongKit = 70,  // The program is for another kit; this robot's kit is {kit}.
   kTooLarge = 71,  // The program is too large: the robot has room for {detail} bytes of code.
   kBusy = 72,  // The robot is still saving the last program.
-  kLatched = 73,  // The robot was stopped, and stays stopped until that is cleared.
+  kLatched = 73,  // The robot was stopped, and stays stopped until the stop is cleared.
   kNoProgram = 74,  // The robot has no program.
   kNotBegun = 75,  // The robot is no longer waiting for this program: another request came first.
   kIncomplete = 76,  // The program did not arrive completely: it is missing from byte {detail} on.
