@@ -80,14 +80,14 @@ constexpr uint16_t kBreakpoints = 2048;
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
   kPing = 2,  // Asks whether the robot is there; also the heartbeat. With any byte, it also asks where the program is.
-  kStatus = 3,  // Asks what the robot is doing, for its last fault, and how well it receives.
+  kStatus = 3,  // Asks what the robot is doing, what its last fault was, and how well it receives.
   kFetch = 4,  // Asks for the stored program's image, from `offset` on. `length` is the length of the whole image.
   kStop = 5,  // Does the same as the stop sequence, but gets an answer.
   kClear = 6,  // Releases the latch that a stop or a fault has set.
   kStart = 7,  // Starts the program that the robot holds.
   kLive = 8,  // Runs code once. The program that the robot holds does not change.
   kProgram = 9,  // Sends a whole program in one frame.
-  kData = 11,  // Sends the bytes after the checksum, from `offset` on. The robot accepts only bytes from `next` on.
+  kData = 11,  // Sends the bytes after the checksum, from `offset` on. The robot accepts only DATA that begins at `next`.
   kCommit = 12,  // Ends a longer program, with its image's checksum.
   kName = 14,  // Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again.
   kTrim = 15,  // Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. OK as for NAME.
