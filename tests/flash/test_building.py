@@ -62,7 +62,7 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
         assert done.code == 0, done.err
         assert "PlatformIO is building the firmware of mine for the uno" in done.err
         first = done.out.splitlines()[0]
-        assert first.startswith("mine on the uno: ") and "read back and compared" in first
+        assert first.startswith("The firmware for mine was written to the uno and verified: ")
         info = process("doctor", "--json", "--port", uno.pty)
         assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
     kept = ready.files(ready.cache())
@@ -446,7 +446,7 @@ def written(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> Done:
 
 def test_an_esp32_is_built_and_written_in_one_command(clone: Path, tmp_path: Path) -> None:
     done = written(clone, tmp_path)
-    done.gives(3, "no robot answers", out="tinibot32 on the esp32dev: written")
+    done.gives(3, "no robot answers", out="firmware for tinibot32 was written to the esp32dev")
 
 
 @pytest.mark.parametrize("code", [1, -9])

@@ -33,7 +33,7 @@ CASES = [
     (HEAD, "The lesson has no criteria. Add one"),
     (HEAD + '[[criteria]]\nkind = "never_touch"\n', "Did you mean never_touches?"),
     (HEAD + '[[criteria]]\nkind = "flies"\n', "which is not a criterion. Write one of these: ends_in"),
-    (HEAD + TOUCH + "within_cm = 3\n", "criteria[1].within_cm has no meaning in a lesson."),
+    (HEAD + TOUCH + "within_cm = 3\n", "The lesson's file has no key criteria[1].within_cm."),
     (HEAD + '[[criteria]]\nkind = "ends_in"\n', 'criteria[1].at is missing. Add it, for example: at = "start"'),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = 5\n', "criteria[1].at is not a place."),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = []\n', "criteria[1].at is not a place."),
@@ -66,7 +66,7 @@ CASES = [
     (HEAD + TOUCH + PRESS.replace("_A", "_C"), "Write one of these: KEY_UP"),
     (HEAD + TOUCH + PRESS.replace("KEY_A", "PAD_X"), "Write one of these: KEY_UP"),
     (HEAD + TOUCH + PRESS.replace("= 2", "= 0"), "presses[1].seconds"),
-    (HEAD + TOUCH + PRESS + "x = 1\n", "presses[1].x has no meaning in a lesson."),
+    (HEAD + TOUCH + PRESS + "x = 1\n", "The lesson's file has no key presses[1].x."),
     ("x", "Line 1 is not valid TOML."),
 ]  # fmt: skip
 
@@ -85,7 +85,7 @@ def test_all_complaints_come_at_once(folder: Path) -> None:
 
 def test_a_world_is_read_as_any_other(folder: Path) -> None:
     (folder / "world.toml").write_text(WORLD.replace("floor", "flor"), encoding="utf-8")
-    assert "flor has no meaning" in " ".join(refused(folder, HEAD + TOUCH))
+    assert "The lesson's file has no key flor" in " ".join(refused(folder, HEAD + TOUCH))
 
 
 def test_answers_are_read_strictly(folder: Path) -> None:
@@ -104,7 +104,7 @@ def test_answers_are_read_strictly(folder: Path) -> None:
         ("key = 'stil'", "wrong[1].says.key has stil, which is not a known word"),
         ("key = 'touches/wall'", 'wrong[1].says.seconds is missing. Add it, for example: seconds = "…"'),
         ("key = 'touches/wall', seconds = 3", "says.seconds is a number. Write a text in quotes there"),
-        ("key = 'still', cm = '3'", "wrong[1].says.cm has no meaning"),
+        ("key = 'still', cm = '3'", "The lesson's file has no key wrong[1].says.cm"),
     ],
 )  # fmt: skip
 def test_what_is_said_of_a_wrong_answer_is_a_sentence_of_the_checker(

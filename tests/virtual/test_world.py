@@ -101,7 +101,7 @@ def test_the_world_of_the_documents_is_one(language: str) -> None:
     "text, said",
     [
         ("", "floor is missing. Add it, for example: [floor]"),
-        (RIGHT + "[[wall]]\n", "wall has no meaning in a world. Did you mean walls?"),
+        (RIGHT + "[[wall]]\n", "A world file has no key wall. Did you mean walls?"),
         (RIGHT + "[[walls]]\n", "walls[1].points is missing. Add it, for example: points ="),
         (RIGHT + "[[walls]]\npoints = 7\n", "walls[1].points is a number. Write a list of points"),
         (RIGHT + "[[walls]]\npoints = [[1, 2], 3]\n", "walls[1].points is a list. Write a list of"),

@@ -37,10 +37,10 @@ HELD_MOST_MS = {9600: 25.0, 115_200: 4.0}
 LET_GO_MOST_MS = {9600: 25.0 + GAP_MS, 115_200: 8.0}
 LOST_MOST_MS = HOLD_MS + 3  # the clock and the program look after that time
 ROWS = (
-    "what is held, to the motor pins",
-    "what is let go, to the motor pins",
-    "what is held, to the motor pins, by `examples/remote.ts`, which looks 20 times in a second",
-    f"a lost line, to motors off, in {TRIES} of {TRIES}",
+    "stick held, to the motor pins",
+    "stick released, to the motor pins",
+    "stick held, to the motor pins, with `examples/remote.ts`, which looks 20 times a second",
+    f"lost line, to motors off, in {TRIES} of {TRIES}",
 )
 FORMS = (".1f", ".1f", ".1f", ".0f")
 

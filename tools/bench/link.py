@@ -37,10 +37,10 @@ STOP_US = 12
 TOGETHER_US = 12.0  # on an ATmega328P; a Mega's timers and ports have longer instructions
 ROWS = (
     f"first start bit of `{SHORT}` to the motor pins",
-    "last byte of the same as a line of `tsc live` to the motor pins",
+    "last byte of the same line, sent by `tsc live`, to the motor pins",
     "last byte of a stop to motors off, in a busy robot: the slowest",
-    "the same, half of them",
-    "the same, with everything that can delay a stop at once",
+    "the same: the median",
+    "the same: at most, if everything that can delay a stop comes at once",
 )
 OTHERS = {  # by environment
     "nano_liner": "`liner`, Nano", "mega_grabber": "`grabber`, Mega",

@@ -55,7 +55,7 @@ ROWS = {
     "work": "the same by the work of the page's main thread for each picture, times four: over "
     f"{LATE_MS} ms",
     "letter": f"processor time of compiling {LINES} lines after a letter",
-    "button": "the same of trying what a button does, after a pause",
+    "button": "processor time of trying out what a button does, after a pause",
     "rated": "Lighthouse, desktop: performance, accessibility, best practices (median of five)",
     "files": "all files, gzipped",
 }

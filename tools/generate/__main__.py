@@ -148,20 +148,20 @@ def limit_table() -> str:
     compiler, operand, deep = "compiler", "verifier: `BAD_OPERAND`", "verifier: `TOO_DEEP`"
     for_blocks = "words: 1 for an IF, 2 for a loop"
     both = "compiler, and verifier: `{}`"
-    counted = "counted loops open at once, those around a call included"
+    counted = "counted loops open at once, including those around a call"
     rows = (
         ("code", limits.CODE_BYTES, "bytes", both.format("CODE_LENGTH")),
-        ("blocks in a text, those open around a call included", limits.BLOCKS, "", compiler),
+        ("nested blocks in a text, including those around a call", limits.BLOCKS, "", compiler),
         ("stack", limits.STACK_VALUES, "values", both.format("STACK_OVERFLOW")),
         ("variables", limits.VARIABLES, "", f"{compiler}, and {operand}"),
         ("sensors of a kit, and actuators", DEVICES, "", f"the robot's profile, and {operand}"),
         ("tasks beside the main one", limits.TASKS, "", both.format("TOO_MANY_TASKS")),
-        (f"{counted}, over all tasks together", limits.COUNTERS, "", deep),
-        ("calls open at once, over all tasks together", limits.CALLS, "", both.format("TOO_DEEP")),
+        (f"{counted}, in all tasks together", limits.COUNTERS, "", deep),
+        ("calls open at once, in all tasks together", limits.CALLS, "", both.format("TOO_DEEP")),
         ("procedures", limits.DEFS, "", both.format("TOO_MANY_DEFS")),
         ("open blocks of one routine", limits.NEST_WORDS, for_blocks, deep),
         ("open joins", limits.JOINS, "", deep),
-        ("between two checks of an UNTIL", limits.CHECK_MS, "ms", "nobody: it is always so"),
+        ("between two checks of an UNTIL", limits.CHECK_MS, "ms", "nothing: it is always so"),
     )
     return table(("what", "at most", "", "refused by"), rows)
 

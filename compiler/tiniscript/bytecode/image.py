@@ -50,16 +50,16 @@ HEADER_BYTES = sum(field.size for field in FIELDS)
 # In the order in which they are looked for; the code is verified before the last one.
 REFUSALS = {
     # name            number, what is refused
-    "NOT_AN_IMAGE":   (1, "It does not begin with `TS`: it is no TiniScript program."),
+    "NOT_AN_IMAGE":   (1, "It does not begin with `TS`, so it is not a TiniScript program."),
     "OTHER_VERSION":  (2, "It is for another version of the machine."),
-    "BAD_HEADER":     (3, "Its header has less than 15 bytes, or its code more than 32767."),
+    "BAD_HEADER":     (3, "Its header has fewer than 15 bytes, or its code has more than 32767."),
     "TRUNCATED":      (4, "Bytes are missing at its end."),
     "TRAILING":       (5, "There are bytes after its end."),
-    "DAMAGED":        (6, "Its checksum does not fit: a byte has changed."),
+    "DAMAGED":        (6, "Its checksum does not match: a byte has changed."),
     "UNKNOWN_NEEDS":  (7, "It needs something that this machine does not have."),
     "UNKNOWN_START":  (8, "Its start mode is not known."),
-    "PING_WITH_CODE": (9, "It starts with PING, and yet has code."),
-    "OTHER_KIT":      (10, "It uses a sensor or an actuator that is another one here."),
+    "PING_WITH_CODE": (9, "It starts with PING, but has code."),
+    "OTHER_KIT":      (10, "It uses a sensor or an actuator that is different here."),
 }
 # fmt: on
 

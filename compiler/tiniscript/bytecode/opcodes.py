@@ -112,8 +112,8 @@ OPERAND_KINDS = {kind.name: kind for kind in (
 CONTROL_ROLES = {
     "end":       "ends the program",
     "value":     "part of an expression",
-    "join":      "part of an expression; what the left side decides goes on at `to`",
-    "read":      "takes a reading; stands between instructions and in the check of an UNTIL",
+    "join":      "part of an expression; if the left side decides the result, it jumps to `to`",
+    "read":      "takes a reading; goes between instructions and in the check of an UNTIL",
     "until":     "ends the check of an UNTIL",
     "plain":     "an instruction: leaves the stack empty",
     "watch":     "begins the check of an UNTIL",
@@ -178,7 +178,7 @@ OPS = (
     _op(0x04, "PUSH32",          "n:milli32",           "-- n",            "value", "Push `n` thousandths."),
     _op(0x05, "PUSH_FALSE",      "",                    "-- no",           "value", "Push FALSE."),
     _op(0x06, "PUSH_TRUE",       "",                    "-- yes",          "value", "Push TRUE."),
-    _op(0x07, "PUSH_VAR",        "v:variable",          "-- value",        "value", "Push what variable `v` holds."),
+    _op(0x07, "PUSH_VAR",        "v:variable",          "-- value",        "value", "Push the value of variable `v`."),
     _op(0x08, "PUSH_SENSOR",     "s:sensor",            "-- reading",      "value", "Push the kept reading of sensor `s`."),
     _op(0x09, "PUSH_READ",       "s:sensor",            "-- reading",      "value", "Take a reading of sensor `s`, keep it and push it."),
     _op(0x0A, "TIME",            "",                    "-- seconds",      "value", "Push the time since the program started."),
@@ -197,58 +197,58 @@ OPS = (
     *(_op(0x20 + i, name,        "",                    f"a b -- a{sign}b", "value", f"Push TRUE if `a {sign} b`, else FALSE.")
       for i, (name, sign) in enumerate(COMPARATORS)),
     _op(0x26, "NOT",             "",                    "a -- not-a",      "value", "TRUE if `a` is FALSE, else FALSE."),
-    _op(0x27, "AND",             "",                    "a b -- a-and-b",  "value", "TRUE if both are, else FALSE."),
-    _op(0x28, "OR",              "",                    "a b -- a-or-b",   "value", "TRUE if one is, else FALSE."),
-    _op(0x2A, "AND_THEN",        "to:fwd8",             "a --",            "join",  "If `a` is FALSE go to `to` with `a` on the stack; else drop it."),
+    _op(0x27, "AND",             "",                    "a b -- a-and-b",  "value", "TRUE if both are TRUE, else FALSE."),
+    _op(0x28, "OR",              "",                    "a b -- a-or-b",   "value", "TRUE if at least one is TRUE, else FALSE."),
+    _op(0x2A, "AND_THEN",        "to:fwd8",             "a --",            "join",  "If `a` is FALSE, go to `to` with `a` on the stack; else drop it."),
     _op(0x2B, "AND_THEN_FAR",    "to:fwd16",            "a --",            "join",  "The same, further."),
-    _op(0x2C, "OR_ELSE",         "to:fwd8",             "a --",            "join",  "If `a` is TRUE go to `to` with `a` on the stack; else drop it."),
+    _op(0x2C, "OR_ELSE",         "to:fwd8",             "a --",            "join",  "If `a` is TRUE, go to `to` with `a` on the stack; else drop it."),
     _op(0x2D, "OR_ELSE_FAR",     "to:fwd16",            "a --",            "join",  "The same, further."),
     # variables
     _op(0x30, "SET_VAR",         "v:variable",          "value --",        "plain", "Put the value into variable `v`."),
     _op(0x31, "SET_VAR8",        "v:variable n:i8",     "--",              "plain", "Put the whole number `n` into `v`."),
     _op(0x32, "ADD_VAR8",        "v:variable n:i8",     "--",              "plain", "Add the whole number `n` to `v`."),
-    _op(0x33, "ADD_VAR",         "v:variable w:variable", "--",            "plain", "Add what `w` holds to `v`."),
+    _op(0x33, "ADD_VAR",         "v:variable w:variable", "--",            "plain", "Add the value of `w` to `v`."),
     _op(0x34, "INC_VAR",         "v:variable",          "--",              "plain", "Add 1 to `v`."),
     _op(0x35, "DEC_VAR",         "v:variable",          "--",              "plain", "Subtract 1 from `v`."),
     # the robot
     _op(0x38, "READ",            "s:sensor",            "--",              "read",  "Take a reading of sensor `s` and keep it."),
     _op(0x39, "SHOW",            "",                    "number --",       "plain", "Send a number to whoever is listening."),
     _op(0x3A, "SHOW_YES_NO",     "",                    "yes --",          "plain", "Send TRUE or FALSE."),
-    _op(0x3B, "SET",             "a:actuator",          "value --",        "plain", "Set actuator `a`, rounded and limited to its range."),
-    *(_op(0x40 + i, f"MOVE_{d}", "",                    "time power --",   "plain", f"Drive {way} for `time`, then motors off.")
+    _op(0x3B, "SET",             "a:actuator",          "value --",        "plain", "Set actuator `a` to the value, rounded and limited to its range."),
+    *(_op(0x40 + i, f"MOVE_{d}", "",                    "time power --",   "plain", f"Drive {way} for `time`, then turn the motors off.")
       for i, (d, way) in enumerate(_MOVES)),
-    *(_op(0x44 + i, f"MOVE8_{d}", "time:time8 power:power", "--",          "plain", f"Drive {way} for `time`, then motors off.")
+    *(_op(0x44 + i, f"MOVE8_{d}", "time:time8 power:power", "--",          "plain", f"Drive {way} for `time`, then turn the motors off.")
       for i, (d, way) in enumerate(_MOVES)),
-    *(_op(0x48 + i, f"WATCH_{d}", "",                   "time power --",   "watch", f"Prepare to drive {way} for `time` while checks fail.")
+    *(_op(0x48 + i, f"WATCH_{d}", "",                   "time power --",   "watch", f"Prepare to drive {way} for `time`, or until a check is TRUE.")
       for i, (d, way) in enumerate(_MOVES)),
-    *(_op(0x4C + i, f"WATCH_FOREVER_{d}", "",           "power --",        "watch", f"Prepare to drive {way} while checks fail.")
+    *(_op(0x4C + i, f"WATCH_FOREVER_{d}", "",           "power --",        "watch", f"Prepare to drive {way} until a check is TRUE.")
       for i, (d, way) in enumerate(_MOVES)),
     _op(0x50, "WAIT",            "",                    "time --",         "plain", "Wait."),
     _op(0x51, "WAIT8",           "time:time8",          "--",              "plain", "Wait."),
-    _op(0x52, "WATCH_WAIT",      "",                    "time --",         "watch", "Prepare to wait for `time` while checks fail."),
-    _op(0x53, "WATCH_FOREVER_WAIT", "",                 "--",              "watch", "Prepare to wait while checks fail."),
+    _op(0x52, "WATCH_WAIT",      "",                    "time --",         "watch", "Prepare to wait for `time`, or until a check is TRUE."),
+    _op(0x53, "WATCH_FOREVER_WAIT", "",                 "--",              "watch", "Prepare to wait until a check is TRUE."),
     _op(0x54, "UNTIL",           "",                    "stop --",         "until", "End the move if `stop`; else go on with it and check again after 20 ms."),
-    _op(0x56, "BEEP8",           "time:time8 hertz:u16", "--",             "plain", "Sound the buzzer and wait for it."),
-    _op(0x58, "STOP",            "",                    "--",              "plain", "Motors off."),
+    _op(0x56, "BEEP8",           "time:time8 hertz:u16", "--",             "plain", "Sound the buzzer and wait until the sound is over."),
+    _op(0x58, "STOP",            "",                    "--",              "plain", "Turn the motors off."),
     _op(0x59, "MOTORS",          "",                    "left right --",   "plain", "Set both motors and go on at once."),
     _op(0x5A, "MOTORS8",         "left:percent right:percent", "--",       "plain", "Set both motors and go on at once."),
-    _op(0x5B, "BEEP",            "",                    "time hertz --",   "plain", "Sound the buzzer and wait for it."),
+    _op(0x5B, "BEEP",            "",                    "time hertz --",   "plain", "Sound the buzzer and wait until the sound is over."),
     # control
-    _op(0x60, "IF",              "to:fwd8",             "yes --",          "if",    "Go to `to` if it is FALSE."),
+    _op(0x60, "IF",              "to:fwd8",             "yes --",          "if",    "Go to `to` if the value is FALSE."),
     _op(0x61, "IF_FAR",          "to:fwd16",            "yes --",          "if",    "The same, further."),
-    _op(0x62, "IF_NOT",          "to:fwd8",             "no --",           "if",    "Go to `to` if it is TRUE."),
+    _op(0x62, "IF_NOT",          "to:fwd8",             "no --",           "if",    "Go to `to` if the value is TRUE."),
     _op(0x63, "IF_NOT_FAR",      "to:fwd16",            "no --",           "if",    "The same, further."),
     _op(0x64, "ELSE",            "to:fwd8",             "--",              "else",  "Go to `to`."),
     _op(0x65, "ELSE_FAR",        "to:fwd16",            "--",              "else",  "The same, further."),
     _op(0x68, "FOREVER",         "",                    "--",              "forever", "A loop begins here."),
-    _op(0x69, "WHILE",           "to:fwd8",             "--",              "while", "A loop begins here; it ends at `to`, where checks may go."),
+    _op(0x69, "WHILE",           "to:fwd8",             "--",              "while", "A loop begins here; it ends at `to`, and its checks may jump there."),
     _op(0x6A, "WHILE_FAR",       "to:fwd16",            "--",              "while", "The same, further."),
     _op(0x6B, "AGAIN",           "to:back8",            "--",              "again", "Go back to `to`, the loop's first instruction."),
     _op(0x6C, "AGAIN_FAR",       "to:back16",           "--",              "again", "The same, further."),
     _op(0x6D, "LOOP8",           "n:count",             "--",              "count", "A loop begins here; it runs `n` times."),
-    _op(0x6E, "LOOP",            "to:fwd8",             "n --",            "loop", "The same; if `n` rounds to less than 1 go to `to`, its end."),
+    _op(0x6E, "LOOP",            "to:fwd8",             "n --",            "loop", "A loop begins here; it runs `n` times. If `n` rounds to less than 1, go to `to`, its end."),
     _op(0x6F, "LOOP_FAR",        "to:fwd16",            "n --",            "loop", "The same, further."),
-    _op(0x70, "NEXT",            "to:back8",            "--",              "next",  "Count; go back to `to` or drop the counter."),
+    _op(0x70, "NEXT",            "to:back8",            "--",              "next",  "Count down; go back to `to`, or drop the counter if it is 0."),
     _op(0x71, "NEXT_FAR",        "to:back16",           "--",              "next",  "The same, further."),
     _op(0x72, "BREAK",           "to:fwd8",             "--",              "break", "Go to `to`, the end of the loop."),
     _op(0x73, "BREAK_FAR",       "to:fwd16",            "--",              "break", "The same, further."),
@@ -268,17 +268,17 @@ OPS = (
         _op(0x7E, "WHEN",        "to:fwd16",            "--",              "when",  "A WHEN begins here; go to `to`, its end."),
     )),
     # centimetres and degrees
-    *(_op(0xFF40 + i, f"GO_{d}", "", "way power --", "plain", f"Drive {way} so far, then motors off.")
+    *(_op(0xFF40 + i, f"GO_{d}", "", "way power --", "plain", f"Drive {way} by `way`, then turn the motors off.")
       ._replace(needs=NEEDS_GO) for i, (d, way) in enumerate(_MOVES)),
-    *(_op(0xFF48 + i, f"WATCH_GO_{d}", "", "way power --", "watch", f"Prepare to drive {way} so far while checks fail.")
+    *(_op(0xFF48 + i, f"WATCH_GO_{d}", "", "way power --", "watch", f"Prepare to drive {way} by `way`, or until a check is TRUE.")
       ._replace(needs=NEEDS_GO) for i, (d, way) in enumerate(_MOVES)),
     # in one byte
-    *_shorts(0x80, "PUSH_VAR",    "variable", "-- value",   "value", "Push what variable {} holds."),
+    *_shorts(0x80, "PUSH_VAR",    "variable", "-- value",   "value", "Push the value of variable {}."),
     *_shorts(0x88, "PUSH_SENSOR", "sensor",   "-- reading", "value", "Push the kept reading of sensor {}."),
     *_shorts(0x90, "PUSH_READ",   "sensor",   "-- reading", "value", "Take a reading of sensor {}, keep it and push it."),
     *_shorts(0x98, "READ",        "sensor",   "--",         "read",  "Take a reading of sensor {} and keep it."),
     *_shorts(0xA0, "SET_VAR",     "variable", "value --",   "plain", "Put the value into variable {}."),
-    *_shorts(0xA8, "SET",         "actuator", "value --",   "plain", "Set actuator {}, rounded and limited to its range."),
+    *_shorts(0xA8, "SET",         "actuator", "value --",   "plain", "Set actuator {} to the value, rounded and limited to its range."),
     *(_op(0xB0 + i, f"PUSH_NUM_{n}", "", "-- n", "value", f"Push the whole number {n}.") for i, n in enumerate(PUSHED)),
     # with a constant to compare to
     *_comparison_ops(0xC8, "UNTIL8",   "n:u8",               "a --", "until", "As UNTIL: `stop` is `a {} n`."),
@@ -293,11 +293,11 @@ FAULTS = (
     # number, name, meaning: what stops a running program
     (1, "OVERFLOW",       "A result is outside -2147483.648 to 2147483.647."),
     (2, "DIVIDE_BY_ZERO", "A division or a remainder by 0."),
-    (3, "NO_POWER",       "A way to go, with a power that never comes there."),
-    (4, "STUCK",          "No wheel turns, in a move that the robot measures."),
-    (5, "STUCK_LEFT",     "The left wheel does not turn there, the right one does."),
-    (6, "STUCK_RIGHT",    "The right wheel does not turn there, the left one does."),
-    (255, "BAD_CODE",     "A check failed that verified code never fails: memory has changed."),
+    (3, "NO_POWER",       "A move by `way`, with a power that never gets that far."),
+    (4, "STUCK",          "Neither wheel turns in a move that the robot measures."),
+    (5, "STUCK_LEFT",     "In such a move, the left wheel does not turn, but the right one does."),
+    (6, "STUCK_RIGHT",    "In such a move, the right wheel does not turn, but the left one does."),
+    (255, "BAD_CODE",     "A check has failed that verified code always passes: memory has changed."),
 )
 _GOES = tuple(op.name for op in OPS if op.needs == NEEDS_GO)
 _UNTILS = tuple(op.name for op in OPS if op.control_role == "until")

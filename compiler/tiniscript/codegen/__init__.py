@@ -1,1 +1,1 @@
-"""IR becomes what robots run: instructions, each with its source location; text; sketches."""
+"""Turns IR into what robots run: instructions, each with its source location; text; sketches."""

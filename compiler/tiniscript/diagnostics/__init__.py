@@ -1,1 +1,1 @@
-"""Diagnostics: what is said of a program, by code and span, and which edits repair it safely."""
+"""Diagnostics: what is said about a program, by code and span, and which edits repair it safely."""

@@ -1,1 +1,1 @@
-"""The firmware's way onto a board: ready files, bootloaders, and the program that writes."""
+"""Puts the firmware onto a board: prebuilt files, bootloaders, and the program that writes."""

@@ -24,13 +24,13 @@ WIFI_STEPS = (
     ("PASSWORD", "The next part of its password."),
     ("JOIN", "The robot joins that network, now and after each reset."),
     ("HOST", "The robot is an access point with that name."),
-    ("FORGET", "The robot uses no WiFi any more, and no broker."),
+    ("FORGET", "The robot no longer uses WiFi or a broker."),
     (
         "BROKER",
         "An MQTT broker: its address, its port (16 bits) and the class. The robot forgets any earlier step. Empty: no broker.",
     ),
-    ("BROKER_USER", "The robot's name there."),
-    ("BROKER_PASSWORD", "The next part of its password there."),
+    ("BROKER_USER", "The robot's user name at the broker."),
+    ("BROKER_PASSWORD", "The next part of its password at the broker."),
     ("USE_BROKER", "The robot connects to that broker, now and after each reset, or to none."),
     (
         "TELL_BROKER",
@@ -38,11 +38,11 @@ WIFI_STEPS = (
     ),
     (
         "BROKER_NAME",
-        "The next part of the broker's name, as in its certificate. If the name is not found, the address counts.",
+        "The next part of the broker's name, as in its certificate. If the name is not found, the address is used.",
     ),
     (
         "BROKER_TLS",
-        "Speak TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that expired earlier is refused.",
+        "Use TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that expired earlier is refused.",
     ),
     ("BROKER_TRUST", "The next part of the certificate that signs the broker's, in DER."),
 )
@@ -52,17 +52,20 @@ WIFI_MODES = (
     ("ACCESS_POINT", "The robot is one."),
 )
 WIFI_STATES = (
-    ("OFF", "The robot has no WiFi, or has not begun with it."),
-    ("SEARCHING", "It does not hear the network, or waits for an answer."),
-    ("REFUSED", "The network has refused it: the password may be wrong."),
+    ("OFF", "The robot has no WiFi, or has not started it."),
+    ("SEARCHING", "It cannot find the network, or is waiting for an answer."),
+    ("REFUSED", "The network has refused the robot: the password may be wrong."),
     ("READY", "It has an address."),
     ("UNTRUSTED", "The broker's certificate is not signed by the one that the robot trusts."),
     ("OTHER_NAME", "The broker's certificate is for a computer with another name."),
     ("EXPIRED", "The broker's certificate had expired before the robot got it."),
-    ("NO_TLS", "The broker and the robot agree on no TLS, or the robot has no memory left for it."),
+    (
+        "NO_TLS",
+        "The broker and the robot cannot agree on TLS, or the robot lacks the memory for it.",
+    ),
     (
         "RESTS",
-        "Off: three times in a row the robot has restarted soon after WiFi began. JOIN, HOST and FORGET end that.",
+        "WiFi is off, since the robot restarted three times in a row soon after it started WiFi. JOIN, HOST and FORGET end that.",
     ),
 )
 
@@ -123,8 +126,8 @@ START_BITS, RUN, SAVE, DETACHED = 0x03, 0x10, 0x20, 0x40
 MODES = (
     (START_BITS, "START_BITS", "The start mode of an image: 0 `SI`, 1 `SB`."),
     (RUN, "RUN", "Start it at once, if it is `SI`. LIVE has this bit and no other."),
-    (SAVE, "SAVE", "Keep it over the next power-on."),
-    (DETACHED, "DETACHED", "It goes on without the link. START may have this bit and no other."),
+    (SAVE, "SAVE", "Keep it when the power is off."),
+    (DETACHED, "DETACHED", "It continues without the link. START may have this bit and no other."),
 )
 
 # What a robot is able to do and who may drive it, in one number of the reply to HELLO. A robot whose
@@ -135,7 +138,7 @@ YOURS, BY_TEACHER, SEALS, WIFI_RESTS = 0x0080, 0x0100, 0x0200, 0x0400
 BREAKPOINTS = 0x0800
 FEATURES = (
     (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
-    (REMOTE, "REMOTE", "Its programs read KEY_UP and what else a remote control says: KEYS."),
+    (REMOTE, "REMOTE", "Its programs can read KEY_UP and the rest of a remote control: KEYS."),
     (PLACES, "PLACES", "It reports where its program is when PING asks."),
     (OWNERS, "OWNERS", "The robot knows owners."),
     (OWNED, "OWNED", "It has an owner."),
@@ -145,17 +148,17 @@ FEATURES = (
     (
         SEALS,
         "SEALS",
-        "It seals what needs a key, and takes nothing unsealed from a session that has shown one.",
+        "It seals messages that need a key, and accepts nothing unsealed from a session that has shown one.",
     ),
     (
         WIFI_RESTS,
         "WIFI_RESTS",
-        "Its WiFi is off, after three restarts in a row soon after WiFi began.",
+        "Its WiFi is off, after three restarts in a row soon after WiFi started.",
     ),
     (
         BREAKPOINTS,
         "BREAKPOINTS",
-        "Its programs halt at places: BREAK, RESUME, READ_VARIABLES, READ_TASKS.",
+        "Its programs can halt at places: BREAK, RESUME, READ_VARIABLES, READ_TASKS.",
     ),
 )
 # What a remote control says: the keys that are held, a bit for each, and where its pad is, in percent
@@ -167,9 +170,12 @@ HOLD_MS = 500
 KEYS = (
     (
         "OWNER",
-        "Whoever has claimed the robot. If somebody has, nobody drives it without a key.",
+        "The key of whoever claimed the robot. Once somebody has, nobody can drive it without a key.",
     ),
-    ("TEACHER", "May do the same. After its stop, only it or the button releases the robot."),
+    (
+        "TEACHER",
+        "Gives the same rights. After a stop with this key, only this key or the button releases the robot.",
+    ),
 )
 
 # The trim of the motors: their wiring, how much one is weakened, and the least power that moves.
@@ -249,48 +255,48 @@ MESSAGES = (
              + _STATUS + " name:rest=0..16",
              "Begins a session. The same `nonce` again is the same session."),
     _message(2, "PING", False, "asks:rest=0..1", _PULSE,
-             "Are you there? Also the heartbeat. With any byte: and where is your program?"),
+             "Asks whether the robot is there; also the heartbeat. With any byte, it also asks where the program is."),
     _message(3, "STATUS", False, "",
              _STATUS + f" damaged:u8 dropped:u8 framing:u8 overrun:u8 noise:rest=0..{NOISE_BYTES}",
-             "What the robot does, its last fault, and how well it hears."),
+             "Asks what the robot is doing, what its last fault was, and how well it receives."),
     _message(4, "FETCH", False, "offset:u16", "length:u16 bytes:rest=0..",
-             "The stored program's image, from `offset` on. `length` is that of the whole image."),
-    _message(5, "STOP", False, "", "", "The same as the stop sequence, but answered."),
+             "Asks for the stored program's image, from `offset` on. `length` is the length of the whole image."),
+    _message(5, "STOP", False, "", "", "Does the same as the stop sequence, but gets an answer."),
     # these act: they are valid in one epoch only
     _message(6, "CLEAR", True, "", "", "Releases the latch that a stop or a fault has set."),
     _message(7, "START", True, "mode:u8", _RECEIPT, "Starts the program that the robot holds."),
     _message(8, "LIVE", True, "mode:u8 code:rest=0..", _RECEIPT,
              "Runs code once. The program that the robot holds does not change."),
-    _message(9, "PROGRAM", True, "mode:u8 code:rest=0..", _RECEIPT, "A whole program in one frame."),
+    _message(9, "PROGRAM", True, "mode:u8 code:rest=0..", _RECEIPT, "Sends a whole program in one frame."),
     _message(11, "DATA", True, "offset:u16 bytes:rest=1..", "next:u16",
-             "What lies after the checksum, from `offset` on. The robot takes only what begins at `next`."),
-    _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
-    _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8. OK once it is kept; until then SAVING or LOW_SUPPLY: ask again."),
+             "Sends the bytes after the checksum, from `offset` on. The robot accepts only DATA that begins at `next`."),
+    _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "Ends a longer program, with its image's checksum."),
+    _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again."),
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES + PACE_BYTES}", f"wheels:u8 balance:i8 least:u8 pace:rest=0..{PACE_BYTES}",
-             "Sets the motors' trim, bytes like those of the reply, with `pace` or without; without any only reports it. OK as for NAME."),
+             "Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. OK as for NAME."),
     _message(16, "CLAIM", True, f"which:u8 key:rest=0..{KEY_BYTES}", "",
-             "Gives the robot a key after its button was held: `which` of KEYS. Without a key: takes that key away. OK as for NAME."),
+             "Gives the robot a key after its button was held: `which` of KEYS. Without a key, it removes that key. OK as for NAME."),
     _message(17, "AUTHENTICATE", True, f"which:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
-             "Without a tag: asks for a challenge. With it: shows a key of the robot."),
-    _message(18, "IDENTIFY", True, "", "", "The robot blinks and plays the tune of its id."),
+             "Without a tag, it asks for a challenge. With a tag, it shows a key of the robot."),
+    _message(18, "IDENTIFY", True, "", "", "Makes the robot blink and play the tune of its id."),
     _message(19, "UNDO", True, "", _RECEIPT,
-             "The robot holds the previous program again. What runs ends; nothing starts."),
-    _message(20, "TEXT", True, "is_allowed:u8", "features:u16", "Lets lines of text drive a robot with an owner, or not, until power-off."),
+             "Brings back the previous program. The running program ends; no program starts."),
+    _message(20, "TEXT", True, "is_allowed:u8", "features:u16", "Sets whether lines of text may drive a robot with an owner, until power-off."),
     _message(21, "WIFI", True, f"step:u8 text:rest=0..{WIFI_TEXT_BYTES}", f"mode:u8 state:u8 address:u32 network:rest=0..{NETWORK_BYTES}",
-             "Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. Only sealed. OK as for NAME."),
+             "Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. It must be sealed. OK as for NAME."),
     _message(22, "BEGIN", True, "mode:u8 isa_major:u8 isa_minor:u8 start:u8 header_length:u8 devices:u16 code_length:u16",
-             "next:u16", "Begins a longer program: what its image's header says before its checksum."),
+             "next:u16", "Begins a longer program, with the fields of its image's header before the checksum."),
     _message(23, "ABORT", True, "", "", "Drops the program that was begun."),
     _message(24, "KEYS", True, "keys:u8 x:i8 y:i8", _PULSE,
-             "What a remote control says now: a bit for each key that is held, and its pad. Also a heartbeat."),
+             "Sends the state of a remote control: a bit for each key that is held, and its pad. Also a heartbeat."),
     _message(25, "BREAK", True, f"places:rest=0..{2 * MOST_BREAKPOINTS}", "",
-             "All places where what runs halts, or else the program that the robot holds: offsets of 16 bits."),
+             "Sets all places where the running program halts or, if none is running, the one that the robot holds: offsets of 16 bits."),
     _message(26, "RESUME", True, "how:u8", "run:u8 was_halted:u8",
-             "Lets a program that is halted go on: `how` of RESUMES."),
+             "Continues a halted program: `how` of RESUMES."),
     _message(27, "READ_VARIABLES", True, "first:u8", f"run:u8 is_halted:u8 values:rest=0..{VARIABLES_BYTES}",
-             "What runs has these values, from the variable `first` on: 32 bits each."),
+             "Asks for the variables of the running program, from the variable `first` on: 32 bits each."),
     _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 at:u16 tasks:rest=0..{TASKS_BYTES}",
-             "The tasks of what runs, and which of them is where."),
+             "Asks for the tasks of the running program, and where each of them is."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", f"value:i32 is_yes_no:u8 place:rest=0..{SHOW_PLACE_BYTES}",
              "A value that a program shows. `place`: its run, and where its SHOW is."),
@@ -366,11 +372,11 @@ STATES = (
 )
 SAVED = (
     ("NOTHING",    "The robot holds no program."),
-    ("MEMORY",     "The program is in RAM only: power off, and it is gone."),
-    ("SAVING",     "It is being saved: that ends when the motors have stood still for a moment."),
+    ("MEMORY",     "The program is only in RAM: it is lost at power-off."),
+    ("SAVING",     "It is being saved: saving ends when the motors have stood still for a moment."),
     ("STORED",     "It is saved."),
-    ("LOW_SUPPLY", "It is in RAM only: the voltage is too low to save it. It is saved when the voltage recovers."),
-    ("OTHER_VERSION", "The stored program is for another version of the robot's machine: it holds none."),
+    ("LOW_SUPPLY", "It is only in RAM: the voltage is too low to save it. It is saved when the voltage recovers."),
+    ("OTHER_VERSION", "The stored program is for another version of the robot's machine: the robot holds none."),
     ("UNREADABLE", "The robot cannot read its memory: it holds no program, and nobody drives it."),
 )
 CAUSES = (
@@ -410,7 +416,7 @@ TEXT_LEVELS = (
 LINK_FAULTS = (
     (64, "LINK_LOST", "No valid frame for a second while an attached program ran."),
     (65, "MAX_RUN",   "A program without a dead-man timer ran longer than the robot allows."),
-    (66, "STALL",     "The robot's own program did not go on."),
+    (66, "STALL",     "The robot's own program hung."),
 )
 # fmt: on
 

@@ -1,4 +1,4 @@
-"""Reads what was meant by a wrong program. People are told of one that it reads wholly and surely.
+"""Works out what a wrong program means, and reports only what it understands fully and surely.
 
 Seven steps, a module each: meanings of words (`meanings`, with a lexicon for each language),
 rewrites (`rewrites`, with the table `rows`), slots, blocks, candidates (`search`, of whose lines

@@ -1,1 +1,1 @@
-"""An AST becomes a checked program: symbols, types, IR, optimizer, lint, duration."""
+"""Turns an AST into a checked program: symbols, types, IR, optimizer, lint, duration."""

@@ -1,1 +1,1 @@
-"""Text becomes tokens, tokens an AST: lexer, parser, formatter; of wrong ones what was expected."""
+"""Turns text into tokens and an AST: lexer, parser, formatter; says what a wrong text lacks."""

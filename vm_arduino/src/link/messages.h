@@ -79,31 +79,31 @@ constexpr uint16_t kBreakpoints = 2048;
 
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
-  kPing = 2,  // Are you there? Also the heartbeat. With any byte: and where is your program?
-  kStatus = 3,  // What the robot does, its last fault, and how well it hears.
-  kFetch = 4,  // The stored program's image, from `offset` on. `length` is that of the whole image.
-  kStop = 5,  // The same as the stop sequence, but answered.
+  kPing = 2,  // Asks whether the robot is there; also the heartbeat. With any byte, it also asks where the program is.
+  kStatus = 3,  // Asks what the robot is doing, what its last fault was, and how well it receives.
+  kFetch = 4,  // Asks for the stored program's image, from `offset` on. `length` is the length of the whole image.
+  kStop = 5,  // Does the same as the stop sequence, but gets an answer.
   kClear = 6,  // Releases the latch that a stop or a fault has set.
   kStart = 7,  // Starts the program that the robot holds.
   kLive = 8,  // Runs code once. The program that the robot holds does not change.
-  kProgram = 9,  // A whole program in one frame.
-  kData = 11,  // What lies after the checksum, from `offset` on. The robot takes only what begins at `next`.
-  kCommit = 12,  // The program is whole: its image's checksum.
-  kName = 14,  // Names the robot: UTF-8. OK once it is kept; until then SAVING or LOW_SUPPLY: ask again.
-  kTrim = 15,  // Sets the motors' trim, bytes like those of the reply, with `pace` or without; without any only reports it. OK as for NAME.
-  kClaim = 16,  // Gives the robot a key after its button was held: `which` of KEYS. Without a key: takes that key away. OK as for NAME.
-  kAuthenticate = 17,  // Without a tag: asks for a challenge. With it: shows a key of the robot.
-  kIdentify = 18,  // The robot blinks and plays the tune of its id.
-  kUndo = 19,  // The robot holds the previous program again. What runs ends; nothing starts.
-  kText = 20,  // Lets lines of text drive a robot with an owner, or not, until power-off.
-  kWifi = 21,  // Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. Only sealed. OK as for NAME.
-  kBegin = 22,  // Begins a longer program: what its image's header says before its checksum.
+  kProgram = 9,  // Sends a whole program in one frame.
+  kData = 11,  // Sends the bytes after the checksum, from `offset` on. The robot accepts only DATA that begins at `next`.
+  kCommit = 12,  // Ends a longer program, with its image's checksum.
+  kName = 14,  // Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again.
+  kTrim = 15,  // Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. OK as for NAME.
+  kClaim = 16,  // Gives the robot a key after its button was held: `which` of KEYS. Without a key, it removes that key. OK as for NAME.
+  kAuthenticate = 17,  // Without a tag, it asks for a challenge. With a tag, it shows a key of the robot.
+  kIdentify = 18,  // Makes the robot blink and play the tune of its id.
+  kUndo = 19,  // Brings back the previous program. The running program ends; no program starts.
+  kText = 20,  // Sets whether lines of text may drive a robot with an owner, until power-off.
+  kWifi = 21,  // Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. It must be sealed. OK as for NAME.
+  kBegin = 22,  // Begins a longer program, with the fields of its image's header before the checksum.
   kAbort = 23,  // Drops the program that was begun.
-  kKeys = 24,  // What a remote control says now: a bit for each key that is held, and its pad. Also a heartbeat.
-  kBreak = 25,  // All places where what runs halts, or else the program that the robot holds: offsets of 16 bits.
-  kResume = 26,  // Lets a program that is halted go on: `how` of RESUMES.
-  kReadVariables = 27,  // What runs has these values, from the variable `first` on: 32 bits each.
-  kReadTasks = 28,  // The tasks of what runs, and which of them is where.
+  kKeys = 24,  // Sends the state of a remote control: a bit for each key that is held, and its pad. Also a heartbeat.
+  kBreak = 25,  // Sets all places where the running program halts or, if none is running, the one that the robot holds: offsets of 16 bits.
+  kResume = 26,  // Continues a halted program: `how` of RESUMES.
+  kReadVariables = 27,  // Asks for the variables of the running program, from the variable `first` on: 32 bits each.
+  kReadTasks = 28,  // Asks for the tasks of the running program, and where each of them is.
   kShow = 32,  // A value that a program shows. `place`: its run, and where its SHOW is.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped: it has a new epoch. Repeated: it is still stopped.
@@ -176,7 +176,7 @@ enum class Answer : uint8_t {
   kWrongKit = 70,  // The program is for another kit; this robot's kit is {kit}.
   kTooLarge = 71,  // The program is too large: the robot has room for {detail} bytes of code.
   kBusy = 72,  // The robot is still saving the last program.
-  kLatched = 73,  // The robot was stopped, and stays stopped until that is cleared.
+  kLatched = 73,  // The robot was stopped, and stays stopped until the stop is cleared.
   kNoProgram = 74,  // The robot has no program.
   kNotBegun = 75,  // The robot is no longer waiting for this program: another request came first.
   kIncomplete = 76,  // The program did not arrive completely: it is missing from byte {detail} on.
@@ -205,11 +205,11 @@ enum class State : uint8_t {
 
 enum class Saved : uint8_t {
   kNothing = 0,  // The robot holds no program.
-  kMemory = 1,  // The program is in RAM only: power off, and it is gone.
-  kSaving = 2,  // It is being saved: that ends when the motors have stood still for a moment.
+  kMemory = 1,  // The program is only in RAM: it is lost at power-off.
+  kSaving = 2,  // It is being saved: saving ends when the motors have stood still for a moment.
   kStored = 3,  // It is saved.
-  kLowSupply = 4,  // It is in RAM only: the voltage is too low to save it. It is saved when the voltage recovers.
-  kOtherVersion = 5,  // The stored program is for another version of the robot's machine: it holds none.
+  kLowSupply = 4,  // It is only in RAM: the voltage is too low to save it. It is saved when the voltage recovers.
+  kOtherVersion = 5,  // The stored program is for another version of the robot's machine: the robot holds none.
   kUnreadable = 6,  // The robot cannot read its memory: it holds no program, and nobody drives it.
 };
 
@@ -238,8 +238,8 @@ enum class TextLevel : uint8_t {
 };
 
 enum class Key : uint8_t {
-  kOwner = 0,  // Whoever has claimed the robot. If somebody has, nobody drives it without a key.
-  kTeacher = 1,  // May do the same. After its stop, only it or the button releases the robot.
+  kOwner = 0,  // The key of whoever claimed the robot. Once somebody has, nobody can drive it without a key.
+  kTeacher = 1,  // Gives the same rights. After a stop with this key, only this key or the button releases the robot.
 };
 
 enum class WifiStep : uint8_t {
@@ -248,14 +248,14 @@ enum class WifiStep : uint8_t {
   kPassword = 2,  // The next part of its password.
   kJoin = 3,  // The robot joins that network, now and after each reset.
   kHost = 4,  // The robot is an access point with that name.
-  kForget = 5,  // The robot uses no WiFi any more, and no broker.
+  kForget = 5,  // The robot no longer uses WiFi or a broker.
   kBroker = 6,  // An MQTT broker: its address, its port (16 bits) and the class. The robot forgets any earlier step. Empty: no broker.
-  kBrokerUser = 7,  // The robot's name there.
-  kBrokerPassword = 8,  // The next part of its password there.
+  kBrokerUser = 7,  // The robot's user name at the broker.
+  kBrokerPassword = 8,  // The next part of its password at the broker.
   kUseBroker = 9,  // The robot connects to that broker, now and after each reset, or to none.
   kTellBroker = 10,  // Changes nothing. The reply is about the broker: `mode` 1 if there is one, its address, and in `network` the class.
-  kBrokerName = 11,  // The next part of the broker's name, as in its certificate. If the name is not found, the address counts.
-  kBrokerTls = 12,  // Speak TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that expired earlier is refused.
+  kBrokerName = 11,  // The next part of the broker's name, as in its certificate. If the name is not found, the address is used.
+  kBrokerTls = 12,  // Use TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that expired earlier is refused.
   kBrokerTrust = 13,  // The next part of the certificate that signs the broker's, in DER.
 };
 
@@ -266,15 +266,15 @@ enum class WifiMode : uint8_t {
 };
 
 enum class WifiState : uint8_t {
-  kOff = 0,  // The robot has no WiFi, or has not begun with it.
-  kSearching = 1,  // It does not hear the network, or waits for an answer.
-  kRefused = 2,  // The network has refused it: the password may be wrong.
+  kOff = 0,  // The robot has no WiFi, or has not started it.
+  kSearching = 1,  // It cannot find the network, or is waiting for an answer.
+  kRefused = 2,  // The network has refused the robot: the password may be wrong.
   kReady = 3,  // It has an address.
   kUntrusted = 4,  // The broker's certificate is not signed by the one that the robot trusts.
   kOtherName = 5,  // The broker's certificate is for a computer with another name.
   kExpired = 6,  // The broker's certificate had expired before the robot got it.
-  kNoTls = 7,  // The broker and the robot agree on no TLS, or the robot has no memory left for it.
-  kRests = 8,  // Off: three times in a row the robot has restarted soon after WiFi began. JOIN, HOST and FORGET end that.
+  kNoTls = 7,  // The broker and the robot cannot agree on TLS, or the robot lacks the memory for it.
+  kRests = 8,  // WiFi is off, since the robot restarted three times in a row soon after it started WiFi. JOIN, HOST and FORGET end that.
 };
 
 enum class ResumeHow : uint8_t {
@@ -294,7 +294,7 @@ enum class TaskState : uint8_t {
 enum class LinkFault : uint8_t {
   kLinkLost = 64,  // No valid frame for a second while an attached program ran.
   kMaxRun = 65,  // A program without a dead-man timer ran longer than the robot allows.
-  kStall = 66,  // The robot's own program did not go on.
+  kStall = 66,  // The robot's own program hung.
 };
 
 }  // namespace tiniscript

@@ -270,16 +270,16 @@ constexpr bool is_way(uint8_t code) { return (code & 0xf4) == 0x40; }
 // Why bytes are no image for this machine.
 enum class Refusal : uint8_t {
   kNone = 0,  // It is one.
-  kNotAnImage = 1,  // It does not begin with `TS`: it is no TiniScript program.
+  kNotAnImage = 1,  // It does not begin with `TS`, so it is not a TiniScript program.
   kOtherVersion = 2,  // It is for another version of the machine.
-  kBadHeader = 3,  // Its header has less than 15 bytes, or its code more than 32767.
+  kBadHeader = 3,  // Its header has fewer than 15 bytes, or its code has more than 32767.
   kTruncated = 4,  // Bytes are missing at its end.
   kTrailing = 5,  // There are bytes after its end.
-  kDamaged = 6,  // Its checksum does not fit: a byte has changed.
+  kDamaged = 6,  // Its checksum does not match: a byte has changed.
   kUnknownNeeds = 7,  // It needs something that this machine does not have.
   kUnknownStart = 8,  // Its start mode is not known.
-  kPingWithCode = 9,  // It starts with PING, and yet has code.
-  kOtherKit = 10,  // It uses a sensor or an actuator that is another one here.
+  kPingWithCode = 9,  // It starts with PING, but has code.
+  kOtherKit = 10,  // It uses a sensor or an actuator that is different here.
 };
 
 // Which rule code breaks.
@@ -294,17 +294,17 @@ enum class Rule : uint8_t {
   kStackOverflow = 26,  // More than 16 values on the stack.
   kStackNotEmpty = 27,  // Values are left between two instructions, or a join is reached with more or fewer than one.
   kBadTarget = 28,  // A jump forward leads out of the block around it, or out of the code.
-  kMissedTarget = 29,  // No instruction begins where a jump leads, or one that may not be reached so.
+  kMissedTarget = 29,  // A jump leads to where no instruction begins, or to one that it may not reach.
   kBadLoopStart = 30,  // A jump back does not lead to the beginning of its loop.
   kBadLoopEnd = 31,  // A BREAK or a loop's head names an end that is not after the loop.
-  kNotOpen = 32,  // ELSE, AGAIN, NEXT, BREAK, UNTIL, LOOK, RETURN or the end of a task without what it belongs to.
+  kNotOpen = 32,  // ELSE, AGAIN, NEXT, BREAK, UNTIL, LOOK, RETURN or the end of a task, without the instruction that it belongs to.
   kStillOpen = 33,  // A loop, a procedure or the code ends while a block or a procedure in it is open.
-  kTooDeep = 34,  // Blocks, counters, joins or calls deeper than a machine remembers.
+  kTooDeep = 34,  // Blocks, counters, joins or calls are nested more deeply than a machine remembers.
   kBadDef = 35,  // A DEF or a task that is not at the top level, or does not end with its own end.
   kTooManyDefs = 36,  // More than 16 DEFs.
   kBadCall = 37,  // A CALL that does not lead to the beginning of a DEF before it.
-  kInsideCheck = 38,  // Between WATCH and UNTIL, or WHEN and LOOK, stands more than readings and a condition.
-  kBadEnd = 39,  // END: it stands after the code, not in it.
+  kInsideCheck = 38,  // There is more than readings and a condition between WATCH and UNTIL, or WHEN and LOOK.
+  kBadEnd = 39,  // END in the code: its place is after the code.
   kTooManyTasks = 40,  // More than 4 tasks beside the main one.
 };
 
@@ -313,11 +313,11 @@ enum class Fault : uint8_t {
   kNone = 0,  // It runs.
   kOverflow = 1,  // A result is outside -2147483.648 to 2147483.647.
   kDivideByZero = 2,  // A division or a remainder by 0.
-  kNoPower = 3,  // A way to go, with a power that never comes there.
-  kStuck = 4,  // No wheel turns, in a move that the robot measures.
-  kStuckLeft = 5,  // The left wheel does not turn there, the right one does.
-  kStuckRight = 6,  // The right wheel does not turn there, the left one does.
-  kBadCode = 255,  // A check failed that verified code never fails: memory has changed.
+  kNoPower = 3,  // A move by `way`, with a power that never gets that far.
+  kStuck = 4,  // Neither wheel turns in a move that the robot measures.
+  kStuckLeft = 5,  // In such a move, the left wheel does not turn, but the right one does.
+  kStuckRight = 6,  // In such a move, the right wheel does not turn, but the left one does.
+  kBadCode = 255,  // A check has failed that verified code always passes: memory has changed.
 };
 
 // What an instruction is for the structure of a program.
@@ -325,8 +325,8 @@ enum class ControlRole : uint8_t {
   kNone = 0,  // a byte that begins no instruction
   kEnd = 1,  // ends the program
   kValue = 2,  // part of an expression
-  kJoin = 3,  // part of an expression; what the left side decides goes on at `to`
-  kRead = 4,  // takes a reading; stands between instructions and in the check of an UNTIL
+  kJoin = 3,  // part of an expression; if the left side decides the result, it jumps to `to`
+  kRead = 4,  // takes a reading; goes between instructions and in the check of an UNTIL
   kUntil = 5,  // ends the check of an UNTIL
   kPlain = 6,  // an instruction: leaves the stack empty
   kWatch = 7,  // begins the check of an UNTIL

@@ -1,1 +1,1 @@
-"""Bluetooth modules on a wire: finds out which one it is, and sets its name, PIN and speed."""
+"""Bluetooth modules on a wire: identifies a module, and sets its name, PIN and speed."""

@@ -1,4 +1,4 @@
-"""The drivers: each file is one, with all that is known of it. `robots/driver.py` says what that is."""
+"""The drivers: each file describes one. `robots/driver.py` says what such a file contains."""
 
 from __future__ import annotations
 
