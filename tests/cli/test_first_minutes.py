@@ -185,7 +185,7 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
 
 
 def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ports, "listed", list)
+    monkeypatch.setattr(ports, "list_ports", list)
     with robot("--name", "KAT") as found:
         assert inside("doctor", "--ports", "--ask").code == 0
         assert inside("doctor", "--identify", "--all").code == 0

@@ -25,8 +25,8 @@ from tiniscript.cli.texts import LONGEST, Said, text
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import TextEvent
 from tiniscript.link.payloads import HelloReply
-from tiniscript.link.requests import described
-from tiniscript.link.sharing.protocol import filled
+from tiniscript.link.requests import device_info_of
+from tiniscript.link.sharing.protocol import make_payload
 
 # ESC and a colour, a C1 control, a line of its own, backspaces, and marks that turn the direction
 EVIL = "\x1b[31mx\x9b2J\r\ntsc: done\x08\x7f\u202e\u2066\u200f\u2028"
@@ -191,11 +191,11 @@ def is_harmless(text: str) -> bool:
 @each_row("sign", ACTING)
 def test_a_name_has_no_signs_that_act(sign: str) -> None:
     name = f"AB{sign}C".encode("utf-8", "surrogateescape")[:16]
-    values = filled(HelloReply, {**DESCRIPTION, "name": name})
-    found = described(values).name
+    values = make_payload(HelloReply, {**DESCRIPTION, "name": name})
+    found = device_info_of(values).name
     assert is_harmless(found) and found.startswith("AB") and found.endswith("C")
     known_ports.remember("/dev/x", f"AB{sign}C".encode("utf-8", "replace").decode())
-    assert is_harmless(known_ports.known().names["/dev/x"])
+    assert is_harmless(known_ports.remembered_ports().names["/dev/x"])
 
 
 @each_row("sign", ACTING)
@@ -204,7 +204,7 @@ def test_a_device_describes_itself_without_them(sign: str, monkeypatch: pytest.M
         device, description = "/dev/x", f"Arduino{sign}Uno"
 
     monkeypatch.setattr("serial.tools.list_ports.comports", lambda: [Port()])
-    [found] = ports.listed()
+    [found] = ports.list_ports()
     assert is_harmless(found.description) and found.description.startswith("Arduino")
 
 

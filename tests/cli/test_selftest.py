@@ -34,7 +34,7 @@ from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.doctor import report
 from tiniscript.library.simulated import Simulated
 from tiniscript.link.messages import RESETS
-from tiniscript.link.ports import opened
+from tiniscript.link.ports import open_port
 
 LIGHT, DISTANCE = 500_000, 42_000  # thousandths
 GOOD = (LIGHT, LIGHT, DISTANCE)
@@ -156,7 +156,7 @@ def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str)
             end = stack.enter_context(PtyEnd(Firmware(57_600 if kind == "other speed" else 9600)))
             port = end.port
         if kind == "locked":
-            stack.callback(opened(port, 9600).close)
+            stack.callback(open_port(port, 9600).close)
         told = json.loads(inside("doctor", "--port", port, "--json").out)["findings"]
         done = inside("doctor", "--selftest", "--port", port, "--json").gives(3)
         text = inside("doctor", "--selftest", "--port", port, "--lang", "en").gives(3).out

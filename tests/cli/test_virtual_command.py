@@ -202,7 +202,7 @@ def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
 
 
 def test_of_several_robots_one_is_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ports, "listed", list)
+    monkeypatch.setattr(ports, "list_ports", list)
     with robot() as first, robot("--world", "line") as second:
         done = tsc("doctor", "--identify", "--virtual").gives(3, second.port)
         asked = tsc("doctor", "--identify")  # without --virtual and without a terminal

@@ -22,7 +22,7 @@ from tiniscript.conformance.kit import link_kit
 from tiniscript.conformance.port_checks import all_checks, met, verdicts
 from tiniscript.conformance.wire_robot import WireRobot
 from tiniscript.link import ports
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR
 from tiniscript.link.wire import Wire
 from tools.uno import Uno
@@ -35,15 +35,15 @@ class ChangedWire(Wire):
     """A wire on which the robot's frames are other ones, or get lost."""
 
     def __init__(self, port: str, change: Change) -> None:
-        super().__init__(ports.opened(port, 9600))
+        super().__init__(ports.open_port(port, 9600))
         self.change = change
         self.left = b""
 
-    def heard(self, wait_ms: int, quiet_ms: int = 60) -> bytes:
-        *packets, self.left = (self.left + super().heard(wait_ms, quiet_ms)).split(b"\0")
-        frames = (decoded(packet) for packet in packets if packet)
+    def receive(self, wait_ms: int, quiet_ms: int = 60) -> bytes:
+        *packets, self.left = (self.left + super().receive(wait_ms, quiet_ms)).split(b"\0")
+        frames = (decode_frame(packet) for packet in packets if packet)
         changed = [self.change(frame) for frame in frames if frame]
-        return b"".join(encoded(frame) for frame in changed if frame)
+        return b"".join(encode_frame(frame) for frame in changed if frame)
 
 
 @contextmanager

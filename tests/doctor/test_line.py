@@ -23,7 +23,7 @@ from tiniscript.doctor.examination import Expected, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.line import Line, diagnose_line
 from tiniscript.doctor.robot import WireRobot
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     LINK_FAULTS,
     OWNED,
@@ -351,7 +351,7 @@ def test_a_robot_that_sends_and_hears_nothing() -> None:
             return self.said if self.now_ms % 300 == 0 else b""
 
     end = OneWay()
-    for said in (end.said, b"\0" + encoded(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
+    for said in (end.said, b"\0" + encode_frame(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
         end.said = said
         for is_radio in (False, True):
             assert only(end, is_radio=is_radio) == ("one_way", False)

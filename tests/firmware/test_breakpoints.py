@@ -11,7 +11,7 @@ from tests.support.images import image_of
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import Image
 from tiniscript.bytecode.statements import begins
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     BREAKPOINTS,
     BY_NAME,
@@ -98,7 +98,7 @@ def test_places_are_even_bytes_of_a_program_that_is_there() -> None:
         it.session._seq += 1
         sent = it.robot.step(
             b"\0"
-            + encoded(
+            + encode_frame(
                 Frame(BY_NAME["BREAK"].number, it.session._seq & 255, it.session._epoch, payload)
             )
         )

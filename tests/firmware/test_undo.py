@@ -38,7 +38,7 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tiniscript.bytecode.image import sealed
 from tiniscript.bytecode.opcodes import ISA_MINOR
-from tiniscript.link.frames import decoded
+from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import SAVED_STORED, STATUSES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -254,7 +254,7 @@ def test_a_request_that_comes_twice_is_done_once() -> None:
     robot, session = with_two()
     request = session.undo()
     wire = session.poll(robot.now_ms)
-    answers = [decoded(robot.wait(wait_ms, wire).strip(b"\0")) for wait_ms in (50, 500, 2000)]
+    answers = [decode_frame(robot.wait(wait_ms, wire).strip(b"\0")) for wait_ms in (50, 500, 2000)]
     assert request.outcome is None
     programs = {answer.payload[:5] for answer in answers if answer}
     assert None not in answers

@@ -22,7 +22,7 @@ from tests.firmware.test_uno_robot import (
 )
 from tests.firmware.test_uno_watchdog import built
 from tests.machines.wired import Wired
-from tiniscript.link.frames import Frame, decoded
+from tiniscript.link.frames import Frame, decode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
@@ -80,7 +80,7 @@ def driving(uno: Uno) -> Wired:
 def frames_since(uno: Uno, since: int) -> list[Frame]:
     """Return the frames that the robot has sent since a cycle."""
     sent = bytes(byte.value for byte in uno.sent if byte.cycle > since)
-    return [frame for part in sent.split(b"\0") if (frame := decoded(part)) is not None]
+    return [frame for part in sent.split(b"\0") if (frame := decode_frame(part)) is not None]
 
 
 def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) -> None:

@@ -13,12 +13,12 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import checksum, unpack
 from tiniscript.library import source_map
 from tiniscript.library.shows import Finder
-from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
+from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, ownership_of
 from tiniscript.link.messages import KEY_OWNER, SAVED_STORED
 from tiniscript.link.outcomes import Event, ShownEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-from tiniscript.link.trim import Pace, Trim, told
+from tiniscript.link.trim import Pace, Trim, trim_from_reply
 from tools.uno import CYCLES_PER_MS, Uno
 
 KIT = robots.load("tinibot").kit
@@ -110,7 +110,7 @@ def test_a_measured_robot_keeps_how_fast_it_is(sketch: Path, memory: Path) -> No
     uno.kill()
     with switched_on(sketch, memory) as again:
         wired = computer(again, 2)
-        assert told(wired.done(wired.session.trim())) == Trim(pace=pace)
+        assert trim_from_reply(wired.done(wired.session.trim())) == Trim(pace=pace)
         assert drive_ms(again, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
         assert drive_ms(again, "SI|R(90 DEG, 60)") == pytest.approx(417, abs=2)
 
@@ -257,7 +257,7 @@ def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None
         wired.session = Session(nonce, BAUD, KIT.fingerprint, keys=shown)
         assert wired.until(wired.session.hello()) == OK
         assert wired.session.robot
-        return whose(wired.session.robot)
+        return ownership_of(wired.session.robot)
 
     wired = Wired(uno, Session(1, BAUD, KIT.fingerprint, keys=keys))
     request = wired.session.claim(KEY_OWNER)

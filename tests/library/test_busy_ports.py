@@ -120,7 +120,7 @@ class Line:
 
 # The steps of a connection that may fail, each by its place.
 STEPS = (
-    "tiniscript.link.ports.opened",
+    "tiniscript.link.ports.open_port",
     "tiniscript.library.opening.directory.is_of_another",
     "tiniscript.link.keys.KeyFile",
     "tiniscript.link.session.Session",
@@ -146,7 +146,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     monkeypatch.setattr(Device, "opened", [])
-    monkeypatch.setattr("tiniscript.link.ports.opened", Device)
+    monkeypatch.setattr("tiniscript.link.ports.open_port", Device)
     monkeypatch.setattr("tiniscript.link.port_connection.PortConnection", Line)
     profile = robots.load("tinibot")
 
@@ -165,7 +165,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
             with pytest.raises(BaseException):  # noqa: B017 - whichever it is
                 tried()
         assert not any(each.is_open for each in Device.opened), why
-        lock = registry.claimed(ADDRESS)
+        lock = registry.claim(ADDRESS)
         assert lock is not None, f"{why!r} leaves its lock"
         lock.close()
         if sys.platform == "linux":

@@ -465,7 +465,7 @@ def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch
     from tiniscript.link import ports
 
     for listed in ([], [ports.ListedPort("/dev/other", "")]):
-        monkeypatch.setattr(ports, "listed", lambda listed=listed: listed)
+        monkeypatch.setattr(ports, "list_ports", lambda listed=listed: listed)
         with fails(tiniscript.RobotError, "port_missing") as raised:
             tiniscript.connect("/dev/none-here")
         assert ("/dev/other" in str(raised.value)) == bool(listed)

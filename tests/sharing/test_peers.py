@@ -294,7 +294,7 @@ def test_who_lets_a_port_go_leaves_the_file_of_the_next_one(tmp_path: Path) -> N
     """Somebody has removed ours meanwhile, and another command has the port."""
     path = tmp_path / "port"
     for is_others in (False, True):
-        held = registry._locked(path)
+        held = registry._try_lock(path)
         assert held is not None
         if is_others:
             path.unlink()

@@ -21,7 +21,7 @@ from tiniscript.link.requests import OK, Reply
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.requests import ClientRequest, ClientRequests
 from tiniscript.link.sharing.server import Server
-from tiniscript.link.sharing.shared_connection import SharedConnection, joined
+from tiniscript.link.sharing.shared_connection import SharedConnection, join
 
 PORT = "/dev/ttyUSB0"
 
@@ -89,7 +89,7 @@ def server(line: FakeLine) -> Iterator[Server]:
 @pytest.fixture
 def command(server: Server) -> Iterator[SharedConnection]:
     """Another command, which shares the port."""
-    shared_connection = joined(PORT, "upload")
+    shared_connection = join(PORT, "upload")
     assert shared_connection is not None
     with closing(shared_connection):
         yield shared_connection
@@ -100,7 +100,7 @@ def heard(command: SharedConnection, name: str) -> None:
 
 
 def asks(command: SharedConnection, line: FakeLine, is_detached: bool = False) -> None:
-    command.do(lambda requests: requests.start(is_detached))
+    command.begin(lambda requests: requests.start(is_detached))
     until(lambda: bool(line.asked), "the request arrives")
 
 
@@ -109,7 +109,7 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
     with closing(Server(cast(PortConnection, line), PORT, 9600, "link")) as server:
         own = server.registration
         assert [
-            registration for registration in registry.all_found() if registration.token == own.token
+            registration for registration in registry.find_all() if registration.token == own.token
         ] == [own]
         other = registry.find_registration(line.address)
         assert other is not None and other.token == own.token
@@ -170,11 +170,11 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
     monkeypatch.setattr(opening, "connection_to", lambda *_: line)
     client = Client(PORT, "monitor", robots.load("tinibot"), is_shared=False)
     client.server = Server(cast(PortConnection, line), PORT, 9600, "monitor")
-    command = joined(PORT, "upload")
+    command = join(PORT, "upload")
     assert command is not None
     with closing(command):
         if asked == "ping":
-            command.do(lambda requests: requests.ping())
+            command.begin(lambda requests: requests.ping())
             until(lambda: bool(line.asked), "the request arrives")
         else:
             asks(command, line, asked == "detached")
@@ -195,10 +195,10 @@ def test_each_client_presses_keys_of_its_own_and_lets_go_when_it_leaves(
         ]
         return [(message["speaker"], message["keys"]) for message in messages]
 
-    command.do(lambda requests: requests.press(1))
+    command.begin(lambda requests: requests.press(1))
     until(lambda: len(line.asked) == 1, "the first word arrives")
-    with closing(cast(SharedConnection, joined(PORT, "live"))) as other:
-        other.do(lambda requests: requests.press(2))
+    with closing(cast(SharedConnection, join(PORT, "live"))) as other:
+        other.begin(lambda requests: requests.press(2))
         until(lambda: len(line.asked) == 2, "the second word arrives")
     until(lambda: len(line.asked) == 3, "the second client has left")
     assert pressed() == [(1, 1), (2, 2), (2, 0)]

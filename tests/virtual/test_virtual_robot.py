@@ -14,7 +14,7 @@ from tests.support.virtual_robot import Talk, floor, robot_in, trace
 from tiniscript import compile_text, robots
 from tiniscript.base.trace import Ending, Senses
 from tiniscript.bytecode.image import pack, unpack
-from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
+from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, ownership_of
 from tiniscript.link.messages import (
     KEY_OWNER,
     LARGE_FRAME,
@@ -348,7 +348,7 @@ def test_it_runs_a_long_live_line() -> None:
 def owner_of(talk: Talk) -> str:
     talk.until(talk.session.hello())
     assert talk.session.robot
-    return whose(talk.session.robot)
+    return ownership_of(talk.session.robot)
 
 
 @pytest.mark.parametrize(("held_ms", "status"), [(HOLD_MS, "OK"), (PUSH_MS, "HOLD_BUTTON")])

@@ -125,7 +125,7 @@ def _read(options: Namespace, language: str) -> Iterator[Named]:
     if "port" in values and values["port"] is None and not values.get("virtual"):
         from tiniscript.link import known_ports
 
-        last = known_ports.known().last
+        last = known_ports.remembered_ports().last
         if last is not None:
             yield Named("port", last, text("path_port", language))
     with suppress(OSError, ValueError):  # it is closed

@@ -15,7 +15,7 @@ from tiniscript.bytecode.verify import RULES
 from tiniscript.conformance.comparing import Verdict, compared
 from tiniscript.conformance.kit import LinkKit, LinkProgram
 from tiniscript.conformance.wire_robot import STARTS, Answer, Silent, WireRobot
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     MAJOR,
@@ -26,7 +26,7 @@ from tiniscript.link.messages import (
     SMALL_FRAME,
     STATUSES,
     STOP_BYTES,
-    written,
+    encode_payload,
 )
 from tiniscript.link.statuses import name_of
 
@@ -209,7 +209,7 @@ def _hello(robot: WireRobot) -> tuple[str, ...]:
 
 def _check_damaged_frame(robot: WireRobot) -> tuple[str, ...]:
     before = robot.ask("STATUS").number("damaged")
-    frame = bytearray(encoded(Frame(BY_NAME["PING"].number, 200, robot.epoch)))
+    frame = bytearray(encode_frame(Frame(BY_NAME["PING"].number, 200, robot.epoch)))
     frame[-2] ^= 0x55  # of the checksum
     robot.send(b"\0" + bytes(frame).replace(b"\0", b"\x55", len(frame) - 1)[:-1] + b"\0")
     replies = robot.heard(0.3)
@@ -218,7 +218,7 @@ def _check_damaged_frame(robot: WireRobot) -> tuple[str, ...]:
 
 
 def _check_repeated_request(robot: WireRobot) -> tuple[str, ...]:
-    payload = written(BY_NAME["LIVE"].request, {"mode": RUN, "code": SHOW_7})
+    payload = encode_payload(BY_NAME["LIVE"].request, {"mode": RUN, "code": SHOW_7})
     number = BY_NAME["LIVE"].number
     epoch = robot.epoch
     first = robot.ask_frame(number, payload)

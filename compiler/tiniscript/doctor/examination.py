@@ -31,7 +31,7 @@ from tiniscript.link.names import row_name
 from tiniscript.link.outcomes import OTHER_ROBOT, UNPROVEN
 from tiniscript.link.payloads import HelloReply, SentReply, StatusReply, TrimReply
 from tiniscript.link.requests import OK, Reply
-from tiniscript.link.robot_state import lost_packets
+from tiniscript.link.robot_state import line_error_count
 
 PINGS = 20
 PAUSE_MS = 50  # between two of them
@@ -213,8 +213,8 @@ def _link_findings(
     lost = []
     if max(missed, damaged_count) * PINGS >= LOSSY * expected.pings:
         lost = [sure("lossy", **values)] if after is not None else []
-    elif after is not None and lost_packets(before) >= 10 * LOSSY:
-        lost = [probably("lossy", **{**values, "damaged": str(lost_packets(before))})]
+    elif after is not None and line_error_count(before) >= 10 * LOSSY:
+        lost = [probably("lossy", **{**values, "damaged": str(line_error_count(before))})]
     return lost, trips_ms
 
 

@@ -41,15 +41,15 @@ def answers(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool
     for line, greeting, answer in GREETINGS:
         wire.set_baud(line.baud)
         wire.restart()
-        said = wire.heard(BLINK_MS, BLINK_MS)
+        said = wire.receive(BLINK_MS, BLINK_MS)
         is_there = False
         for _ in range(TRIES):
             wire.send(greeting)
-            said += wire.heard(ANSWER_MS)
+            said += wire.receive(ANSWER_MS)
             if is_there := answer in said:
                 break
         if is_there:
-            wire.heard(OVER_MS, OVER_MS)
+            wire.receive(OVER_MS, OVER_MS)
             return line, _greeted(wire, greeting, answer)
         hear(said)
     return None
@@ -58,7 +58,7 @@ def answers(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool
 def _greeted(wire: Wire, greeting: bytes, answer: bytes) -> bool:
     for _ in range(TRIES):
         wire.send(greeting)
-        if answer in wire.heard(ANSWER_MS):
+        if answer in wire.receive(ANSWER_MS):
             return True
     return False
 
@@ -85,7 +85,7 @@ def diagnose_line(
 ) -> list[Finding]:  # fmt: skip
     """Return what is at the other end. `on_step` gets what is done next, a short name."""
     on_step("listen")
-    before = wire.heard(LISTEN_MS if line.is_radio else BOOT_MS)
+    before = wire.receive(LISTEN_MS if line.is_radio else BOOT_MS)
     robot = _robot(wire, line, expected)
     on_step("hello")
     reply = robot.hello(HELLOS)
@@ -143,7 +143,7 @@ class _Others:
         """Return what has surely sent these bytes, by its row or as a robot that does not hear."""
         if foreign.is_robot(heard):
             return probably("one_way")
-        found = foreign.recognised(heard)
+        found = foreign.identify_board(heard)
         return None if found is not None and found.name in foreign.GENERAL else self._judged(found)
 
     def ask(self, heard: bytes, may_be_text: bool) -> Finding | None:
@@ -155,19 +155,23 @@ class _Others:
         for row in foreign.ROWS:
             if row.probe:
                 self._wire.send(row.probe)
-                found = self._judged(foreign.recognised(heard + self._wire.heard(self._wait_ms)))
+                found = self._judged(
+                    foreign.identify_board(heard + self._wire.receive(self._wait_ms))
+                )
                 if found is not None:
                     return found
         if (best := self.best()) is not None and best.cause == "at_firmware":
             self._wire.send(foreign.ASKS_AT)
-            found = self._judged(foreign.recognised(heard + self._wire.heard(dialects.ANSWER_MS)))
+            found = self._judged(
+                foreign.identify_board(heard + self._wire.receive(dialects.ANSWER_MS))
+            )
             if found is not None:
                 return found
         return self._judged(foreign.stranger(heard)) if may_be_text else None
 
     def settle(self, heard: bytes) -> Finding | None:
         """Return what has sent these bytes, where no question would help."""
-        found = foreign.recognised(heard)
+        found = foreign.identify_board(heard)
         return None if found is None else self._judged(found)
 
     def best(self) -> Finding | None:
@@ -215,7 +219,7 @@ def _module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
         return None
     if not module.version:  # no module has told which one it is
         wire.send(foreign.ASKS_AT)
-        found = foreign.recognised(wire.heard(dialects.ANSWER_MS))
+        found = foreign.identify_board(wire.receive(dialects.ANSWER_MS))
         if found is not None:
             return Finding(found.name, found.is_sure, {"said": found.said})
     cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
@@ -239,7 +243,7 @@ def _by_cable(
             continue
         on_step("bauds")
         wire.set_baud(baud)
-        more = wire.heard(LISTEN_MS)
+        more = wire.receive(LISTEN_MS)
         robot = _robot(wire, line, expected)
         reply = robot.hello(1)
         if reply is not None:

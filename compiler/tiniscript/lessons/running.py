@@ -14,7 +14,7 @@ from tiniscript.bytecode.image import Image
 from tiniscript.lessons.lesson import Lesson, Press
 from tiniscript.lessons.variation import pressed, varied
 from tiniscript.link.remote import NOTHING
-from tiniscript.link.remote import pressed as held
+from tiniscript.link.remote import pressed_of as held
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.computer import Computer

@@ -167,7 +167,7 @@ class Client:
 
         self._heed()  # a robot that answers at once makes nobody wait
         with self._connected():
-            return self.line.do(limited)
+            return self.line.begin(limited)
 
     def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
         def watch() -> None:
@@ -260,11 +260,11 @@ class Client:
 
     def foreign(self) -> tuple[str, str]:
         """Return the sentences on the board that answers instead of a robot."""
-        from tiniscript.link.foreign import told
+        from tiniscript.link.foreign import explain
 
         found = stranger(self.line)
         assert found is not None
-        return told(found, self.language)
+        return explain(found, self.language)
 
     def failure(self, reply: Reply[object]) -> Exception:
         """Return the error for a reply that is not OK."""

@@ -32,7 +32,7 @@ from tiniscript.link.messages import MOST_PAD, REMOTE_KEYS, STATE_RUNNING
 from tiniscript.link.names import saved_name
 from tiniscript.link.outcomes import CANCELLED, LOST, Event
 from tiniscript.link.payloads import ReceiptReply
-from tiniscript.link.remote import pressed
+from tiniscript.link.remote import pressed_of
 from tiniscript.link.requests import OK
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
@@ -240,7 +240,7 @@ class RobotConnection:
             if key not in REMOTE_KEYS:
                 values = {"found": printable(repr(key)), "known": ", ".join(REMOTE_KEYS)}
                 raise UsageError("bad_key", self.language, values)
-        held = pressed(keys, x, y)
+        held = pressed_of(keys, x, y)
         reply = self._client.wait(self._client.do(lambda session: session.press(*held)))
         if reply.status not in (OK, CANCELLED, LOST):
             raise self._client.failure(reply)
@@ -377,11 +377,11 @@ def _usual_port(language: Language) -> str:
     """Return the last used port, else that of the only virtual robot. Raises RobotError."""
     if (there := opening.last_port()) is not None:
         return there
-    last = known_ports.known().last
+    last = known_ports.remembered_ports().last
     running = directory.for_all()
     if len(running) == 1:
         return running[0].address
-    listed = [item.port for item in ports.listed()]
+    listed = [item.port for item in ports.list_ports()]
     values = {"known": opening.shown(", ".join(listed)) or "-",
               "example": listed[0] if listed else "/dev/ttyUSB0"}  # fmt: skip
     if last is not None:

@@ -22,7 +22,7 @@ from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import PSEUDO, is_address, is_at_broker, is_name
 from tiniscript.link.sharing import registry
-from tiniscript.link.sharing.shared_connection import OtherVersion, SharedConnection, joined
+from tiniscript.link.sharing.shared_connection import OtherVersion, SharedConnection, join
 from tiniscript.virtual import directory
 
 if TYPE_CHECKING:
@@ -127,13 +127,13 @@ def _opened_line(
     """
     from tiniscript.link.keys import KeyFile
     from tiniscript.link.port_connection import PortConnection
-    from tiniscript.link.ports import opened, opened_past_lock
+    from tiniscript.link.ports import open_past_lock, open_port
     from tiniscript.link.session import Session
 
     with ExitStack() as unless_it_fails:
         if lock is not None:
             unless_it_fails.callback(lock.close)
-        open_it = opened_past_lock if is_past else opened
+        open_it = open_past_lock if is_past else open_port
         try:
             device = open_it(address, baud, limit_s)
         except PortError as failure:
@@ -169,7 +169,7 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
     if failure.reason == errors.MISSING:
         from tiniscript.link import ports
 
-        known = ", ".join(item.port for item in ports.listed())
+        known = ", ".join(item.port for item in ports.list_ports())
         if known:
             reason, values["known"] = "port_missing_but", shown(known)
     return RobotError(reason, language, values)
@@ -184,7 +184,7 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
 
 def last_port() -> str | None:
     """Return the last used port, unless it is known that it is not there."""
-    last = known_ports.known().last
+    last = known_ports.remembered_ports().last
     is_there = last is not None and port_names.is_there(last) and not directory.is_gone(last)
     return last if is_there else None
 
@@ -202,7 +202,7 @@ def shown(name: str) -> str:
 
 def _join_shared(port: str, verb: str, baud: int | None, language: str) -> SharedConnection | None:
     try:
-        client = joined(port, verb)
+        client = join(port, verb)
     except OtherVersion as other:
         values = {
             "verb": other.registration.verb,
@@ -222,7 +222,7 @@ def _resolve_address(port: str, language: str) -> str:
     from tiniscript.link import ports
 
     try:
-        return ports.resolved(port)
+        return ports.resolve(port)
     except errors.PortError as failure:
         raise port_error(port, failure, language) from None
 
@@ -232,7 +232,7 @@ def _claimed(port: str, language: str) -> IO[bytes] | None:
     if not is_address(port):
         return None
     try:
-        lock = registry.claimed(port)
+        lock = registry.claim(port)
     except OSError:
         return None
     if lock is None:

@@ -26,7 +26,7 @@ class Known(NamedTuple):
     names: dict[str, str]
 
 
-def known() -> Known:
+def remembered_ports() -> Known:
     """Return the remembered ports."""
     try:
         fields = json.loads(contents(_path(), FILE_BYTES))
@@ -43,7 +43,7 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
     with suppress(OSError, ValueError):
         path.parent.mkdir(parents=True, exist_ok=True)
         with files.alone(path):  # other commands do the same
-            before = known()
+            before = remembered_ports()
             first = next(iter(before.names.items()), None)
             if first == (port, name) and (before.last == port or not is_used):
                 return

@@ -160,9 +160,9 @@ def listed() -> list[Json]:
 
     `name` is that of the robot that had answered there, `virtual` the profile of a virtual robot.
     """
-    known = known_ports.known()
+    known = known_ports.remembered_ports()
     virtual = {item.address: item for item in directory.for_all()}
-    about = {item.port: item.description for item in ports.listed()}
+    about = {item.port: item.description for item in ports.list_ports()}
     names = [*about, *(port for port in virtual if port not in about)]
     names += [port for port in known.names
               if port not in names and is_there(port) and not directory.is_gone(port)]  # fmt: skip

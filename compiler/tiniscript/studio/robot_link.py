@@ -19,7 +19,7 @@ from tiniscript.base.source import printable
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.library.refusing import refusal
-from tiniscript.link.authority import whose
+from tiniscript.link.authority import ownership_of
 from tiniscript.link.connection import (
     DEADLINE_MS,
     FOREIGN,
@@ -44,7 +44,7 @@ from tiniscript.link.payloads import HelloReply, ReceiptReply, TrimReply
 from tiniscript.link.remote import Pressed, has_remote
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
-from tiniscript.link.trim import Trim, told
+from tiniscript.link.trim import Trim, trim_from_reply
 
 Json = dict[str, Any]
 T = TypeVar("T")
@@ -122,7 +122,7 @@ class RobotLink:
                 pending.limit_ms = limit_ms
             return pending
 
-        pending = self._connection.do(limited)
+        pending = self._connection.begin(limited)
         self._asked.append(_Asked(number, pending, do in ("upload", "start"), do == "keys"))
 
     def stop(self) -> None:
@@ -201,7 +201,7 @@ class RobotLink:
                 "saved": saved_name(values.saved),
             }
         if isinstance(values, TrimReply):
-            return {"ok": True, "trim": told(values).as_data()}
+            return {"ok": True, "trim": trim_from_reply(values).as_data()}
         robot = self._connection.robot
         if isinstance(values, HelloReply) and robot is not None:
             return {"ok": True, "robot": about(robot)}
@@ -211,9 +211,9 @@ class RobotLink:
         reason = reason_of(self._connection, reply)
         found = stranger(self._connection) if reason == FOREIGN else None
         if found is not None:
-            from tiniscript.link.foreign import told as told_of
+            from tiniscript.link.foreign import explain
 
-            said, advice = told_of(found, self.language)
+            said, advice = explain(found, self.language)
             return {"failure": reason, "said": said, "advice": advice}
         if reason != STATUS:
             return {"failure": reason, "said": "", "advice": ""}
@@ -255,7 +255,7 @@ def about(robot: DeviceInfo) -> Json:
         "name": printable(robot.name),
         "id": f"{robot.id:08x}",
         "robot": shipped_of_kit(robot.kit),
-        "owner": whose(robot),
+        "owner": ownership_of(robot),
         "room": robot.room,
         "is_running": robot.values.state == STATE_RUNNING,
         "has_remote": has_remote(robot),

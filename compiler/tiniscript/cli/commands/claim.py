@@ -8,7 +8,7 @@ from argparse import Namespace
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, connected
-from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, whose
+from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, ownership_of
 from tiniscript.link.connection import CLAIM_LIMIT_MS
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES
@@ -26,7 +26,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _claim(connection: Connection, which: int) -> None:
-    request = connection.line.do(lambda session: session.claim(which))
+    request = connection.line.begin(lambda session: session.claim(which))
     # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
     sentence = connection.text("claim_hold", seconds=CLAIM_LIMIT_MS // 1000)
     print(sentence, file=sys.stderr, flush=True)
@@ -47,5 +47,5 @@ def _refuse_at_once(connection: Connection) -> None:
     device_info = connection.device_info
     if not device_info.values.features & OWNERS:
         raise CommandError(3, "no_owners", robot=connection.name)
-    if whose(device_info) == OF_ANOTHER and not KeyFile().of_robot(device_info.id):
+    if ownership_of(device_info) == OF_ANOTHER and not KeyFile().of_robot(device_info.id):
         raise connection.failure(Reply(NOT_OWNER))

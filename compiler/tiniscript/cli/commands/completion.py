@@ -133,7 +133,7 @@ def _words_of(kind: Kind, language: str) -> list[tuple[str, str]]:
     if kind is VERB:
         return [(verb, _first_clause(summary_of(verb, "summary", language))) for verb in VERBS]
     if kind.name == "port":
-        return [(item.port, item.description) for item in ports.listed()]
+        return [(item.port, item.description) for item in ports.list_ports()]
     named = {"robot": robots.names(), "world": worlds.names(), "chip": BOARDS, "code": CODES,
              "action": LESSON_ACTIONS, "hurry": ("max",)}  # fmt: skip
     return [(word, "") for word in named.get(kind.name, kind.choices)]

@@ -90,13 +90,13 @@ def _port(options: Namespace, language: str) -> int:
     if not checks:
         raise CommandError(2, "conform_no_case", found=shown(options.only))
     with opening_port(port):
-        wire = Wire(ports.opened(ports.resolved(port), baud))
+        wire = Wire(ports.open_port(ports.resolve(port), baud))
     is_radio = ports.is_radio(port)
     nonce = int.from_bytes(os.urandom(4), "little")
     robot = WireRobot(wire, nonce, RADIO_MS if is_radio else CABLE_MS)
     verdicts: list[Verdict] = []
     try:
-        wire.heard(0 if is_radio else BOOT_MS)
+        wire.receive(0 if is_radio else BOOT_MS)
         hello = port_checks.met(robot)
         if not hello.status and hello.number("features") & OWNED:
             raise CommandError(3, "conform_owned")

@@ -35,10 +35,10 @@ from tiniscript.doctor.diagnosis import Diagnosis
 from tiniscript.doctor.examination import PINGS, Expected, Heard
 from tiniscript.doctor.findings import OPEN
 from tiniscript.library import opening
-from tiniscript.link.authority import whose
+from tiniscript.link.authority import ownership_of
 from tiniscript.link.messages import RESETS
-from tiniscript.link.requests import described
-from tiniscript.link.trim import told as trim_told
+from tiniscript.link.requests import device_info_of
+from tiniscript.link.trim import trim_from_reply
 
 LONGEST_WATCH_S = 600
 BLANK = "____"
@@ -117,9 +117,9 @@ def _examine_member(expected: Expected, connection: Connection, member: Member) 
 
 def _description(port: str, heard: Heard, language: str) -> Description:
     """Return what a robot says about itself, of what it has answered."""
-    info = described(heard.hello)
-    trim = None if heard.trim is None else trim_told(heard.trim)
-    return Description(port, info, heard.status, trim, whose(info), language)
+    info = device_info_of(heard.hello)
+    trim = None if heard.trim is None else trim_from_reply(heard.trim)
+    return Description(port, info, heard.status, trim, ownership_of(info), language)
 
 
 def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:

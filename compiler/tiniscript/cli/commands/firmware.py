@@ -92,7 +92,7 @@ def _port(options: Namespace) -> str:
     if is_address(port):
         raise CommandError(2, "flash_address", port=shown(port))
     with opening_port(port):
-        ports.opened(port, UNO.baud).close()
+        ports.open_port(port, UNO.baud).close()
     return port
 
 

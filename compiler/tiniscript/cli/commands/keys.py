@@ -51,13 +51,13 @@ def _export(robot_keys: list[RobotKey], name: str, language: str) -> None:
     if path.exists():
         raise CommandError(2, "export_there", file=shown(name))
     taken = [key._replace(is_stale=False) for key in robot_keys if not key.is_pending]
-    outputs.write(path, keys.written(taken), "unwritable_more --export", keys.MODE)
+    outputs.write(path, keys.encode_keys(taken), "unwritable_more --export", keys.MODE)
     say("keys_exported", language, n=len(taken), file=shown(name))
 
 
 def _import(own: KeyFile, name: str, language: str) -> None:
     try:
-        brought = keys.read(files.contents(Path(name), keys.FILE_BYTES))
+        brought = keys.decode_keys(files.contents(Path(name), keys.FILE_BYTES))
     except (OSError, ValueError, BadKeys):
         raise CommandError(2, "bad_keys", file=shown(name)) from None
     try:

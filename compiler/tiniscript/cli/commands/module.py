@@ -18,7 +18,16 @@ from tiniscript.link import ports
 from tiniscript.link.errors import PortError
 from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
-from tiniscript.link.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
+from tiniscript.link.modules.set_up import (
+    BAUD,
+    DONE,
+    GOOD,
+    NAME,
+    PIN,
+    Outcome,
+    Step,
+    WantedSettings,
+)
 from tiniscript.link.modules.talk import Module, ask, find_module
 from tiniscript.link.wire import Wire
 
@@ -27,7 +36,7 @@ def run(options: Namespace, language: str) -> int:
     expected = _wanted(options)
     port = _port(options)
     try:
-        wire = Wire(ports.opened(port, BAUDS[0]))
+        wire = Wire(ports.open_port(port, BAUDS[0]))
     except PortError as failure:
         return _end(unopened(System(), port, failure)._replace(of="module"), language)
     steps: list[Step] = []  # the speed, once a command for it may have been sent
@@ -56,7 +65,7 @@ def _speed_after_abort(steps: list[Step], language: str) -> str:
     return text("module_left", language).format(baud=steps[0].value)
 
 
-def _wanted(options: Namespace) -> Wanted:
+def _wanted(options: Namespace) -> WantedSettings:
     """Return what the options ask for. Raises CommandError for what no module can have."""
     name: str | None = options.name
     if options.id is not None:
@@ -74,14 +83,14 @@ def _wanted(options: Namespace) -> Wanted:
                 found=shown(options.baud) or "''",
             )  # fmt: skip
         baud = known[options.baud]
-    result = Wanted(name, options.pin, baud)
+    result = WantedSettings(name, options.pin, baud)
     misfits = [set_up.misfit(result, dialect) for dialect in DIALECTS]
     if all(misfits):
         _refuse(result, max(DIALECTS, key=lambda dialect: dialect.name_bytes), misfits[0])
     return result
 
 
-def _refuse(wanted: Wanted, dialect: Dialect, what: str) -> None:
+def _refuse(wanted: WantedSettings, dialect: Dialect, what: str) -> None:
     if what == NAME:
         raise CommandError(
             2,
@@ -104,7 +113,12 @@ def _port(options: Namespace) -> str:
 
 class _SetUp:
     def __init__(
-        self, wire: Wire, options: Namespace, wanted: Wanted, language: str, begun: list[Step]
+        self,
+        wire: Wire,
+        options: Namespace,
+        wanted: WantedSettings,
+        language: str,
+        begun: list[Step],
     ) -> None:
         self.wire, self.options, self.wanted = wire, options, wanted
         self.language, self.begun = language, begun
@@ -127,7 +141,7 @@ class _SetUp:
         outcomes: list[Outcome] = []
         if not self.options.dry_run:
             self.begun += [step for step in plan if step.what == BAUD]
-            outcomes = set_up.done(self.wire, module, plan, self._print_outcome)
+            outcomes = set_up.apply_steps(self.wire, module, plan, self._print_outcome)
         else:
             self._show(plan)
         is_done = all(outcome.how in GOOD for outcome in outcomes)

@@ -19,9 +19,9 @@ from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link import known_ports
-from tiniscript.link.authority import whose
+from tiniscript.link.authority import ownership_of
 from tiniscript.link.connection import stranger
-from tiniscript.link.foreign import told
+from tiniscript.link.foreign import explain
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.protocol import LOOKER
 from tiniscript.robots.profile import Robot
@@ -34,7 +34,7 @@ def run(options: Namespace, language: str) -> int:
     baud = None if options.baud is None else baud_of(options, robot, language)
     in_reach = NOWHERE
     if options.ask and options.port is None:
-        in_reach = find_robots(list(known_ports.known().names), language)
+        in_reach = find_robots(list(known_ports.remembered_ports().names), language)
         for note in in_reach.notes:  # what could not be searched
             print(note, file=sys.stderr, flush=True)
     rows = listed(language, options.port, in_reach)
@@ -72,7 +72,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
         called = (
             shown(device_info.name) or shipped_of_kit(device_info.kit) or f"{device_info.id:08x}"
         )
-        owner = whose(device_info)
+        owner = ownership_of(device_info)
         sentence = text("port_whose", language).format(
             said=text("port_robot", language).format(name=called),
             whose=text(f"whose_{owner}", language),
@@ -85,5 +85,5 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "said": sentence,
         }
     if found is not None and (found.has_row or found.is_sure):
-        return {"answer": None, "said": Said(told(found, language).said.rstrip("."))}
+        return {"answer": None, "said": Said(explain(found, language).said.rstrip("."))}
     return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}

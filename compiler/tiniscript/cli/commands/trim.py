@@ -16,14 +16,14 @@ from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.description import trim_in_words
 from tiniscript.cli.robot.trim_wizard import guided
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
-from tiniscript.link.trim import MOST_PACE, Pace, Trim, told
+from tiniscript.link.trim import MOST_PACE, Pace, Trim, trim_from_reply
 
 
 def run(options: Namespace, language: str) -> int:
     given = _trim_options(options, language)
     with connected(options, language) as connection:
         connection.meet()
-        before = told(connection.ask(lambda session: session.trim()).values)
+        before = trim_from_reply(connection.ask(lambda session: session.trim()).values)
         if options.show:
             _print(connection, "trim_tells", before, options.json)
             return 0

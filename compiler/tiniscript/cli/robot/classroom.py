@@ -57,7 +57,7 @@ class Classroom:
             except ImportError as missing:
                 raise PortError(NOT_INSTALLED, missing.name or "") from None
             broker.sign_in(*self.place, self._access(options))
-            return broker.connected(*self.place)
+            return broker.connect(*self.place)
 
     def _access(self, options: Namespace) -> Access:
         from tiniscript.link.transports.broker import Access
@@ -72,7 +72,7 @@ class Classroom:
             try:
                 result = self.broker.present(self.group)
             finally:
-                for topic, size in self.broker.skipped.items():
+                for topic, size in self.broker.skipped_topics.items():
                     say_aside("class_skipped", self.language, topic=shown(topic), bytes=size)
         if not any(item.is_here for item in result):
             raise CommandError(3, "class_empty", group=self.group, host=str(self.place))

@@ -380,7 +380,7 @@ def _select_port(options: Namespace, language: str) -> str:
         return inputs.port(port)
     if (there := opening.last_port()) is not None:
         return there
-    last = known_ports.known().last
+    last = known_ports.remembered_ports().last
     virtual = directory.for_all() if can_bring else directory.running()
     if len(virtual) == 1:
         return virtual[0].address
@@ -414,10 +414,10 @@ def about_virtual(running: directory.Running, language: str) -> str:
 
 def _ask_port(language: str, can_bring: bool, virtual: list[directory.Running]) -> str:
     """Let the person choose a port, or one of the virtual robots."""
-    names = known_ports.known().names
+    names = known_ports.remembered_ports().names
     from tiniscript.link import ports
 
-    result = ports.listed()
+    result = ports.list_ports()
     choices = [item.port for item in result]
     choices += [port for port in names if port not in choices and is_address(port)
                 and not is_gone(port)]  # fmt: skip

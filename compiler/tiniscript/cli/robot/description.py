@@ -17,7 +17,7 @@ from tiniscript.doctor.examination import trips_of
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.library import source_map
 from tiniscript.library.known_kits import shipped_of_kit
-from tiniscript.link.authority import OF_ANOTHER, whose
+from tiniscript.link.authority import OF_ANOTHER, ownership_of
 from tiniscript.link.messages import (
     RESETS,
     SAVED,
@@ -33,13 +33,13 @@ from tiniscript.link.names import fault_name, row_name
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import DeviceInfo, Reply
-from tiniscript.link.trim import Pace, Trim, told
+from tiniscript.link.trim import Pace, Trim, trim_from_reply
 
 COUNT = 10  # round trips
 
 
 class Description(NamedTuple):
-    """The replies of a robot to HELLO, STATUS and TRIM. `owner`: see `authority.whose`."""
+    """The replies of a robot to HELLO, STATUS and TRIM. `owner`: see `authority.ownership_of`."""
 
     port: str
     device_info: DeviceInfo
@@ -154,11 +154,11 @@ class Description(NamedTuple):
 def described(connection: Connection) -> Description:
     """Ask a robot that has answered HELLO what it says about itself."""
     status = connection.ask(lambda session: session.status()).values
-    owner = whose(connection.device_info)
+    owner = ownership_of(connection.device_info)
     trim: Trim | None = None
     if owner != OF_ANOTHER:  # it would count as a wrong key
         with suppress(CommandError):
-            trim = told(connection.ask(lambda session: session.trim()).values)
+            trim = trim_from_reply(connection.ask(lambda session: session.trim()).values)
     return Description(
         connection.port, connection.device_info, status, trim, owner, connection.language
     )

@@ -31,8 +31,8 @@ from tiniscript.link.messages import OWNED, SEALS
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.port_names import same_for_all
-from tiniscript.link.requests import Reply, described
-from tiniscript.link.sharing.shared_connection import joined
+from tiniscript.link.requests import Reply, device_info_of
+from tiniscript.link.sharing.shared_connection import join
 from tiniscript.link.wire import Wire
 from tiniscript.virtual import directory
 
@@ -89,7 +89,7 @@ def _has_key(robot: int) -> bool:
 
 def _doubt(port: str, hello: HelloReply) -> str:
     """Return the cause why this may be another robot than the one of a key of this computer."""
-    keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), described(hello)
+    keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), device_info_of(hello)
     if is_other(keys, same_for_all(port), info):
         return "other_robot"
     is_right = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
@@ -98,7 +98,7 @@ def _doubt(port: str, hello: HelloReply) -> str:
 
 def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agreed: bool) -> Doors:
     def open_wire(port: str, baud: int) -> Wire:
-        return Wire(ports.opened(port, baud))
+        return Wire(ports.open_port(port, baud))
 
     def confirms_opening(port: str) -> bool:
         if options.yes or is_agreed:
@@ -116,6 +116,6 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
             yield connection.line
 
     return Doors(
-        System(), open_wire, lambda port: joined(port, "doctor"), confirms_opening, ports.is_radio,
+        System(), open_wire, lambda port: join(port, "doctor"), confirms_opening, ports.is_radio,
         share, lambda what: doing.tell(text(f"doing_{what}", language).format(n=pings)),
     )  # fmt: skip

@@ -18,7 +18,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.texts import text
 from tiniscript.link import known_ports
 from tiniscript.link.port_names import is_there, same_for_all
-from tiniscript.link.sharing.registry import all_found
+from tiniscript.link.sharing.registry import find_all
 from tiniscript.virtual import directory
 
 
@@ -47,14 +47,14 @@ def targets(options: Namespace) -> list[Target]:
 
     Ports in use come first, then ports of known robots. Opens none.
     """
-    known = known_ports.known().names
+    known = known_ports.remembered_ports().names
     expected = [inputs.port(port) for port in options.ports]
     if options.all:
-        expected = [registration.port for registration in all_found()]
+        expected = [registration.port for registration in find_all()]
         expected += [port for port in known if is_there(port) and not directory.is_gone(port)]
         from tiniscript.link import ports
 
-        expected += [item.port for item in ports.listed()]
+        expected += [item.port for item in ports.list_ports()]
         expected += [robot.address for robot in directory.running()]
     names = {same_for_all(port): name for port, name in reversed(known.items())}
     chosen = {same_for_all(port): port for port in reversed(expected)}

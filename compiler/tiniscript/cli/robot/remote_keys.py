@@ -16,7 +16,7 @@ from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.payloads import EmptyReply
-from tiniscript.link.remote import NOTHING, Pressed, has_remote, pressed
+from tiniscript.link.remote import NOTHING, Pressed, has_remote, pressed_of
 from tiniscript.link.requests import OK, Reply
 
 FIRST_S, REPEAT_S = 0.7, 0.15  # for which a press holds a key
@@ -64,7 +64,7 @@ class HeldKeys:
         self._until_s[name] = now_s + (REPEAT_S if is_repeat else FIRST_S)
 
     def held(self, now_s: float) -> Pressed:
-        return pressed(name for name, until_s in self._until_s.items() if now_s < until_s)
+        return pressed_of(name for name, until_s in self._until_s.items() if now_s < until_s)
 
 
 class TerminalRemote:

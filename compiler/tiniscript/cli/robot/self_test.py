@@ -27,7 +27,7 @@ from tiniscript.doctor.findings import Finding, sure
 from tiniscript.library.known_kits import of_kit
 from tiniscript.link.messages import RESETS, SAVED
 from tiniscript.link.names import row_name
-from tiniscript.link.trim import Trim, told
+from tiniscript.link.trim import Trim, trim_from_reply
 from tiniscript.robots.profile import Robot
 
 PARTS = ("kit", "firmware", "line", "supply", "store")  # of which a robot tells itself
@@ -60,7 +60,7 @@ class SelfTest(Conversation):
     def _check(self) -> None:
         self._add("is_there")
         robot = self._examine()
-        self.trim = told(self.connection.ask(lambda session: session.trim()).values)
+        self.trim = trim_from_reply(self.connection.ask(lambda session: session.trim()).values)
         self.found.append(self._trim_is())
         if robot is None:
             return

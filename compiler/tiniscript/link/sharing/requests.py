@@ -64,7 +64,7 @@ def _fields(given: Mapping[str, object]) -> JsonMessage:
     return fields
 
 
-def asked_for(
+def request_maker(
     message: JsonMessage, limit_ms: int, speaker: int = 0
 ) -> Callable[[Requester], PendingRequest[Any]]:
     """Return the function that makes a message's request to a session. Raises BadMessage.
