@@ -7,7 +7,7 @@ import pytest
 from tests.support.rows import each_row
 from tiniscript.base.source import Source
 from tiniscript.library.named_robot import named_robot, renamed
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 
 NAMING = [
     "// robot: liner\nSI|F(1, 80)",
@@ -39,10 +39,10 @@ def test_any_other_comment_tells_people_something(text: str) -> None:
 
 @each_row("text", [each for each in NAMING if "\nS" in each or "\nF" in each])
 def test_the_formatter_keeps_it(text: str) -> None:
-    laid_out = formatted(Source(text.removeprefix("\ufeff")))
+    laid_out = format_source(Source(text.removeprefix("\ufeff")))
     found = named_robot(laid_out)
     assert found is not None and found.name.lower() == "liner"
-    assert laid_out == formatted(Source(laid_out))
+    assert laid_out == format_source(Source(laid_out))
 
 
 @pytest.mark.parametrize("text", NAMING)

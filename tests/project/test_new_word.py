@@ -30,7 +30,7 @@ from tiniscript.robots.text_levels import LEVELS, Level
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.description import description
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 from tools.generate import paper, poster, text_tables
 from tools.generate.documents import language_document
 from tools.generate.paper import Line
@@ -147,7 +147,7 @@ def test_a_value_of_such_a_word_is_the_whole_of_one_value() -> None:
 
 
 def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
-    assert formatted(Source(PROGRAM.lower())) == PROGRAM
+    assert format_source(Source(PROGRAM.lower())) == PROGRAM
     form = read(PROGRAM, KIT)
     horn = form.body[0].bodies[0][0]
     assert (horn.kind, horn.word, horn.values) == ("plain", HORN.text, ())

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.codegen.text.problems import OF_DEFS, PROBLEMS, REMARKS, said
+from tiniscript.codegen.text.problems import OF_DEFS, PROBLEMS, REMARKS, problem_text
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answered, language_number
 from tiniscript.robots.text_levels import LEVELS
@@ -74,7 +74,7 @@ def rows(language: str, is_small: bool = False) -> list[str]:
     ]
     unsaid = _unused_remarks() if is_small else set()
     return [
-        *("" if row in unsaid else said(*row, language) for row in rows),
+        *("" if row in unsaid else problem_text(*row, language) for row in rows),
         *("" if ("fault", name) in unsaid else name for name in names),
     ]
 

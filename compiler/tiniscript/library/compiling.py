@@ -23,7 +23,7 @@ from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
 from tiniscript.semantics.lint import lint
-from tiniscript.semantics.optimizer import optimized
+from tiniscript.semantics.optimizer import optimize_program
 from tiniscript.syntax.parser import parse
 
 
@@ -80,9 +80,9 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     if not any(diagnostic.is_mistake for diagnostic in diagnostics):
         diagnostics += lint(checked.program, kit, source, parsed.scan)
         if kit.given:
-            from tiniscript.syntax.later_words import given_way
+            from tiniscript.syntax.later_words import report_given_way
 
-            diagnostics += given_way(parsed.scan.tokens, kit, source)
+            diagnostics += report_given_way(parsed.scan.tokens, kit, source)
     return Compiled(source, codes.in_order(diagnostics), checked.program)
 
 
@@ -91,9 +91,9 @@ def _kit_in(text: str, kit: Kit) -> Kit:
     sentence = text.upper()
     if not any(word in sentence for word in KIT_WORDS_SINCE):
         return kit
-    from tiniscript.syntax.later_words import in_program
+    from tiniscript.syntax.later_words import kit_for_text
 
-    return in_program(text, kit)
+    return kit_for_text(text, kit)
 
 
 def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
@@ -170,11 +170,11 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     if program is None or not compiled.is_right:
         return compiled
     if program.tasks and any(procedure.values for procedure in program.procedures):
-        from tiniscript.semantics.task_copies import separated
+        from tiniscript.semantics.task_copies import copy_defs_per_task
 
-        program = separated(program)
+        program = copy_defs_per_task(program)
     yes_no = tuple(ir.are_yes_no(program, kit))
-    program = optimized(program) if optimize else program
+    program = optimize_program(program) if optimize else program
     lowered = lower(program)
     if len(lowered.code) > CODE_BYTES:
         over = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}

@@ -70,14 +70,14 @@ class _Durations:
     def of(self, body: ir.Body) -> Duration:
         least, most = 0, 0
         for statement in body:
-            this = self.statement(statement)
-            least += this.least
-            if this.never_ends:
+            part = self.statement(statement)
+            least += part.least
+            if part.never_ends:
                 return Duration(least, None, True)
-            if this.most is None:
+            if part.most is None:
                 most = -1
             elif most >= 0:
-                most += this.most
+                most += part.most
         return Duration(least, None if most < 0 else most)
 
     def statement(self, statement: ir.Statement) -> Duration:
@@ -111,17 +111,17 @@ class _Durations:
     def loop(self, loop: ir.Loop | ir.While) -> Duration:
         body = self.of(loop.body)
         if isinstance(loop, ir.Loop) and loop.times is None:
-            return _UNKNOWN if ir.loops_end(loop.body) else Duration(0, None, True)
+            return _UNKNOWN if ir.breaks_out(loop.body) else Duration(0, None, True)
         count = known_value(loop.times) if isinstance(loop, ir.Loop) else None
         if body.least == 0 and body.most is not None:
             body = body._replace(most=body.most + self.turn_ms)
         if count is None:
             return _UNKNOWN if isinstance(loop, ir.While) or body.most != 0 else _NONE
         times = max(whole(count), 0)
-        if body.never_ends and times and not ir.loops_end(loop.body):
+        if body.never_ends and times and not ir.breaks_out(loop.body):
             return Duration(body.least, None, True)
         most = None if body.most is None else times * body.most
-        return Duration(0 if ir.loops_end(loop.body) else times * body.least, most)
+        return Duration(0 if ir.breaks_out(loop.body) else times * body.least, most)
 
 
 def _time(time: ir.Expression | None) -> Duration:

@@ -31,7 +31,7 @@ def is_open_way(statement: Statement) -> bool:
     return any(value is None or known_value(value) is None for value in values)
 
 
-def timed(move: Move, kit: Kit) -> Move:
+def to_timed(move: Move, kit: Kit) -> Move:
     """Return a move by its time in place of one by its way, which is not open.
 
     Where the robot would fault it never ends.

@@ -401,7 +401,7 @@ def _is_told(row: Row) -> bool:
 def _shown_sensors(program: ir.Program) -> dict[int, int | None]:
     """Return where each SHOW begins, and the sensor that it shows, if it is one alone."""
     shown_sensors: dict[int, int | None] = {}
-    for statement in ir.every(program):
+    for statement in ir.all_statements(program):
         if isinstance(statement, ir.Show):
             is_one = len(statement.value) == 1 and statement.value[0].op == "SENSOR"
             shown_sensors[statement.span.start] = statement.value[0].value if is_one else None

@@ -9,7 +9,7 @@ from tiniscript.base.source import LARGEST_SOURCE
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say, text
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 
 
 def run(options: Namespace, language: str) -> int:
@@ -20,7 +20,7 @@ def run(options: Namespace, language: str) -> int:
     if not parsed.is_right:
         outputs.print_diagnostics(parsed, language)
         return 1
-    laid_out = formatted(parsed.source)
+    laid_out = format_source(parsed.source)
     if len(laid_out.encode()) > LARGEST_SOURCE:
         raise CommandError(2, "fmt_too_large", file=inputs.shown(given.name))
     name = inputs.shown(given.name)

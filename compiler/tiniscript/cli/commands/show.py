@@ -8,7 +8,7 @@ from tiniscript.cli import compiling, images, inputs, outputs
 from tiniscript.cli.disassembling import print_disassembly, print_json
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say
-from tiniscript.codegen.sketch.writing import BOARDS, lacks, sketch_of
+from tiniscript.codegen.sketch.writing import BOARDS, missing_feature, sketch_of
 from tiniscript.robots.profile import Robot
 
 
@@ -44,7 +44,7 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if not compiled.is_right:
         return 1
     assert compiled.program is not None
-    if missing := lacks(compiled.program, robot.kit):
+    if missing := missing_feature(compiled.program, robot.kit):
         raise CommandError(2, f"sketch_no_{missing}", file=inputs.shown(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
     if outputs.put(options.output, sketch):

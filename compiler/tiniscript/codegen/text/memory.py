@@ -19,7 +19,7 @@ from tiniscript.bytecode.opcodes import SHORTS
 from tiniscript.codegen.lower_expression import push_bytes
 from tiniscript.syntax.blocks import ENDS
 from tiniscript.syntax.cursor import AT_END
-from tiniscript.syntax.later_words import among
+from tiniscript.syntax.later_words import kit_for_tokens
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
 
@@ -76,7 +76,9 @@ class Reader:
         self.brackets = 0
         self.is_way = False  # of the instruction whose brackets have been read
         self.one_too_many: Span | None = None  # the first bracket after MOST_BRACKETS
-        self.sensors = {device.name: k for k, device in enumerate(among(tokens, kit).readings)}
+        self.sensors = {
+            device.name: k for k, device in enumerate(kit_for_tokens(tokens, kit).readings)
+        }
         self.actuators = {device.name: k for k, device in enumerate(kit.actuators)}
         self.variables: dict[str, int] = {}
         self.own: dict[str, int] = {}  # the values of the DEF that is open
@@ -245,15 +247,15 @@ class Reader:
         self.brackets -= token.kind == ")"
         return token
 
-    def command(self, its: Word) -> None:
-        word = its.text
+    def command(self, spec: Word) -> None:
+        word = spec.text
         if word == "ELSEIF":
             self.next_arm()
         elif word == "WHILE":
             self.emit(_JUMP)
             self.open(word)
         is_forever = self.arguments()
-        if its.role.lasts:
+        if spec.role.lasts:
             code = 2 if self.is_way else 1
             if self.token.kind is WORD:
                 self.take()
@@ -415,9 +417,9 @@ class Reader:
     def reduce(self, binding: int) -> None:
         """Apply what waits and binds at least so tightly, back to an open bracket."""
         while self.waiting and self.waiting[-1][0] >= binding:
-            its, _ = self.waiting.pop()
+            precedence, _ = self.waiting.pop()
             self.pop()
-            if its <= AND:
+            if precedence <= AND:
                 self.pop()
             else:
                 self.emit(1)

@@ -33,6 +33,6 @@ REMARKS = (
 NAMES = dict(enumerate(PROBLEMS, 1))
 
 
-def said(kind: str, name: str, language: str) -> str:
+def problem_text(kind: str, name: str, language: str) -> str:
     """Return the text of a `problem` or a `remark`."""
     return found("robot", f"{kind}/{name}", language) or ""
