@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 
 from tiniscript import robots
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Source, applied
+from tiniscript.base.source import Source, apply_edits
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.library.compiling import analyzed, check_text
 from tiniscript.library.named_robot import robot_of
@@ -47,7 +47,7 @@ def told(text: str) -> Iterator[str]:
         for change in candidate.changes if candidate else ():
             for step in change.steps:
                 yield f"  {_step_text(step)}\n    by {row_of(step, kit)}"
-        rest = applied(rest, its.edits)
+        rest = apply_edits(rest, its.edits)
     yield from map(_diagnostic_text, check_text(text, kit).diagnostics)
 
 

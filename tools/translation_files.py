@@ -15,12 +15,12 @@ from tiniscript.base.catalogue_source import UNKNOWN, Catalogue, Entry, Forms, P
 from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SEEN
 from tiniscript.base.translations import (
     Own,
-    joined,
+    merge_translations,
     pair,
     read_language,
     read_own,
     read_seen,
-    untold,
+    without_translation,
 )
 
 WIDTH = 100  # of a list in one row
@@ -47,7 +47,9 @@ class Translation:
 
     def joined(self, name: str) -> Catalogue:
         """Return the English texts of a file with those of the language."""
-        return joined(self.english[name], name, self.own[name], self.seen, self.language)
+        return merge_translations(
+            self.english[name], name, self.own[name], self.seen, self.language
+        )
 
     def follow(self) -> Iterator[str]:
         """Put translations where their English texts are now; yield the keys of those that go."""
@@ -89,7 +91,7 @@ class Translation:
     def paired(self, name: str, key: str) -> list[Entry]:
         """Return the texts of a key with their translations, none where that is not possible."""
         texts = self.own[name].texts.get(key, [])
-        group = [untold(entry) for entry in self.groups[name].get(key, [])]
+        group = [without_translation(entry) for entry in self.groups[name].get(key, [])]
         unknown = [UNKNOWN] * len(texts)
         hashes = [*self.seen.get(f"{name} {key}", []), *unknown][: len(texts)]
         return [] if pair(group, texts, hashes) else group

@@ -154,7 +154,7 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     upload.command.ended().gives(3, out="The robot was stopped from a computer.")
     done = inside("stop", *options)
     assert done.code == 3  # there is none any more
-    assert directory.running() == []
+    assert directory.running_robots() == []
 
 
 def test_stop_stops_all_that_are_in_use() -> None:
@@ -177,7 +177,7 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
     usb = tmp_path / "usb"
     known_ports.remember(str(usb), "TINI")
     here = [Running("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
-    monkeypatch.setattr(directory, "running", lambda: here)
+    monkeypatch.setattr(directory, "running_robots", lambda: here)
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
     usb.touch()
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5", str(usb)]

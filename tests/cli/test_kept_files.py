@@ -291,7 +291,7 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
     monkeypatch.setattr(files, "sleep", passes)
     with ExitStack() as stack:
         for lock in [*tmp_path.rglob(f"*{files.LOCK}")]:
-            stack.enter_context(files.alone(lock.with_name(lock.name[: -len(files.LOCK)])))
+            stack.enter_context(files.lock_file(lock.with_name(lock.name[: -len(files.LOCK)])))
         for _ in range(2):  # and the second time
             now_s = 0.0
             with suppress(BadKeys, OSError):

@@ -148,7 +148,7 @@ def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(
 ) -> None:
     key_file.add([ONE])
     monkeypatch.setattr(files, "LOCK_S", 0.1)
-    with files.alone(key_file.path):
+    with files.lock_file(key_file.path):
         assert key_file.create_pending_key(1, KEY_OWNER, "A") is None
         with pytest.raises(BadKeys):
             key_file.add([ONE._replace(id=2)])

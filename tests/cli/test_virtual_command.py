@@ -95,7 +95,7 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
             assert inside("stop", "--virtual").code == 0
         found.end().gives(0, "The virtual robot drove 9 cm")
     assert picture.read_bytes().startswith(b"\x89PNG")
-    assert directory.running() == []
+    assert directory.running_robots() == []
     inside("start").gives(3, "which port?")
 
 
@@ -190,14 +190,14 @@ def test_a_pseudo_terminal_is_a_port_too() -> None:
 
 def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
     found = Robot()
-    assert len(directory.running()) == 1
+    assert len(directory.running_robots()) == 1
     found.kill()
     [note] = directory._folder().glob("*.json")
-    assert directory.running() == []
+    assert directory.running_robots() == []
     assert not note.exists()
     for text in ("", "[]", "{}", '{"address": 5}', "[" * 10_000):
         note.write_text(text, encoding="utf-8")
-        assert directory.running() == []
+        assert directory.running_robots() == []
     assert inside("stop", "--virtual").code == 3
 
 
@@ -255,7 +255,7 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
     assert before["way"] < 20 < 4000 < after["way"]
     assert before["robot"] > 200
     assert before["box"] > 10_000
-    assert directory.running() == []
+    assert directory.running_robots() == []
 
 
 def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:

@@ -27,7 +27,7 @@ from tiniscript.base.kit import Device, Kit
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.opcodes import OPS
-from tiniscript.bytecode.verify import loaded
+from tiniscript.bytecode.verify import load_image
 from tiniscript.conformance import kit as kit_files
 from tiniscript.conformance import machine_process
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, verdicts
@@ -213,7 +213,7 @@ def test_each_instruction_runs() -> None:
         if case.answer[-1].startswith("REFUSED"):
             continue
         kit = kit_of(case)
-        code = loaded(case.image, kit).code
+        code = load_image(case.image, kit).code
         robot = TracedRobot(kit, Lists(kit, case.readings))
         runs = machine_of(code, robot, len(kit.readings), case.seed)
         for _ in range(10_000):

@@ -36,7 +36,7 @@ from tests.firmware.test_persistence import (
 )
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
-from tiniscript.bytecode.image import sealed
+from tiniscript.bytecode.image import with_checksum
 from tiniscript.bytecode.opcodes import ISA_MINOR
 from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import SAVED_STORED, STATUSES
@@ -69,12 +69,12 @@ def with_byte(text: str, at: int, value: int) -> bytes:
     return bytes(image)
 
 
-OF_ANOTHER_KIT = sealed(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))  # a byte of what it needs
-THAT_NO_VERIFIER_TAKES = sealed(with_byte(A, -1, 0xFE))
+OF_ANOTHER_KIT = with_checksum(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))  # a byte of what it needs
+THAT_NO_VERIFIER_TAKES = with_checksum(with_byte(A, -1, 0xFE))
 CANNOT_RUN = {
     "version": VERSION_3,
     "kit": OF_ANOTHER_KIT,
-    "minor": sealed(with_byte(A, 3, ISA_MINOR + 1)),
+    "minor": with_checksum(with_byte(A, 3, ISA_MINOR + 1)),
     "verifier": THAT_NO_VERIFIER_TAKES,
     "damaged": with_byte(A, -1, bytes_of(A)[-1] ^ 1),
 }

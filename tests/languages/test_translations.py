@@ -21,7 +21,13 @@ from tests.support.waiting import HANGS_S
 from tiniscript.base import catalogue_source, languages
 from tiniscript.base.catalogue_source import Catalogue, Entry
 from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SEEN, SOURCE
-from tiniscript.base.translations import NUMBERS, joined, read_language, read_own, read_seen
+from tiniscript.base.translations import (
+    NUMBERS,
+    merge_translations,
+    read_language,
+    read_own,
+    read_seen,
+)
 from tiniscript.cli.texts import Said
 from tools import languages as tool
 from tools import translation_files, translators
@@ -208,7 +214,7 @@ def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
         assert len(language.form_of) == NUMBERS
         read_seen(folder / SEEN)
         english = catalogue_source.load(folder / "some.toml")
-        joined(english, "some", read_own(folder / "some.toml"), {}, language)
+        merge_translations(english, "some", read_own(folder / "some.toml"), {}, language)
 
 
 def test_what_cannot_be_read_is_wrong_and_costs_the_file(
@@ -243,10 +249,10 @@ def test_plurals_follow_the_rule_of_the_language(place: Path) -> None:
         assert problems(opened(place, rows)) == []
         languages.forget()
         for number, form in wanted.items():
-            assert languages.counted("some", "n", number, "xx") == f"{{n}} {form}"
+            assert languages.plural_text("some", "n", number, "xx") == f"{{n}} {form}"
     write(place / "xx" / "some.toml", OWN)
     languages.forget()
-    assert [languages.counted("some", "n", n, "xx") for n in (1, 5)] == ["{n} bytes"] * 2
+    assert [languages.plural_text("some", "n", n, "xx") for n in (1, 5)] == ["{n} bytes"] * 2
 
 
 def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
@@ -600,8 +606,8 @@ def test_a_package_has_no_sources_and_a_page_learns_what_it_needs(place: Path) -
         (place / name).write_bytes(data)
     languages.forget()
     assert languages.text("some", "b", "xx") == "Alto."
-    assert languages.found(NAMES, "First", "xx") == "Primero"
-    assert languages.found(NAMES, "First", SOURCE) is None
+    assert languages.find_text(NAMES, "First", "xx") == "Primero"
+    assert languages.find_text(NAMES, "First", SOURCE) is None
     assert languages.about("xx").name == "xx" and languages.about("zz").name == "English"
     for path in (place / "xx").iterdir():
         path.unlink()

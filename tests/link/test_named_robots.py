@@ -50,7 +50,7 @@ def listing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with ExitStack() as stack:
         while True:
             with suppress(TimeoutError):
-                stack.enter_context(files.alone(shared))
+                stack.enter_context(files.lock_file(shared))
                 break
             assert time.monotonic() < end_s, "another test does not end"
         yield

@@ -109,12 +109,12 @@ def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
     named = {*slips.NAMED[code]}
     asked = []
     for part in ("message", "try"):
-        text = languages.found("messages", f"{code.number}/{part}", "en")
+        text = languages.find_text("messages", f"{code.number}/{part}", "en")
         for k in count(2):
             if text is None:
                 break
             asked.append({*re.findall(r"\{@?(\w+)\}", text)})
-            text = languages.found("messages", f"{code.number}/{part}/{k}", "en")
+            text = languages.find_text("messages", f"{code.number}/{part}/{k}", "en")
     assert named <= set().union(*asked) | ASKED_FOR.get(code, set())
     own = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
     whole = [each & own for each in asked if each <= own | OF_BLOCKS]

@@ -168,10 +168,10 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
         number = server.getsockname()[1]
         address = f"socket://127.0.0.1:{number}"
         note = directory.announce(directory.Running(address, "tinibot", "room", "", ""))
-        assert [each.address for each in directory.running()] == [address]
+        assert [each.address for each in directory.running_robots()] == [address]
         monkeypatch.setattr(peers, "is_of_another", lambda port: port == number)
         for _ in range(2):
-            assert directory.running() == []
+            assert directory.running_robots() == []
             for words in (["show"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
                 for port in (address, address.replace("127.0.0.1", "localhost")):
                     done = inside(*words, "--port", port)
@@ -184,7 +184,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
         inside("start", "--port", address, "--lang", "es").gives(3, "escucha otro usuario")
         monkeypatch.setattr(peers, "is_of_another", lambda port: False)
         assert directory.is_virtual(address)
-    assert directory.running() == []
+    assert directory.running_robots() == []
     assert note is not None and not note.exists()
 
 

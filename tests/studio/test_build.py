@@ -13,7 +13,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.needs import need
-from tiniscript.base.languages import SOURCE, counted, entries, languages
+from tiniscript.base.languages import SOURCE, entries, languages, plural_text
 from tiniscript.flash import ready
 from tiniscript.studio import serving
 from tiniscript.studio.block_kinds import KINDS, SAYS
@@ -112,7 +112,7 @@ def test_a_plural_has_the_form_of_its_number() -> None:
         forms = texts[""]
         for number in (*range(200), 1000, 1001, 2101, 1_000_000):
             form = forms[number if number < 100 else 100 + number % 100]
-            wanted = counted("studio", "mistakes", number, language)
+            wanted = plural_text("studio", "mistakes", number, language)
             assert texts["mistakes"][int(form)] == wanted, (language, number)
 
 

@@ -11,7 +11,7 @@ from tests.pupils import corpus
 from tests.studio.programs import LACKING, said
 from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
-from tiniscript.diagnostics.fixing import OFFERS, fixed
+from tiniscript.diagnostics.fixing import OFFERS, repair_program
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.compiling import Compiled, compile_source
 from tiniscript.studio import checking, worker
@@ -103,7 +103,7 @@ def test_a_button_does_what_the_message_names(program: str, wanted: str) -> None
         assert finding.message not in check(wanted)
         assert not [message for message in check(wanted) if message.severity == "mistake"]
     kit = robots.load("tinibot").kit
-    left = fixed(program, lambda text: compile_text(text, kit).diagnostics)
+    left = repair_program(program, lambda text: compile_text(text, kit).diagnostics)
     assert wanted.startswith("B(") or left.text == program  # -2 seconds forward are 2 back
 
 

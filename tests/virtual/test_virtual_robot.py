@@ -193,7 +193,7 @@ def test_a_saved_program_is_there_after_a_power_cycle() -> None:
     talk = Talk(robot)
     talk.upload("SB|F(0.1, 50)", runs=False)
     talk.wait(300)
-    assert robot.held == "STORED"
+    assert robot.saved_state == "STORED"
     memory = robot.memory
     robot.power_cycle()
     robot.step(robot.now_ms + 300)
@@ -217,7 +217,7 @@ def test_a_byte_that_is_saved_takes_its_time() -> None:
     talk.upload("SB|F(0.1, 50)", runs=False)
     talk.wait(300)
     talk.upload("SB|B(0.2, 70)", runs=False)
-    assert robot.held == "SAVING"
+    assert robot.saved_state == "SAVING"
     robot.step(robot.now_ms + 20)
     robot.power_cycle()
     robot.step(robot.now_ms + 300)

@@ -19,7 +19,7 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from tiniscript import robots
-from tiniscript.base.languages import SOURCE, about, text, told_in
+from tiniscript.base.languages import SOURCE, about, text, translated_languages
 from tiniscript.lessons import catalogue
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.plan import plan_of
@@ -67,7 +67,7 @@ def make(root: Path, folder: Path) -> None:
             shutil.copy(path, target)
         else:
             _write(target / "index.html", page(path.name, f"<p>{escape(path.name)}/</p>", SOURCE))
-    for language in told_in("documents", "stick/title"):
+    for language in translated_languages("documents", "stick/title"):
         for name in robots.names():
             plan = plan_of(robots.load(name).speaking(language), language)
             _write(folder / "wiring" / f"{name}.{language}.html", html_of(plan))
@@ -124,7 +124,7 @@ def _index(root: Path, folder: Path, language: str, titles: dict[str, str]) -> s
     )
     others = " · ".join(
         f'<a href="{name_in(item, INDEX)}">{about(item).name}</a>'
-        for item in told_in("documents", "stick/title")
+        for item in translated_languages("documents", "stick/title")
         if item != language
     )
     rows = [f"<h1>{title}</h1>", f"<p>{others}</p>", f"<h2>{guides}</h2>", "<ul>"]

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import __version__
-from tiniscript.base.languages import SOURCE, text, told_in
+from tiniscript.base.languages import SOURCE, text, translated_languages
 from tiniscript.flash import ready
 from tools import ROOT, CannotMake
 from tools.builds import stick_pages, stick_wheels
@@ -148,7 +148,7 @@ def add_texts(folder: Path) -> None:
 
 def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missing]) -> None:
     parts = [f"TiniScript {__version__}\n{systems}\nPython {pythons}\n"]
-    for language in told_in("documents", "stick/title"):
+    for language in translated_languages("documents", "stick/title"):
         index = name_in(language, stick_pages.INDEX)
         lacks = text("documents", "stick/lacks", language)
         how = text("documents", "stick/readme", language).format(index=index)

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from tiniscript.base.languages import text, told_in
+from tiniscript.base.languages import text, translated_languages
 from tiniscript.cli import help
 from tiniscript.cli.texts.options import Option, shown_of
 from tiniscript.cli.texts.verbs import NOTES, VERBS, of_verb, said, steps_of, typed
 from tools.site.documents import links
 
 Table = Callable[[Sequence[str], Sequence[Sequence[object]]], str]
-DOCUMENTED = tuple(told_in("documents", "command/title"))
+DOCUMENTED = tuple(translated_languages("documents", "command/title"))
 
 
 def _text(key: str, language: str) -> str:

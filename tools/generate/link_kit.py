@@ -16,7 +16,7 @@ from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.bytecode.image import HEADER_BYTES, ImageRefused
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.bytecode.verify import Refused, loaded, verify
+from tiniscript.bytecode.verify import Refused, load_image, verify
 from tiniscript.conformance.kit import LINK_FORM, LINK_VERSION
 from tiniscript.link.messages import MAJOR, MINOR
 from tiniscript.vm.machine import Machine
@@ -55,7 +55,7 @@ def answers_fault(run: Run) -> bool:
 def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
     for run in runs:
         try:
-            image = loaded(run.image, run.kit)
+            image = load_image(run.image, run.kit)
         except (Refused, ImageRefused):
             continue
         code = image.code

@@ -29,9 +29,9 @@ from tiniscript import compile_text, robots
 from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import assemble
-from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused, pack, sealed, unpack
+from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused, pack, unpack, with_checksum
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ISA_MAJOR, ISA_MINOR, SHORTS, Op
-from tiniscript.bytecode.verify import Refused, loaded
+from tiniscript.bytecode.verify import Refused, load_image
 from tiniscript.conformance.kit import FORM, VERSION
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, RUNNING, Robot
@@ -170,7 +170,7 @@ class SlowRobot(TracedRobot):
 
 def answer_of(
     run: Run,
-    loaded: Callable[[bytes, Kit], Image] = loaded,
+    loaded: Callable[[bytes, Kit], Image] = load_image,
     machine_of: Callable[[bytes, Robot, int, int, int], Machine] = machine_of,
 ) -> list[str] | None:
     """Return what the machine in Python answers; None where no step of it takes time."""
@@ -393,7 +393,7 @@ def compile_image(text: str) -> bytes:
 
 def changed(image: bytes, at: int, value: int) -> bytes:
     """Return an image with another byte, and the checksum that fits."""
-    return sealed(image[:at] + bytes([value]) + image[at + 1 :])
+    return with_checksum(image[:at] + bytes([value]) + image[at + 1 :])
 
 
 def arithmetic() -> Iterator[Run]:

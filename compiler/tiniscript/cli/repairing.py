@@ -14,7 +14,7 @@ from tiniscript.base.source import printable
 from tiniscript.cli import compiling
 from tiniscript.cli.inputs import Input
 from tiniscript.cli.streams import has_colors
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.library.compiling import Compiled, text_of
 from tiniscript.robots.profile import Robot
 
@@ -40,7 +40,7 @@ def repaired(given: Input, robot: Robot) -> Repaired:
     def compiled(data: bytes) -> Compiled:
         return compiling.compile_input(given._replace(data=data), robot, is_strict=False)
 
-    result = fixed(text, lambda changed: compiled(changed.encode()).diagnostics)
+    result = repair_program(text, lambda changed: compiled(changed.encode()).diagnostics)
     new = result.text.encode()
     if given.data.startswith(_BOM):
         new = _BOM + new

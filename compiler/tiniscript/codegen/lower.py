@@ -11,7 +11,7 @@ stand.
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import limited, whole
+from tiniscript.base.fixed_point import clamp, whole
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Span
 from tiniscript.bytecode.opcodes import time8
@@ -176,7 +176,7 @@ class _Lowering:
         time_ms, hertz = self.constant_of(self.clamp_time(beep.time)), self.constant_of(beep.hertz)
         byte = None if time_ms is None else time8(time_ms)
         if byte is not None and hertz is not None:
-            self.out.add("BEEP8", byte, limited(whole(hertz), 31, 20_000))
+            self.out.add("BEEP8", byte, clamp(whole(hertz), 31, 20_000))
             return
         add_value(self.out, beep.time)
         add_value(self.out, beep.hertz)
@@ -301,7 +301,7 @@ class _Lowering:
         value = self.constant_of(power)
         if value is None:
             return power
-        return (power[0]._replace(value=limited(whole(value), low, 100) * 1000),)
+        return (power[0]._replace(value=clamp(whole(value), low, 100) * 1000),)
 
 
 # -- layout -----------------------------------------------------------------------------------

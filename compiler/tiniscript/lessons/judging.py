@@ -19,7 +19,7 @@ from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, Show
 from tiniscript.lessons.variation import is_mirrored
 from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import distance as distance_to
-from tiniscript.virtual.geometry import joined
+from tiniscript.virtual.geometry import join_points
 
 STILL_DEGREES = 5.0  # less is no turn
 EARLY_MS = 5000  # within them a robot that turns to the wrong side has lost its line
@@ -130,7 +130,7 @@ def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
     run, within_cm = task.run, criterion.numbers["within_cm"]
     eyes = [place for place in run.robot.profile.body.places.values() if place.sees == "line"]
     ahead_cm = sum(eye.x_cm for eye in eyes) / len(eyes) if eyes else 0.0
-    segments = [segment for line in run.world.lines for segment in joined(list(line.points))]
+    segments = [segment for line in run.world.lines for segment in join_points(list(line.points))]
     left = {
         (segment.a.x + (segment.b.x - segment.a.x) * k / n,
          segment.a.y + (segment.b.y - segment.a.y) * k / n)

@@ -11,7 +11,7 @@ from tiniscript.lessons.lesson import Criterion
 from tiniscript.lessons.running import DONE, LIMIT, STEP_MS, Run
 from tiniscript.lessons.variation import shape_of
 from tiniscript.robots.kinematics import Pose
-from tiniscript.virtual.geometry import Point, distance, seen
+from tiniscript.virtual.geometry import Point, distance, nearest_seen
 from tiniscript.virtual.sensing import CONE
 
 BACK_CM = 5.0  # nearer than where it was farthest: then it was on its way back
@@ -211,7 +211,7 @@ def _judge_distance_to_obstacle(criterion: Criterion, task: Task) -> Finding | N
     ahead = run.world.obstacles()
     if criterion.places:
         ahead = shape_of(criterion.places[0], run.world, task.mirrored)
-    gap_cm = seen(ahead, eye, along, CONE)
+    gap_cm = nearest_seen(ahead, eye, along, CONE)
     low, high = criterion.numbers["low_cm"], criterion.numbers["high_cm"]
     values = {"low": f"{low:g}", "high": f"{high:g}"}
     if gap_cm is None:

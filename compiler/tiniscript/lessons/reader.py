@@ -12,7 +12,7 @@ from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import REMOTE
 from tiniscript.base.languages import SOURCE, ByLanguage, languages
-from tiniscript.base.languages import found as text_of
+from tiniscript.base.languages import find_text as text_of
 from tiniscript.base.languages import text as said_in
 from tiniscript.base.spelling import nearest
 from tiniscript.base.words import WORDS

@@ -18,7 +18,7 @@ from tiniscript.link.remote import pressed_of as held
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.computer import Computer
-from tiniscript.virtual.geometry import joined
+from tiniscript.virtual.geometry import join_points
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
 
@@ -253,8 +253,8 @@ class _Witness:
         """Return what the robot is nearest to."""
         world, hull = self.robot.world, self.robot.driving.hull
         kinds = {
-            "wall": [segment for wall in world.walls for segment in joined(list(wall))],
-            "box": [segment for box in world.boxes for segment in joined([*box, box[0]])],
+            "wall": [segment for wall in world.walls for segment in join_points(list(wall))],
+            "box": [segment for box in world.boxes for segment in join_points([*box, box[0]])],
             "border": world._replace(walls=(), boxes=()).obstacles(),
         }
         gaps = []

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from tiniscript.lessons.lesson import Lesson, Place, Press, Variation
 from tiniscript.robots.kinematics import Pose
-from tiniscript.virtual.geometry import Point, Segment, joined
+from tiniscript.virtual.geometry import Point, Segment, join_points
 from tiniscript.virtual.world import World
 
 T = TypeVar("T")
@@ -65,11 +65,11 @@ def shape_of(place: Place, world: World, mirrored: bool) -> list[Segment]:
     """Return the outline of a part of a world; of anything else its point."""
     k = place.number - 1
     if place.part == "walls":
-        return joined(list(world.walls[k]))
+        return join_points(list(world.walls[k]))
     if place.part == "boxes":
-        return joined([*world.boxes[k], world.boxes[k][0]])
+        return join_points([*world.boxes[k], world.boxes[k][0]])
     if place.part == "lines":
-        return joined(list(world.lines[k].points))
+        return join_points(list(world.lines[k].points))
     point = point_of(place, world, mirrored)
     return [Segment(point, point)]
 

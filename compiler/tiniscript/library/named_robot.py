@@ -9,7 +9,7 @@ import re
 from typing import NamedTuple
 
 from tiniscript import robots
-from tiniscript.base.source import SPACES, Edit, Span, Unreadable, applied, decode
+from tiniscript.base.source import SPACES, Edit, Span, Unreadable, apply_edits, decode
 from tiniscript.diagnostics.codes import NO_SUCH_ROBOT, Diagnostic, Repair
 from tiniscript.robots.profile import Robot
 
@@ -42,7 +42,7 @@ def named_robot(text: str) -> Named | None:
 def renamed(text: str, name: str) -> str:
     """Return a program that names a robot with another name; any other stays as it is."""
     result = named_robot(text)
-    return text if result is None else applied(text, [Edit(result.span, name)])
+    return text if result is None else apply_edits(text, [Edit(result.span, name)])
 
 
 def robot_of(data: bytes, usual: Robot) -> Robot:

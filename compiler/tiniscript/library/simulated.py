@@ -107,10 +107,10 @@ class DriveState(NamedTuple):
 class Simulated(SimulatorThread):
     def __init__(self, robot: VirtualRobot, hurry: float) -> None:
         super().__init__(robot, VERB, hurry)
-        self.took_turn()
+        self.on_turn()
         self._thread.start()
 
-    def took_turn(self) -> None:
+    def on_turn(self) -> None:
         self.robot.take_events()  # discarded: nothing draws them
         driving = self.robot.driving
         self.seen = DriveState(self.robot.pose, driving.driven_cm, driving.bumps)

@@ -138,7 +138,7 @@ class KeyFile(KeyRing):
         with _LOCK:
             try:
                 self._make_folder()
-                with files.alone(self.path, MODE):
+                with files.lock_file(self.path, MODE):
                     yield
             except OSError as failure:
                 raise BadKeys(failure.strerror or str(failure)) from None

@@ -42,7 +42,7 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
     path = _path()
     with suppress(OSError, ValueError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with files.alone(path):  # other commands do the same
+        with files.lock_file(path):  # other commands do the same
             before = remembered_ports()
             first = next(iter(before.names.items()), None)
             if first == (port, name) and (before.last == port or not is_used):

@@ -61,7 +61,7 @@ def accept(path: Path, robot: int) -> None:
 
 def _change(path: Path, change: Callable[[MetRobots], MetRobots]) -> None:
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    with files.alone(path, MODE):
+    with files.lock_file(path, MODE):
         now = change(read_met_robots(path))
         fields = {
             "places": {place: f"{robot:08x}" for place, robot in list(now.places.items())[-KEPT:]},

@@ -173,7 +173,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
     if found := _sensor_with_side(parts):
         return (Meaning(found, KNOWN),)
-    alike, near = _speller().alike(word), _speller().near(word)
+    alike, near = _speller().find_sound_alike(word), _speller().find_near_miss(word)
     guesses = (
         (concept_of(alike or ""), KNOWN),
         (concept_of(near or ""), MISSPELT),

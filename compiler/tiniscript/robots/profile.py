@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import ClassVar, NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.languages import told_in
+from tiniscript.base.languages import translated_languages
 
 Reason = tuple[str, Mapping[str, str]]
 
@@ -32,7 +32,7 @@ class ProfileRefused(Exception):
 
 def answered() -> list[str]:
     """Return the languages in which a robot answers to text, English first."""
-    return told_in("robot", "remark/STOPPED")
+    return translated_languages("robot", "remark/STOPPED")
 
 
 def language_number(language: str) -> int:

@@ -26,12 +26,12 @@ def describe(refused: ProfileRefused, lang: str) -> list[str]:
         group = {"wrong_type": "type", "pin_cannot": "need"}.get(code)
         if group:
             words = {
-                key: languages.found(CATALOGUE, f"{group}/{word}", lang) or word
+                key: languages.find_text(CATALOGUE, f"{group}/{word}", lang) or word
                 for key, word in words.items()
             }
         key = f"{code}/near" if words.get("near") else code
         text = (
-            languages.found(CATALOGUE, f"{kind}/{key}", lang)
+            languages.find_text(CATALOGUE, f"{kind}/{key}", lang)
             for kind in (*refused.kinds, "profile")
         )
         sentences.append(next(filter(None, text)).format_map(words))

@@ -15,9 +15,9 @@ from tiniscript.base.words import (
     WORDS,
     Word,
     concept_of,
-    names,
+    expand_short,
+    names_argument,
     said_of,
-    shortened,
 )
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.named_values import value_of, yes_no_of
@@ -76,7 +76,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     if is_own and suggestion.rstrip(_DIGITS) == word.rstrip(_DIGITS):
         suggestion = ""  # `PASO2`, where there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
-    letters = [word[0]] if is_held and word[0] in WORDS else shortened(word)
+    letters = [word[0]] if is_held and word[0] in WORDS else expand_short(word)
     count = len(node.arguments or ())
     suggestion = next(
         (letter for letter in letters if len(WORDS[letter].arguments) == count), suggestion
@@ -87,7 +87,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
 def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
     """`F(tiempo, potencia)`: these names stand for numbers. Drops the diagnostics since `said`."""
     texts = [scope.source[argument.span].upper() for argument in node.arguments or ()]
-    if len(texts) == len(word.arguments) and all(map(names, texts, word.arguments)):
+    if len(texts) == len(word.arguments) and all(map(names_argument, texts, word.arguments)):
         del scope.diagnostics[said:]
         scope.report(codes.PLACEHOLDER, node.span, usage=word.usage, example=word.example)
 

@@ -19,7 +19,7 @@ from time import time
 from typing import Any, NamedTuple
 
 from tiniscript import robots
-from tiniscript.base.files import LOCK, contents, is_locked, replace, settings_folder
+from tiniscript.base.files import LOCK, contents, replace, settings_folder, try_lock
 
 Json = dict[str, Any]
 
@@ -101,7 +101,7 @@ class Keeper:
             return True
         is_ours = True
         with suppress(OSError):
-            is_ours = is_locked(number)
+            is_ours = try_lock(number)
         if is_ours:
             self._lock = number
         else:

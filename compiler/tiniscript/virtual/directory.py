@@ -50,7 +50,7 @@ def withdraw(path: Path | None) -> None:
             path.unlink()
 
 
-def running() -> list[Running]:
+def running_robots() -> list[Running]:
     """Return the running robots. Opens none of them: that would count as a client."""
     result: list[Running] = []
     paths: list[Path] = []
@@ -78,13 +78,13 @@ def is_of_another(port: str) -> bool:
 
 def for_all() -> list[Running]:
     """Return the robots to which any command may upload a program."""
-    return [item for item in running() if item.verb == "robot"]
+    return [item for item in running_robots() if item.verb == "robot"]
 
 
 def is_virtual(port: str) -> bool:
     """Return whether a port belongs to a running virtual robot."""
     known = {port, same_for_all(port)}
-    return any(known & {item.address, item.terminal} for item in running())
+    return any(known & {item.address, item.terminal} for item in running_robots())
 
 
 def is_gone(port: str) -> bool:

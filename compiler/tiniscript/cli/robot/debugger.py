@@ -8,7 +8,7 @@ from functools import partial
 from struct import iter_unpack
 
 from tiniscript.base.fixed_point import value_of, value_text
-from tiniscript.bytecode.statements import begins
+from tiniscript.bytecode.statements import statement_starts
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.images import Ready
 from tiniscript.cli.options import whole_number
@@ -39,7 +39,7 @@ def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, .
         raise CommandError(2, "break_image")
     if len(set(lines)) > MOST_BREAKPOINTS:
         raise CommandError(2, "break_most", most=str(MOST_BREAKPOINTS))
-    statements = begins(ready.image.code)
+    statements = statement_starts(ready.image.code)
     matches = []
     for line in lines:
         places = [
@@ -72,7 +72,7 @@ class Debugger:
         self.connection = connection
         self.printer = printer
         self.map: Map = ready.places
-        self.statements = begins(ready.image.code)
+        self.statements = statement_starts(ready.image.code)
         self.keys = Keys()
         self.has_keys = sys.stdin.isatty() and is_in_front() and not printer.is_json
         self.is_halted = False

@@ -107,7 +107,7 @@ def in_use(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
     held = [registration.port for registration in alive()]
     result = [] if is_virtual else held[:]
-    for robot in directory.running():
+    for robot in directory.running_robots():
         names = [robot.address, *([robot.terminal] if robot.terminal else [])]
         through = [port for port in names if same_for_all(port) in held]
         result.append(through[0] if through else robot.address)  # one robot, one port

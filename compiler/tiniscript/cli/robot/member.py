@@ -55,7 +55,7 @@ def targets(options: Namespace) -> list[Target]:
         from tiniscript.link import ports
 
         expected += [item.port for item in ports.list_ports()]
-        expected += [robot.address for robot in directory.running()]
+        expected += [robot.address for robot in directory.running_robots()]
     names = {same_for_all(port): name for port, name in reversed(known.items())}
     chosen = {same_for_all(port): port for port in reversed(expected)}
     return [

@@ -18,7 +18,7 @@ Row = dict[str, object]  # a port as data
 def listed(language: str, only: str | None = None, in_reach: InReach = NOWHERE) -> list[Row]:
     """Return the ports that the system lists, those in reach, and others that had a robot."""
     known = known_ports.remembered_ports()
-    virtual = {each.address: each for each in directory.running()}
+    virtual = {each.address: each for each in directory.running_robots()}
     about = {each.port: about_port(each, language) for each in ports.list_ports()}
     about |= in_reach.about
     held = {registration.port: registration.verb for registration in alive()}

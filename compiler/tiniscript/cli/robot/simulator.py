@@ -40,7 +40,7 @@ def running_address(options: Namespace) -> str | None:
     can_bring = hasattr(options, "world")
     if can_bring and simulator_options.wants_own(options):
         return None
-    result = directory.for_all() if can_bring else directory.running()
+    result = directory.for_all() if can_bring else directory.running_robots()
     if not result and not can_bring:
         raise CommandError(3, "no_virtual")
     if len(result) > 1:
@@ -176,7 +176,7 @@ class CommandSimulator(SimulatorThread):
             return 0
         return (self.robot.now_ms if ended_ms is None else ended_ms) - started_ms
 
-    def took_turn(self) -> None:
+    def on_turn(self) -> None:
         with self._drawing:
             events = self.robot.take_events()
             self._told.extend(event for event in events if event.what in TOLD)

@@ -40,7 +40,7 @@ class Said(str):
             if isinstance(value, int | str) and str(value).isdecimal():
                 for counted in COUNTED:
                     several, form = (
-                        f"{{{key}}} {languages.counted(CATALOGUE, counted, n, self.language)}"
+                        f"{{{key}}} {languages.plural_text(CATALOGUE, counted, n, self.language)}"
                         for n in (SEVERAL, int(value))
                     )
                     template = template.replace(several, form)
@@ -71,7 +71,7 @@ def say_aside(key: str, language: str, /, **values: object) -> None:
 
 
 def has_text(key: str) -> bool:
-    return languages.found(CATALOGUE, key, languages.SOURCE) is not None
+    return languages.find_text(CATALOGUE, key, languages.SOURCE) is not None
 
 
 def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:

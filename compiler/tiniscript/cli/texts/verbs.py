@@ -101,7 +101,7 @@ NOTES = ("note/program", "note/exit")
 
 def said(key: str, language: str) -> str:
     """Return a text of the catalogue, which may have none."""
-    return languages.found("help", key, language) or ""
+    return languages.find_text("help", key, language) or ""
 
 
 def typed(command: str) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.base.languages import found, keys, languages, text
+from tiniscript.base.languages import find_text, keys, languages, text
 
 # What has a name of its own in each language, and the parameters and variables of helpers.
 IDENTIFIERS, LOCALS = (
@@ -20,12 +20,12 @@ _LOCAL = re.compile(rf"(?<![$\w.])({'|'.join(LOCALS)})(?!\w)")
 
 def note_text(key: str, language: str) -> str:
     """Return a note, or nothing where nothing is said."""
-    return found("sketch", f"said/{key}", language) or ""
+    return find_text("sketch", f"said/{key}", language) or ""
 
 
 def translated_name(key: str, language: str) -> str:
     """Return what something is called; other names stay what they are."""
-    return found("sketch", f"name/{key}", language) or key
+    return find_text("sketch", f"name/{key}", language) or key
 
 
 def with_locals(code: str, language: str) -> str:

@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import ONE, as_text, limited, whole
+from tiniscript.base.fixed_point import ONE, as_text, clamp, whole
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, printable
 from tiniscript.codegen.sketch.expressions import Expressions, has_random, reads_once
@@ -185,7 +185,7 @@ class Statements:
         for value, limits in parts:
             fixed = constant(value)
             if fixed is not None:
-                rounded = max(0, fixed) if limits is None else limited(whole(fixed), *limits) * ONE
+                rounded = max(0, fixed) if limits is None else clamp(whole(fixed), *limits) * ONE
                 texts.append(self.write.text((Term("NUMBER", rounded),)))
                 continue
             text = self.write.text(value)

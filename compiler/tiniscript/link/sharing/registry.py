@@ -197,7 +197,7 @@ def _try_lock(path: Path) -> _Lock | None:
 def _lock(file: FileIO) -> bool:
     """Lock a file for this process; return False where another process has locked it."""
     try:
-        return files.is_locked(file.fileno())
+        return files.try_lock(file.fileno())
     except OSError:
         file.close()
         raise
