@@ -14,7 +14,7 @@ from tiniscript import robots
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, apply_edits
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.library.compiling import analyzed, check_text
+from tiniscript.library.compiling import analyze, check_text
 from tiniscript.library.named_robot import robot_of
 from tiniscript.recovery import rewrites
 from tiniscript.recovery.lines import Step
@@ -32,10 +32,10 @@ def told(text: str) -> Iterator[str]:
     kit = robot_of(text.encode(), robots.load(robots.DEFAULT)).kit
     rest = text
     for _ in range(ROUNDS):
-        result = analyzed(rest, kit).diagnostics
+        result = analyze(rest, kit).diagnostics
         if not any(each.is_mistake for each in result):
             break
-        wrong = Wrong(Source(rest), result, lambda each: analyzed(each, kit).diagnostics, kit)
+        wrong = Wrong(Source(rest), result, lambda each: analyze(each, kit).diagnostics, kit)
         findings = ((reader, reader(wrong)) for reader in READERS)
         reader, its = next((each for each in findings if each[1].told), (None, None))
         if reader is None or its is None:

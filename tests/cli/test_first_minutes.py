@@ -16,12 +16,12 @@ from tests.support.link_events import event
 from tests.support.rows import each_row
 from tests.support.virtual_robot import Talk, robot_in
 from tiniscript import compile_text, robots
-from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, requested
+from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, requested_command
 from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.live_state import Known
-from tiniscript.library.other_robots import named_among
+from tiniscript.library.other_robots import hints_among
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import LOOK_S, Event, MissedEvent, ShownEvent
 from tiniscript.link.payloads import DoneEvent
@@ -285,7 +285,7 @@ def test_up_to_three_robots_are_named() -> None:
     own = robots.load("tinibot").kit
     found = compile_text("LED(TRUE)", own)
     others = {f"R{k}": kit for k in range(5)}
-    (named,) = named_among(others, found.diagnostics, "LED(TRUE)", "tinibot", own)
+    (named,) = hints_among(others, found.diagnostics, "LED(TRUE)", "tinibot", own)
     assert named.values == {
         "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
     }  # fmt: skip
@@ -333,13 +333,13 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
 def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
     known = Known(robots.load("tinibot").kit)
     for line in ("exit", "QUIT", " Salir ", "exit;", "exit()", "quit ( ) ;"):
-        assert requested(line, known) == LEAVE, line
+        assert requested_command(line, known) == LEAVE, line
     for line in ("help", "ayuda", "?", "HELP;"):
-        assert requested(line, known) == HELP_ME, line
+        assert requested_command(line, known) == HELP_ME, line
     for line in ("", "S", "EXIT = 5", "SHOW(EXIT)", "exit 5", "QUIT; S"):
-        assert requested(line, known) == "", line
+        assert requested_command(line, known) == "", line
     known.defs["EXIT"] = "DEF EXIT; S; END_DEF"
-    assert requested("exit", known) == ""  # it is the person's own
+    assert requested_command("exit", known) == ""  # it is the person's own
 
 
 def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,7 +14,7 @@ from tests.support.pty_end import PtyEnd
 from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hc06New, Hm10
 from tests.support.simulated_modules import SimulatedModule as Simulated
 from tests.support.waiting import until
-from tiniscript.cli.texts.causes import said as said_of
+from tiniscript.cli.texts.causes import sentences_of as said_of
 from tiniscript.doctor.findings import CAUSES, WRONG, sure
 from tiniscript.link.modules import set_up, talk
 from tiniscript.link.ports import open_port

@@ -20,7 +20,7 @@ from tests.support.verbs import parsers, values_of, words_of
 from tiniscript.base.source import printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.spreadsheet import no_formula
+from tiniscript.cli.spreadsheet import escape_formula
 from tiniscript.cli.texts import LONGEST, Said, text
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import TextEvent
@@ -261,4 +261,4 @@ def test_no_cell_of_a_row_is_a_formula(text: str, separator: str) -> None:
 
 def test_numbers_and_words_stay() -> None:
     for said in ("F(1, -2) = 3", "F(2, -X)", "M(-X, +Y)", "a-b", "1 + 1", "x@y", "hello"):
-        assert no_formula(said) == said
+        assert escape_formula(said) == said

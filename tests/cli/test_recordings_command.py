@@ -304,7 +304,7 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(upload, "follow_run", ctrl_c)
     monkeypatch.setattr(Saving, "wait", saves)
-    monkeypatch.setattr(CommandSimulator, "told_ms", None)  # as a real robot, it has no clock
+    monkeypatch.setattr(CommandSimulator, "event_ms", None)  # as a real robot, it has no clock
     tsc("upload", "-e", "SI|F(9, 60)", "--virtual", "--record", file).gives(2, "confirmed")
     assert read(file.read_bytes()).rows == (Row(5000, "STOPPED"),)
 

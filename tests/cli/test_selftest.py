@@ -325,7 +325,7 @@ def test_each_cause_of_a_line_that_the_robot_ends(
     def does(test: SelfTest, line: str) -> list[int]:
         raise CommandError(3, "plain", said="stopped")
 
-    monkeypatch.setattr(SelfTest, "does", does)
+    monkeypatch.setattr(SelfTest, "run_line", does)
     _, out, _ = asked(pty_robot, person(pty_robot), "--json")
     found = [(each["what"], each["cause"]) for each in json.loads(out)["found"]]
     sensors = [("sensor", "no_reading")] * len(pty_robot.kit.sensors)
@@ -430,14 +430,14 @@ def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
     """Nothing turns for somebody who is not there, whatever it was that nobody has answered."""
     did: list[str] = []
     typed = iter(["1\n"] * answers)
-    monkeypatch.setattr(Conversation, "does", lambda _, line: did.append(line))
+    monkeypatch.setattr(Conversation, "run_line", lambda _, line: did.append(line))
     monkeypatch.setattr("tiniscript.cli.terminal.asking.answer", lambda _: next(typed, ""))
     ways: list[Callable[[Conversation], object]] = [
         lambda talk: talk.lift(),
         lambda talk: talk.answer("ask_free", name="X", values=""),
         lambda talk: talk.choice("ask_learn", 2),
-        lambda talk: talk.turned("left"),
-        lambda talk: talk.saw("BEEP(1, 440)", "ask_buzzer", AGAIN),
+        lambda talk: talk.turn_motor("left"),
+        lambda talk: talk.ask_what_was_seen("BEEP(1, 440)", "ask_buzzer", AGAIN),
     ]
     for last in ways:
         typed = iter(["1\n"] * answers)

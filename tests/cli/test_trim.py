@@ -144,7 +144,7 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
 def of_the_table(cause: str, part: str, **values: str) -> str:
     """What the doctor's table says of a cause, as this verb prints it."""
     finding = Finding(cause, True, values, part)
-    found = causes.said(finding, "en")
+    found = causes.sentences_of(finding, "en")
     return (
         f"tsc: {causes.label(finding, 'en')}: {found.what}. The robot keeps its old trim. "
         f"Try:  {found.then}"
@@ -177,7 +177,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
             given.append(data)
 
     class Connected:
-        def ask(self, make: Callable[[Asked], None], taken: object) -> None:
+        def request(self, make: Callable[[Asked], None], taken: object) -> None:
             if stops:
                 raise CommandError(3, stops.pop())
             make(Asked())
@@ -190,7 +190,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
     for key in ("stopped_elsewhere", "plain"):
         stops[:] = ["stopped_elsewhere", "plain"]  # it goes on: what is asked meanwhile is stale
         with pytest.raises(CommandError, match=key):
-            trim_wizard.guided(cast("Connection", Connected()), Trim(balance=7))
+            trim_wizard.guide(cast("Connection", Connected()), Trim(balance=7))
         assert given.pop() == Trim(balance=7).data() and not given
 
 

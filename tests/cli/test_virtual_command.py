@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 from tests.support.command import OBSTACLE, Command, Done, Tsc, inside
-from tiniscript.cli.terminal.signals import ended_by_signal
+from tiniscript.cli.terminal.signals import handle_signals
 from tiniscript.library import install_advice
 from tiniscript.link import ports
 from tiniscript.virtual import directory
@@ -118,7 +118,7 @@ def test_ctrl_c_counts_wherever_it_comes(monkeypatch: pytest.MonkeyPatch) -> Non
 
     inside = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
 
-    with ended_by_signal() as ended:
+    with handle_signals() as ended:
         inside()
     assert not dropped and ended.is_set  # who ends a robot reads no lines of Python's
     sys.unraisablehook(None)  # type: ignore[arg-type]

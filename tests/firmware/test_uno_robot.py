@@ -277,7 +277,7 @@ def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None
 def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
     """All of them wait for the wire, which takes 18 ms for each value."""
     found = compile_text(SHOWS, KIT)
-    places, wired = source_map.made(found), computer(uno)
+    places, wired = source_map.map_of_compiled(found), computer(uno)
     finder = Finder({checksum(found.image): places})
     assert wired.until(wired.session.upload(unpack(found.image))) == OK
     events: list[Event] = []
@@ -287,6 +287,6 @@ def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
     shown = [shown_event for shown_event in events if isinstance(shown_event, ShownEvent)]
     names = {1: "ONE", 2: "TWO", 3: "THREE"}
     for event in shown:
-        show = finder.of(event)
+        show = finder.show_of(event)
         assert show and show.text == names[event.value // 1000], event
     assert [sum(shown_event.value == 1000 * k for shown_event in shown) for k in names] == [8, 8, 8]

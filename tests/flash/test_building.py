@@ -355,7 +355,7 @@ def test_without_platformio_it_says_how_to_get_it(
 ) -> None:
     """Where pip may install nothing; else `tests/cli/test_fetching.py`."""
     monkeypatch.setattr(building, "find_spec", lambda name: None)
-    monkeypatch.setattr(install_advice, "installing", lambda extra: None)
+    monkeypatch.setattr(install_advice, "install_command", lambda extra: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setenv("HOME", str(tmp_path))
     done = tsc("firmware", "--build").gives(2, out="")

@@ -41,8 +41,8 @@ class Place:
         monkeypatch.setattr("tiniscript.library.opening.sleep", self.pass_s)
         monkeypatch.setattr(opening, "_resolve_address", self.resolved)
         monkeypatch.setattr(opening, "_join_shared", lambda *_: None)
-        monkeypatch.setattr(opening, "_claimed", lambda *_: None)
-        monkeypatch.setattr(opening, "_opened_line", self.opened)
+        monkeypatch.setattr(opening, "_claim", lambda *_: None)
+        monkeypatch.setattr(opening, "_open_line", self.opened)
 
     def pass_s(self, seconds: float) -> None:
         self.now_s += seconds
@@ -124,7 +124,7 @@ STEPS = (
     "tiniscript.library.opening.directory.is_of_another",
     "tiniscript.link.keys.KeyFile",
     "tiniscript.link.session.Session",
-    "tiniscript.library.client.Client._shared",
+    "tiniscript.library.client.Client._share",
 )
 ADDRESS = "socket://127.0.0.1:9"
 
@@ -170,7 +170,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
         lock.close()
         if sys.platform == "linux":
             assert len(list(Path("/proc/self/fd").iterdir())) == before, why
-    monkeypatch.setattr(Client, "_shared", lambda *_: None)
+    monkeypatch.setattr(Client, "_share", lambda *_: None)
     line = tried().line
     assert Device.opened[-1].is_open
     line.close()

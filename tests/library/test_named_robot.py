@@ -6,7 +6,7 @@ import pytest
 
 from tests.support.rows import each_row
 from tiniscript.base.source import Source
-from tiniscript.library.named_robot import named_robot, renamed
+from tiniscript.library.named_robot import named_robot, rename_robot
 from tiniscript.syntax.formatter import format_source
 
 NAMING = [
@@ -34,7 +34,7 @@ def test_a_comment_before_the_first_instruction_names_it(text: str) -> None:
 @each_row("text", NAMELESS)
 def test_any_other_comment_tells_people_something(text: str) -> None:
     assert named_robot(text) is None
-    assert renamed(text, "grabber") == text
+    assert rename_robot(text, "grabber") == text
 
 
 @each_row("text", [each for each in NAMING if "\nS" in each or "\nF" in each])
@@ -47,7 +47,7 @@ def test_the_formatter_keeps_it(text: str) -> None:
 
 @pytest.mark.parametrize("text", NAMING)
 def test_another_one_takes_its_place(text: str) -> None:
-    changed = renamed(text, "grabber")
+    changed = rename_robot(text, "grabber")
     found = named_robot(changed)
     assert found is not None and found.name == "grabber"
     assert changed[: found.span.start] + changed[found.span.end :] == text.replace(

@@ -304,7 +304,7 @@ class StoppedAtFirst:
         self.stops = stops
         self.robot: object = None
 
-    def do(self, make: Callable[[Any], PendingRequest[Any]]) -> PendingRequest[Any]:
+    def begin(self, make: Callable[[Any], PendingRequest[Any]]) -> PendingRequest[Any]:
         return make(SimpleNamespace(hello=PendingRequest))
 
     def wait(self, request: PendingRequest[Any], look: Callable[[], None]) -> Reply[Any]:

@@ -16,13 +16,13 @@ from tiniscript.library import compiling
 def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.MonkeyPatch) -> None:
     text = piece * (7000 // len(piece))
     checks: list[str] = []
-    checked = compiling.analyzed
+    checked = compiling.analyze
 
     def counted(text: str, kit: Kit, name: str = "") -> compiling.Compiled:
         checks.append(text)
         return checked(text, kit, name)
 
-    monkeypatch.setattr(compiling, "analyzed", counted)
+    monkeypatch.setattr(compiling, "analyze", counted)
     assert check(text)
     assert 0 < len(checks) <= 40
 

@@ -18,7 +18,7 @@ from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.lessons import catalogue
-from tiniscript.library.compiling import analyzed
+from tiniscript.library.compiling import analyze
 from tiniscript.recovery import lines, rewrites, rows, slips
 from tiniscript.recovery.explanation import explained
 from tiniscript.recovery.meanings import Lexeme, Names, lexemes
@@ -48,7 +48,7 @@ def meant(text: str) -> Candidate | None:
 
 
 def mistakes(kit: Kit, text: str) -> list[Code]:
-    return [each.code for each in analyzed(text, kit).diagnostics if each.is_mistake]
+    return [each.code for each in analyze(text, kit).diagnostics if each.is_mistake]
 
 
 def right_programs() -> list[str]:

@@ -59,7 +59,7 @@ class SteppedLine:
     def tell(self, event: Event) -> None:
         """Of this process alone."""
 
-    def do(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
+    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
         return make(self.session)
 
     def runs(self, run: int) -> bool:

@@ -46,11 +46,11 @@ class FakeLine:
     def tell(self, event: Event) -> None:
         self._on_events([(0, event)])
 
-    def do(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
+    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
         self.asked.append(make(cast(Requester, ClientRequests())))
         return self.asked[-1]
 
-    def begin(self) -> None:
+    def begin_run(self) -> None:
         """Let the run begin that was asked for last."""
         self.is_running = True
         self.asked[-1].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))
@@ -134,7 +134,7 @@ def test_a_run_whose_client_leaves_ends_without_a_stop_for_all(
     line: FakeLine, server: Server, command: SharedConnection
 ) -> None:
     asks(command, line)
-    line.begin()
+    line.begin_run()
     line.tell(event("SHOW"))
     heard(command, "SHOW")
     command.close()
@@ -148,7 +148,7 @@ def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(
 ) -> None:
     """A stop, and an upload right after it: the server's thread may see both at once."""
     asks(command, line)
-    line.begin()
+    line.begin_run()
     line.tell(DoneEvent(6) if end == "DONE" else event(end))
     heard(command, end)
     assert server.has_run
@@ -179,7 +179,7 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
         else:
             asks(command, line, asked == "detached")
         if asked in ("over", "begun"):
-            line.begin()
+            line.begin_run()
             line.is_running = asked == "begun"
         client.close()
     assert line.stops == is_stopped

@@ -38,13 +38,13 @@ def _printable_value(value: str | Exception) -> str:
     return (value.strerror if isinstance(value, OSError) else None) or str(value)
 
 
-def unwritable(how: str, file: str, why: str | Exception) -> CommandError:
+def unwritable_error(how: str, file: str, why: str | Exception) -> CommandError:
     """Return what is said of a file; `how` is the sentence's key, and the option that it names."""
     key, _, option = how.partition(" ")
     return CommandError(2, key, file=file, why=why, option=option)
 
 
-def not_installed(key: str, why: Exception) -> CommandError:
+def missing_package_error(key: str, why: Exception) -> CommandError:
     """Return what is said where the packages of a virtual robot are missing."""
     from tiniscript.library import install_advice
 

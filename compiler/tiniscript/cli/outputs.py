@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tiniscript.cli.errors import unwritable
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.errors import unwritable_error
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.streams import has_colors
 from tiniscript.cli.texts import Said, say_aside, text
 from tiniscript.library.compiling import Compiled
@@ -27,7 +27,7 @@ def write(path: Path, data: bytes, how: str, mode: int | None = None) -> None:
     except (OSError, ValueError, RuntimeError) as why:  # RuntimeError: a link to itself
         if isinstance(why, BrokenPipeError):
             raise
-        raise unwritable(how, shown(str(path)), why) from None
+        raise unwritable_error(how, printable_name(str(path)), why) from None
 
 
 def put(name: str | None, data: bytes) -> bool:

@@ -25,7 +25,7 @@ from typing import NamedTuple
 from tiniscript import robots
 from tiniscript.base.source import PROGRAM_ENDS
 from tiniscript.bytecode.image import MAGIC
-from tiniscript.cli.errors import CommandError, unwritable
+from tiniscript.cli.errors import CommandError, unwritable_error
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import OPTIONS
 
@@ -187,7 +187,7 @@ def _refuse_unwritable(path: str, how: str, language: str) -> None:
         from tiniscript.cli.windows_names import has_no_file
 
         if path and has_no_file(path):
-            raise unwritable(how, path, text("no_windows_name", language))
+            raise unwritable_error(how, path, text("no_windows_name", language))
     try:
         try:
             stat_result = os.stat(path)  # noqa: PTH116 - a name that no file can have gets no Path
@@ -204,9 +204,9 @@ def _refuse_unwritable(path: str, how: str, language: str) -> None:
             if sys.platform != "win32" and not os.access(folder, os.W_OK | os.X_OK):
                 number = errno.EACCES
     except (OSError, ValueError) as why:
-        raise unwritable(how, path, why) from None
+        raise unwritable_error(how, path, why) from None
     if number or not path:
-        raise unwritable(how, path or "''", os.strerror(number or errno.ENOENT))
+        raise unwritable_error(how, path or "''", os.strerror(number or errno.ENOENT))
 
 
 HEAD_BYTES = 4096  # of a file, which tell what it is

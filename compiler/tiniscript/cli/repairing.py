@@ -31,7 +31,7 @@ class Repaired(NamedTuple):
     compiled: Compiled
 
 
-def repaired(given: Input, robot: Robot) -> Repaired:
+def repair(given: Input, robot: Robot) -> Repaired:
     """Return a program with its sure repairs; bytes that are no program stay as they are."""
     text = text_of(given.data, given.name)
     if not isinstance(text, str):

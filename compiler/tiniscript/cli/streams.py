@@ -96,7 +96,7 @@ def drop_unread() -> None:
             is_pipe = stat.S_ISFIFO(os.fstat(number).st_mode)
         except (OSError, ValueError, AttributeError):  # no file of the system, or closed
             continue
-        if is_pipe and not _is_written(stream, number):
+        if is_pipe and not _write_all(stream, number):
             nowhere = os.open(os.devnull, os.O_WRONLY)
             os.dup2(nowhere, number)
             os.close(nowhere)
@@ -122,7 +122,7 @@ def refuse_unread() -> None:
         raise BrokenPipeError
 
 
-def _is_written(stream: TextIO, pipe: int) -> bool:
+def _write_all(stream: TextIO, pipe: int) -> bool:
     """Write what waits for a pipe; return whether all was taken in time."""
     if sys.platform == "win32":
         return False
@@ -160,7 +160,7 @@ class Wrapping:
         if isinstance(text, Said):
             from shutil import get_terminal_size
 
-            text = wrapped(text, get_terminal_size().columns)
+            text = wrap(text, get_terminal_size().columns)
         return self._stream.write(text)
 
 
@@ -169,7 +169,7 @@ class Wrapping:
 _COMMAND = re.compile(r"(?<=[^ ] {2})[^ \n]+(?: [^ \n]+)*")
 
 
-def wrapped(said: str, columns: int) -> str:
+def wrap(said: str, columns: int) -> str:
     """Return a sentence in rows; what stands after two blanks is a command."""
     from textwrap import fill
 

@@ -39,7 +39,7 @@ def named_robot(text: str) -> Named | None:
     return None
 
 
-def renamed(text: str, name: str) -> str:
+def rename_robot(text: str, name: str) -> str:
     """Return a program that names a robot with another name; any other stays as it is."""
     result = named_robot(text)
     return text if result is None else apply_edits(text, [Edit(result.span, name)])
@@ -53,11 +53,11 @@ def robot_of(data: bytes, usual: Robot) -> Robot:
 
 def name_in(data: bytes) -> str | None:
     """Return the name of the shipped robot that a program's text names, or None."""
-    result = (named(data) or "").lower()
+    result = (robot_name(data) or "").lower()
     return result if result in robots.names() else None
 
 
-def named(data: bytes) -> str | None:
+def robot_name(data: bytes) -> str | None:
     """Return how a program's text names its robot, or None; an image names none."""
     try:
         result = named_robot(decode(data))

@@ -67,8 +67,8 @@ def connection_to(
             begun_s = monotonic()
             continue
         try:
-            lock = _claimed(address, language)
-            line = _opened_line(address, baud, kit, limit_s, lock, language, port, verb)
+            lock = _claim(address, language)
+            line = _open_line(address, baud, kit, limit_s, lock, language, port, verb)
             for name in {port, address}:
                 registry.forget(name)  # the port is ours: its former owner has crashed
             return line
@@ -104,19 +104,17 @@ def _connect_past_holder(
         if sys.platform == "linux" and not is_address(address):
             speed = baud if registration is None else registration.baud
             with suppress(RobotError):
-                return _opened_line(
-                    address, speed, kit, limit_s, None, language, port, "stop", True
-                )
+                return _open_line(address, speed, kit, limit_s, None, language, port, "stop", True)
         holder.wake()
     if waited_s <= STOP_BUSY_S:
         return None
     if holder is None:
-        raise RobotError("stop_held_unknown", language, {"port": shown(port)})
-    values = {"port": shown(port), "holder": holder.name, "pid": str(holder.pid)}
+        raise RobotError("stop_held_unknown", language, {"port": printable_name(port)})
+    values = {"port": printable_name(port), "holder": holder.name, "pid": str(holder.pid)}
     raise RobotError("stop_held", language, values)
 
 
-def _opened_line(
+def _open_line(
     address: str, baud: int, kit: int, limit_s: float, lock: IO[bytes] | None, language: str,
     port: str, verb: str = "", is_past: bool = False,
 ) -> PortConnection:  # fmt: skip
@@ -140,7 +138,7 @@ def _opened_line(
             raise port_error(port, failure, language) from None
         unless_it_fails.callback(device.close)
         if directory.is_of_another(address):  # asked of who has let us in, before anything is sent
-            raise RobotError("port_of_another", language, {"port": shown(port)})
+            raise RobotError("port_of_another", language, {"port": printable_name(port)})
         # who claims a robot has it before them: one of many, perhaps, at the same cable
         keys = KeyFile(is_for_virtual=is_virtual(address), accepts_all=verb == "set owner")
         place = port_names.same_for_all(port)  # an address may be another robot's tomorrow
@@ -154,7 +152,7 @@ def _opened_line(
 def port_error(port: str, failure: PortError, language: str = "en") -> RobotError:
     """Return the error for a port that does not open."""
     reason = f"port_{failure.reason}"
-    values = {"port": shown(port), "why": shown(failure.why)}
+    values = {"port": printable_name(port), "why": printable_name(failure.why)}
     if failure.reason == errors.NOT_INSTALLED:
         from tiniscript.library import install_advice
 
@@ -171,7 +169,7 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
 
         known = ", ".join(item.port for item in ports.list_ports())
         if known:
-            reason, values["known"] = "port_missing_but", shown(known)
+            reason, values["known"] = "port_missing_but", printable_name(known)
     return RobotError(reason, language, values)
 
 
@@ -195,7 +193,7 @@ def is_virtual(port: str) -> bool:
     return directory.is_virtual(port)
 
 
-def shown(name: str) -> str:
+def printable_name(name: str) -> str:
     """Return a name in a form for sentences: printable, at most SHOWN characters."""
     return printable(name, SHOWN)
 
@@ -206,13 +204,13 @@ def _join_shared(port: str, verb: str, baud: int | None, language: str) -> Share
     except OtherVersion as other:
         values = {
             "verb": other.registration.verb,
-            "theirs": shown(other.version),
-            "port": shown(port),
+            "theirs": printable_name(other.version),
+            "port": printable_name(port),
         }
         raise RobotError("holder_other", language, values) from None
     if client is not None and baud not in (None, client.baud) and verb != "stop":
         client.close()
-        values = {"verb": client.held_by, "baud": str(client.baud), "port": shown(port)}
+        values = {"verb": client.held_by, "baud": str(client.baud), "port": printable_name(port)}
         raise RobotError("holder_baud", language, values)
     return client
 
@@ -227,7 +225,7 @@ def _resolve_address(port: str, language: str) -> str:
         raise port_error(port, failure, language) from None
 
 
-def _claimed(port: str, language: str) -> IO[bytes] | None:
+def _claim(port: str, language: str) -> IO[bytes] | None:
     """Return the lock of an address, or None for other ports and where no file can be locked."""
     if not is_address(port):
         return None
@@ -236,5 +234,5 @@ def _claimed(port: str, language: str) -> IO[bytes] | None:
     except OSError:
         return None
     if lock is None:
-        raise RobotError("port_busy", language, {"port": shown(port), "why": ""})
+        raise RobotError("port_busy", language, {"port": printable_name(port), "why": ""})
     return lock

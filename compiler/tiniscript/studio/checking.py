@@ -78,7 +78,7 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     if not compiled.is_right or compiled.program is None:
         return Checked(b"", 0, findings, (), (), (), "", profile.name, names_robot)
     variables = tuple(map(Variable, compiled.program.variables, compiled.yes_no))
-    places = source_map.made(compiled)
+    places = source_map.map_of_compiled(compiled)
     return Checked(compiled.image, len(compiled.code), findings, places.places,
         _show_places(places),
                    variables, compiled.program.start, profile.name, names_robot,

@@ -21,7 +21,7 @@ from tiniscript.lessons.marking import Marking, Outcome
 from tiniscript.lessons.running import ASKS, STEP_MS, Trial
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.variation import is_mirrored, point_of, varied
-from tiniscript.library.compiling import compile_source, for_robot, maker
+from tiniscript.library.compiling import compile_source, for_robot, image_maker
 from tiniscript.library.named_robot import name_in
 from tiniscript.link.session import Session
 from tiniscript.studio.block_form import kinds_in
@@ -143,7 +143,7 @@ class Check:
         if result.is_right:
             seeds = range(1, lesson.worlds + 1)
             text = result.source.text
-            self._marking = Marking(text, maker(profile), profile, lesson, seeds)
+            self._marking = Marking(text, image_maker(profile), profile, lesson, seeds)
 
     def go(self, most_ms: int) -> dict[str, Any]:
         """Let the robot's time go on, at most by `most_ms`.

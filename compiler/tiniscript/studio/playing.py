@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from tiniscript.base.fixed_point import ONE
 from tiniscript.bytecode.image import checksum
 from tiniscript.library.compiling import Compiled, compile_source, for_robot
-from tiniscript.library.source_map import Map, MapLocation, made
+from tiniscript.library.source_map import Map, MapLocation, map_of_compiled
 from tiniscript.robots import load
 from tiniscript.semantics import ir
 from tiniscript.studio.recordings import (
@@ -81,7 +81,7 @@ def ready(recording: Recording) -> Ready:
     ):
         raise BadRecording("other_program")
     sensors = _shown_sensors(compiled.program)
-    places = made(compiled)
+    places = map_of_compiled(compiled)
     shows = {place.offset: sensors[its.span.start] for its, place in
              zip(compiled.places, places.places, strict=True)
              if its.span.start in sensors}  # fmt: skip

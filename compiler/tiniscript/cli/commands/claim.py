@@ -6,8 +6,8 @@ import sys
 from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.inputs import printable_name
+from tiniscript.cli.robot.connect import Connection, connect
 from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, ownership_of
 from tiniscript.link.connection import CLAIM_LIMIT_MS
 from tiniscript.link.keys import KeyFile
@@ -17,7 +17,7 @@ from tiniscript.link.requests import Reply
 
 
 def run(options: Namespace, language: str) -> int:
-    with connected(options, language) as connection:
+    with connect(options, language) as connection:
         connection.meet()
         _refuse_at_once(connection)
         which = KEY_TEACHER if options.teacher else KEY_OWNER
@@ -32,7 +32,7 @@ def _claim(connection: Connection, which: int) -> None:
     print(sentence, file=sys.stderr, flush=True)
     reply = connection.wait(request)
     if reply.status == UNKEPT:
-        raise CommandError(2, "unkept_key", file=shown(str(KeyFile().path)))
+        raise CommandError(2, "unkept_key", file=printable_name(str(KeyFile().path)))
     if reply.status in (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"]):
         key = "claim_saving"
     elif reply.status:

@@ -7,11 +7,11 @@ from argparse import Namespace
 
 from tiniscript.cli import firmware_build, inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import bad_choice
-from tiniscript.cli.robot.connect import Connection, opening_port
-from tiniscript.cli.robot.description import described
-from tiniscript.cli.terminal.progress import Progress, waiting
+from tiniscript.cli.robot.connect import Connection, convert_port_error
+from tiniscript.cli.robot.description import describe_robot
+from tiniscript.cli.terminal.progress import Progress, show_wait
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.flash import avrdude
 from tiniscript.flash.avrdude import Ended, StepProgress
@@ -90,8 +90,8 @@ def _port(options: Namespace) -> str:
         raise CommandError(2, "flash_no_port")
     port = inputs.port(options.port)
     if is_address(port):
-        raise CommandError(2, "flash_address", port=shown(port))
-    with opening_port(port):
+        raise CommandError(2, "flash_address", port=printable_name(port))
+    with convert_port_error(port):
         ports.open_port(port, UNO.baud).close()
     return port
 
@@ -111,7 +111,11 @@ def _write(
         if ended.how != avrdude.NOBODY:
             break
     if ended.how != avrdude.DONE:
-        values = {"port": shown(port), "board": firmware.board, "why": shown(ended.said)}
+        values = {
+            "port": printable_name(port),
+            "board": firmware.board,
+            "why": printable_name(ended.said),
+        }
         raise CommandError(3, f"flash_{ended.how}", **values)
 
 
@@ -131,7 +135,7 @@ def _write_firmware(
             progress.draw(seen.percent)
 
     try:
-        with waiting("flash_waits", language, port) as silence:
+        with show_wait("flash_waits", language, port) as silence:
             return avrdude.write(command, bootloader, port, firmware.path, look)
     except KeyboardInterrupt:
         if not has_begun:
@@ -147,8 +151,8 @@ def _introduce(port: str, robot: Robot, board: str, language: str) -> None:
         options = Namespace(verb="firmware", port=port, baud=None, virtual=False)
         with Connection(options, robot, language) as connection:
             connection.meet(board)
-            print(described(connection).text())
+            print(describe_robot(connection).text())
     except CommandError as failure:
         if failure.exit_code != 3:
             raise
-        raise CommandError(3, "flash_silent", port=shown(port)) from None
+        raise CommandError(3, "flash_silent", port=printable_name(port)) from None

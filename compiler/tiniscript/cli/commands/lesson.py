@@ -24,7 +24,9 @@ def run(options: Namespace, language: str) -> int:
     action = options.action or LIST
     if action != LIST and action not in ACTIONS:
         known = f"{', '.join(list(ACTIONS)[:-1])} {text('or', language)} {list(ACTIONS)[-1]}"
-        raise CommandError(2, "lesson_action", known=known, found=inputs.shown(action) or "''")
+        raise CommandError(
+            2, "lesson_action", known=known, found=inputs.printable_name(action) or "''"
+        )
     _refuse_others(options, action)
     if action == LIST:
         return _list(language)
@@ -39,8 +41,8 @@ def run(options: Namespace, language: str) -> int:
             return _show(folder, options.teacher, language)
         return _sheet(folder, lesson, options, language)
     except LessonRefused as refused:
-        alone, file = ("no_such_lesson", "no_page"), inputs.shown(options.number)
-        raise inputs.refused(refused, language, "lesson_refused", alone, file=file) from None
+        alone, file = ("no_such_lesson", "no_page"), inputs.printable_name(options.number)
+        raise inputs.refusal(refused, language, "lesson_refused", alone, file=file) from None
 
 
 def _refuse_others(options: Namespace, action: str) -> None:
@@ -90,9 +92,14 @@ def _show(folder: Path, is_teachers: bool, language: str) -> int:
 
 def _sheet(folder: Path, lesson: Lesson, options: Namespace, language: str) -> int:
     if options.output is None:
-        raise CommandError(2, "lesson_where", number=inputs.shown(options.number))
+        raise CommandError(2, "lesson_where", number=inputs.printable_name(options.number))
     page = sheet(_page(folder, options.teacher, language), lesson, options.teacher, language)
     if not outputs.put(options.output, page.encode()):
         return 0
-    say("lesson_sheet", language, file=inputs.shown(options.output), title=lesson.titles[language])
+    say(
+        "lesson_sheet",
+        language,
+        file=inputs.printable_name(options.output),
+        title=lesson.titles[language],
+    )
     return 0

@@ -7,7 +7,7 @@ from argparse import Namespace
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.causes import rows
@@ -33,7 +33,7 @@ from tiniscript.link.wire import Wire
 
 
 def run(options: Namespace, language: str) -> int:
-    expected = _wanted(options)
+    expected = _wanted_settings(options)
     port = _port(options)
     try:
         wire = Wire(ports.open_port(port, BAUDS[0]))
@@ -65,14 +65,14 @@ def _speed_after_abort(steps: list[Step], language: str) -> str:
     return text("module_left", language).format(baud=steps[0].value)
 
 
-def _wanted(options: Namespace) -> WantedSettings:
+def _wanted_settings(options: Namespace) -> WantedSettings:
     """Return what the options ask for. Raises CommandError for what no module can have."""
     name: str | None = options.name
     if options.id is not None:
         if name is not None:
             raise CommandError(2, "module_name_and_id")
         if not re.fullmatch("[0-9a-fA-F]{1,8}", options.id):
-            raise CommandError(2, "module_bad_id", found=shown(options.id) or "''")
+            raise CommandError(2, "module_bad_id", found=printable_name(options.id) or "''")
         name = set_up.name_for(int(options.id, 16))
     baud = None
     if options.baud is not None:
@@ -80,7 +80,7 @@ def _wanted(options: Namespace) -> WantedSettings:
         if options.baud not in known:
             raise CommandError(
                 2, "module_bad_baud", known=", ".join(map(str, sorted(BAUDS))),
-                found=shown(options.baud) or "''",
+                found=printable_name(options.baud) or "''",
             )  # fmt: skip
         baud = known[options.baud]
     result = WantedSettings(name, options.pin, baud)
@@ -96,7 +96,7 @@ def _refuse(wanted: WantedSettings, dialect: Dialect, what: str) -> None:
             2,
             "module_bad_name",
             most=str(dialect.name_bytes),
-            found=shown(wanted.name or "") or "''",
+            found=printable_name(wanted.name or "") or "''",
         )
     if what == PIN:
         raise CommandError(2, "module_bad_pin", digits=str(dialect.pin_digits), module=dialect.name)
@@ -107,7 +107,7 @@ def _port(options: Namespace) -> str:
         raise CommandError(2, "module_no_port")
     port = inputs.port(options.port)
     if ports.is_radio(port):
-        raise CommandError(2, "module_by_radio", port=shown(port))
+        raise CommandError(2, "module_by_radio", port=printable_name(port))
     return port
 
 
@@ -122,7 +122,7 @@ class _SetUp:
     ) -> None:
         self.wire, self.options, self.wanted = wire, options, wanted
         self.language, self.begun = language, begun
-        self.port = shown(options.port)
+        self.port = printable_name(options.port)
 
     def run(self) -> int:
         doing = Doing()
@@ -170,10 +170,10 @@ class _SetUp:
             values[BAUD] = next(
                 (str(baud) for baud, value in dialect.bauds.items() if value == text), ""
             )
-        return {what: shown(value) for what, value in values.items() if value}
+        return {what: printable_name(value) for what, value in values.items() if value}
 
     def _introduce(self, module: Module, now: dict[str, str]) -> None:
-        version = shown(module.version) or self._text("module_no_version")
+        version = printable_name(module.version) or self._text("module_no_version")
         print(
             self._text("module_found", module=module.dialect.name, port=self.port,
                        version=version, baud=str(module.baud))
@@ -193,5 +193,5 @@ class _SetUp:
         name = self._text(f"module_what_{step.what}", value=step.value)
         if step.what == BAUD and how == DONE:
             how = "done_baud" if text == step.value else "done_later"
-        text = shown(text) or self._text("module_no_word")
+        text = printable_name(text) or self._text("module_no_word")
         _end(sure(f"module_{how}", name=name, said=text), self.language)

@@ -10,10 +10,10 @@ from contextlib import closing
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import baud_of, opened_client
+from tiniscript.cli.inputs import printable_name
+from tiniscript.cli.robot.connect import baud_of, open_client
 from tiniscript.cli.robot.in_reach import AT_ONCE, find_robots
-from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, listed
+from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, list_rows
 from tiniscript.cli.texts import Said, text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
@@ -37,7 +37,7 @@ def run(options: Namespace, language: str) -> int:
         in_reach = find_robots(list(known_ports.remembered_ports().names), language)
         for note in in_reach.notes:  # what could not be searched
             print(note, file=sys.stderr, flush=True)
-    rows = listed(language, options.port, in_reach)
+    rows = list_rows(language, options.port, in_reach)
     if options.ask:
         absent: Row = {"answer": None, "said": text("out_of_reach", language)}
 
@@ -59,7 +59,7 @@ def run(options: Namespace, language: str) -> int:
 def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     """Return the robot that answers on a port, or why none does."""
     try:
-        with closing(opened_client(port, robot, LOOKER, baud, language, OPEN_S)) as client:
+        with closing(open_client(port, robot, LOOKER, baud, language, OPEN_S)) as client:
             reply = client.hello()
             device_info, heard = client.line.robot, client.line.heard
             found = stranger(client.line)
@@ -70,7 +70,9 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     if reply.status == OK and device_info is not None:
         opening.remember(port, device_info.name, is_used=False)
         called = (
-            shown(device_info.name) or shipped_of_kit(device_info.kit) or f"{device_info.id:08x}"
+            printable_name(device_info.name)
+            or shipped_of_kit(device_info.kit)
+            or f"{device_info.id:08x}"
         )
         owner = ownership_of(device_info)
         sentence = text("port_whose", language).format(

@@ -18,7 +18,7 @@ def run(options: Namespace, language: str) -> int:
     if options.arduino:
         return _sketch(options, given, robot, language)
     if options.output is not None:
-        raise CommandError(2, "output_needs_arduino", file=inputs.shown(options.output))
+        raise CommandError(2, "output_needs_arduino", file=inputs.printable_name(options.output))
     if given.is_image and options.robot is None:
         robot = images.robot_for(given, robot)
     ready = images.ready(given, robot, language)
@@ -27,7 +27,7 @@ def run(options: Namespace, language: str) -> int:
     if options.json:
         print_json(ready, robot)
     else:
-        print_disassembly(ready, robot, inputs.shown(given.name), language)
+        print_disassembly(ready, robot, inputs.printable_name(given.name), language)
     return 0
 
 
@@ -35,7 +35,7 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if options.json:
         raise CommandError(2, "sketch_or_json")
     if given.is_image:
-        raise CommandError(2, "sketch_needs_text", file=inputs.shown(given.name))
+        raise CommandError(2, "sketch_needs_text", file=inputs.printable_name(given.name))
     if robot.board.chip not in BOARDS:
         known = ", ".join(BOARDS)
         raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=known)
@@ -45,9 +45,9 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
         return 1
     assert compiled.program is not None
     if missing := missing_feature(compiled.program, robot.kit):
-        raise CommandError(2, f"sketch_no_{missing}", file=inputs.shown(given.name))
+        raise CommandError(2, f"sketch_no_{missing}", file=inputs.printable_name(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
     if outputs.put(options.output, sketch):
-        name = inputs.shown(robot.labels[language]["robot"])
-        say("sketch", language, file=inputs.shown(options.output), robot=name)
+        name = inputs.printable_name(robot.labels[language]["robot"])
+        say("sketch", language, file=inputs.printable_name(options.output), robot=name)
     return 0

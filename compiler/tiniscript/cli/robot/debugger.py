@@ -105,14 +105,14 @@ class Debugger:
     def look(self) -> None:
         """Do what the first key says that was pressed at this halt; while the program runs, none
         does anything."""
-        pressed = self.keys.pressed() if self.has_keys else ""
+        pressed = self.keys.read_pressed() if self.has_keys else ""
         key = next((key for key in pressed if key in STEP + GO), "")
         if key and self.is_halted:
             self._resume(RESUME_STEP if key in STEP else RESUME_GO)
 
     def _resume(self, how: int) -> None:
         self.is_halted, self.is_stepping = False, how == RESUME_STEP
-        self.connection.ask(lambda session: session.resume(how))
+        self.connection.request(lambda session: session.resume(how))
 
     def _print_halt(self, at: int, task: int, place: MapLocation | None) -> None:
         language = self.printer.language
@@ -141,7 +141,7 @@ class Debugger:
         names."""
         names, values = self.map.variables, list[int]()
         while len(values) < len(names):
-            reply = self.connection.ask(partial(Requester.read_variables, first=len(values)))
+            reply = self.connection.request(partial(Requester.read_variables, first=len(values)))
             piece = [value for (value,) in iter_unpack("<i", reply.values.values)]
             if not piece:
                 break
@@ -151,7 +151,7 @@ class Debugger:
 
     def _tasks(self, halted: int) -> list[tuple[int, int]]:
         """Return state and line of each task beside the one that is halted, and has not ended."""
-        reply = self.connection.ask(lambda session: session.read_tasks())
+        reply = self.connection.request(lambda session: session.read_tasks())
         result = []
         for number, (state, at, _) in enumerate(iter_unpack("<BHI", reply.values.tasks)):
             place = self.map.at(at)

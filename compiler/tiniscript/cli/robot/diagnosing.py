@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from tiniscript.cli import inputs
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection, baud_of
 from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Doing
@@ -106,7 +106,7 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
         if options.json or not can_ask():
             return False
         doing.end()
-        return confirm(text("doctor_yes", language).format(port=shown(port)))
+        return confirm(text("doctor_yes", language).format(port=printable_name(port)))
 
     @contextmanager
     def share(port: str) -> Iterator[LinkConnection]:

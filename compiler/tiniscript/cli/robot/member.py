@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.texts import text
 from tiniscript.link import known_ports
@@ -110,7 +110,7 @@ class Member:
             return ""
         return "absent" if self.is_absent else "ok" if self.result.is_done else "bad"
 
-    def said(self, language: str) -> str:
+    def state_text(self, language: str) -> str:
         """Return the current state, or the result."""
         if self.result is not None:
             return self.result.said
@@ -121,7 +121,11 @@ class Member:
     @property
     def row(self) -> str:
         text = self.result.said if self.result is not None else ""
-        name = f"{shown(self.name)} ({shown(self.target.port)})" if self.name else self.target.port
+        name = (
+            f"{printable_name(self.name)} ({printable_name(self.target.port)})"
+            if self.name
+            else self.target.port
+        )
         return f"{name}: {text}"
 
     def as_json(self) -> str:

@@ -13,7 +13,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.inputs import Input
 from tiniscript.cli.options import sensor_lists, thousandths, whole_number
-from tiniscript.cli.robot.simulator_options import refusing, world_of
+from tiniscript.cli.robot.simulator_options import convert_refusal, world_of
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 from tiniscript.studio import recordings
@@ -63,7 +63,7 @@ def record(given: Input, options: Namespace, language: str) -> int:
         return 1
     image = result.image
     data = pack(image.start, image.devices, image.code, image.later, image.needs)
-    with refusing(world.name, language):
+    with convert_refusal(world.name, language):
         run = Simulation(robot.name, world, data, settings=Settings(seed=seed, told=message))
     if image.start == "SB":
         run.push()
@@ -94,7 +94,7 @@ def play(given: Input, options: Namespace, language: str) -> int:
     if options.world is not None and run.recording.is_virtual:
         raise CommandError(2, "play_only", option="--world")
     world = run.recording.world or world_of(options, language)
-    with refusing(world.name, language):
+    with convert_refusal(world.name, language):
         played = Played(run, world)
     while not played.is_over:
         played.go(STEP_MS)
@@ -113,7 +113,7 @@ def _read(given: Input) -> Ready:
     try:
         return ready(recordings.read(given.data))
     except BadRecording as bad:
-        values = {"file": inputs.shown(given.name), "line": str(bad.line)}
+        values = {"file": inputs.printable_name(given.name), "line": str(bad.line)}
         raise CommandError(2, f"recording_{bad.reason}", **values) from None
 
 

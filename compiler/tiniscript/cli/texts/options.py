@@ -8,7 +8,7 @@ Parsers, help, completion, `cli/paths.py` and the documents are made from it and
 from typing import NamedTuple
 
 from tiniscript.base.languages import languages
-from tiniscript.cli.texts.verbs import STEPS, said, settings, steps_of, typed
+from tiniscript.cli.texts.verbs import STEPS, command_words, settings, steps_of, verb_text
 from tiniscript.robots.text_levels import LEVELS
 
 
@@ -60,13 +60,13 @@ class Option(NamedTuple):
 
     def help(self, language: str) -> str:
         """Return what it does."""
-        return said(f"option/{self.flags}/{self.verbs.split()[0]}", language)
+        return verb_text(f"option/{self.flags}/{self.verbs.split()[0]}", language)
 
     def shown_value(self, language: str) -> str:
         """Return the name of its value in help."""
-        return said(f"value/{self.value}", language) or self.value
+        return verb_text(f"value/{self.value}", language) or self.value
 
-    def taken_by(self, verb: str) -> bool:
+    def is_taken_by(self, verb: str) -> bool:
         return self.verbs == "*" or verb in self.verbs.split()
 
 
@@ -317,7 +317,7 @@ OPTIONS: tuple[Option, ...] = (
 
 def of_verb(verb: str) -> list[Option]:
     """Return the options of a command, or of `tsc` itself, in the order of help."""
-    return [option for option in OPTIONS if option.taken_by(verb)]
+    return [option for option in OPTIONS if option.is_taken_by(verb)]
 
 
 def choosers_of(command: str) -> list[Option]:
@@ -326,7 +326,7 @@ def choosers_of(command: str) -> list[Option]:
         option
         for name in steps_of(command)
         for option in of_verb(name)
-        if STEPS[name].head == typed(command) and option.flags in STEPS[name].choosers
+        if STEPS[name].head == command_words(command) and option.flags in STEPS[name].choosers
     ]
 
 
