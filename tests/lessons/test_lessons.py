@@ -44,7 +44,7 @@ def findings_of(text: str, lesson: Lesson, seeds: range) -> list[Finding]:
     from tiniscript.lessons.marking import Marking
 
     robot = robots.load(lesson.robot)
-    return list(Marking(text, image_maker(robot), robot, lesson, seeds).whole().findings)
+    return list(Marking(text, image_maker(robot), robot, lesson, seeds).run_to_end().findings)
 
 
 def test_they_are_numbered_without_a_gap() -> None:

@@ -128,9 +128,9 @@ def test_some_mistakes_are_not_repaired() -> None:
 
 def test_a_file_is_read_as_the_command_reads_it_or_gets_a_sentence() -> None:
     for data in (b"\xff\xfe", b"F(2\0, 80)", b"x" * 1_000_001):
-        message = checking.opened(data, "tinibot", "es")
+        message = checking.open_text(data, "tinibot", "es")
         assert isinstance(message, Message) and message.message, data[:9]
-    assert checking.opened("\ufeffSI|F(2, 80)\r\n".encode(), "liner", "en") == "SI|F(2, 80)\r\n"
+    assert checking.open_text("\ufeffSI|F(2, 80)\r\n".encode(), "liner", "en") == "SI|F(2, 80)\r\n"
 
 
 def test_a_robot_is_a_shipped_one() -> None:

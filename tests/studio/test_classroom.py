@@ -904,7 +904,7 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
         answered.append("listed")
         return [{"port": "port9", "name": "NINE"}]
 
-    monkeypatch.setattr(classroom, "listed", slow)
+    monkeypatch.setattr(classroom, "list_ports", slow)
     state = room.teaches("class_robot", port="port9", gives=True)
     assert answered == ["stop", "beat", "here", "listed"]
     assert [each["name"] for each in state["robots"]] == ["", "NINE"]

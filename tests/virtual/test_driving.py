@@ -11,7 +11,7 @@ import pytest
 from tests.support.virtual_robot import floor
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
-from tiniscript.robots.kinematics import Pose, moved
+from tiniscript.robots.kinematics import Pose, move_pose
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.driving import TOUCH_CM, Driving, Hull
 from tiniscript.virtual.geometry import Point, Segment, crosses, gap_between, nearest, nearest_seen
@@ -75,7 +75,7 @@ def test_where_nothing_is_in_the_way_the_way_is_that_of_the_wheels() -> None:
     for left, right, duration_ms in ways:
         found.set_motors(now_ms, left, right)
         now_ms += duration_ms
-        pose = moved(TINIBOT.body, pose, left, right, duration_ms)
+        pose = move_pose(TINIBOT.body, pose, left, right, duration_ms)
         assert found.go_on(now_ms) == pytest.approx(pose, abs=1e-6)
     assert found.bumps == 0
 

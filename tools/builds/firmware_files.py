@@ -21,7 +21,7 @@ from tiniscript.cli.firmware_build import on_boards
 from tiniscript.flash import building
 from tiniscript.flash.ready import FOLDER, NOTICE, name_of, title_of
 from tiniscript.library import install_advice
-from tiniscript.robots.profile import Robot, answered
+from tiniscript.robots.profile import Robot, answer_languages
 from tools import ROOT, CannotMake
 from tools.builds.platformio_offline import PROJECT, settings_for
 
@@ -49,7 +49,7 @@ def shipped() -> list[Robot]:
     return [
         robot
         for name in robots.names()
-        for language in answered()
+        for language in answer_languages()
         for robot in on_boards(name, language)
     ]
 

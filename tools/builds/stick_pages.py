@@ -69,7 +69,7 @@ def make(root: Path, folder: Path) -> None:
             _write(target / "index.html", page(path.name, f"<p>{escape(path.name)}/</p>", SOURCE))
     for language in translated_languages("documents", "stick/title"):
         for name in robots.names():
-            plan = plan_of(robots.load(name).speaking(language), language)
+            plan = plan_of(robots.load(name).with_language(language), language)
             _write(folder / "wiring" / f"{name}.{language}.html", html_of(plan))
         _write(folder / name_in(language, INDEX), _index(root, folder, language, titles))
 

@@ -208,7 +208,7 @@ def make_blockly() -> None:
 
 
 def found_tools() -> Tools:
-    tools = building.found_tools()
+    tools = building.find_tools()
     if tools is None:
         raise CannotMake(
             f"there is no node {building.OLDEST_NODE} or later. Install one:"

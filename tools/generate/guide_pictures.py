@@ -11,7 +11,7 @@ from functools import partial
 from html import escape
 
 from tiniscript.lessons import catalogue
-from tiniscript.lessons.variation import varied
+from tiniscript.lessons.variation import vary
 from tiniscript.robots.wiring.drawing import FONT
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
@@ -72,7 +72,7 @@ def lesson(command: str) -> str:
     """Return three worlds of lesson 7, with the way of a right program in each."""
     folder = catalogue.folders()[6]
     found, program = catalogue.load(folder), catalogue.answers(folder)[0][0].program
-    runs = ((varied(found, k), program, 8000) for k in (1, 2, 3))
+    runs = ((vary(found, k), program, 8000) for k in (1, 2, 3))
     return _path_pictures(command, found.robot, *runs)
 
 

@@ -36,7 +36,7 @@ def on_boards(name: str | None, language: str, boards: Sequence[str] = BOARDS) -
     for board in boards:
         try:
             robot = robots.load(robots.DEFAULT if name is None else name, board)
-            result.append(robot.speaking(language))
+            result.append(robot.with_language(language))
         except ProfileRefused:
             continue  # the board has no such pins
     return result

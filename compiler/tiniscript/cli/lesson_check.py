@@ -142,7 +142,7 @@ class _Marker:
         lesson = self.lesson._replace(robot=name_in(given.data) or self.lesson.robot)
         marking = Marking(compiled.source.text, image_maker(robot), robot, lesson, self.seeds)
         try:
-            outcome = marking.whole()
+            outcome = marking.run_to_end()
         except WorldRefused as refused:
             values = {"file": inputs.printable_name(self.lesson.name), "seed": str(marking.seed)}
             raise inputs.refusal(refused, self.language, "lesson_world", (), **values) from None

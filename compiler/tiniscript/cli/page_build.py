@@ -54,7 +54,7 @@ def build(options: Namespace, language: str) -> None:
 
 def missing_parts() -> list[Part]:
     """Return what is fetched before the page can be built."""
-    node = [] if building.found_tools() is not None else [NODE]
+    node = [] if building.find_tools() is not None else [NODE]
     return node if building.are_fetched() else [*node, NPM]
 
 

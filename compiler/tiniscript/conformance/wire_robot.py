@@ -131,7 +131,7 @@ class WireRobot:
             else:
                 self._replies()
 
-    def heard(self, seconds: float) -> list[Frame]:
+    def receive(self, seconds: float) -> list[Frame]:
         """Return the replies of so long a time."""
         until_s = monotonic() + seconds
         frames: list[Frame] = []

@@ -50,12 +50,12 @@ def answers(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool
                 break
         if is_there:
             wire.receive(OVER_MS, OVER_MS)
-            return line, _greeted(wire, greeting, answer)
+            return line, _greet(wire, greeting, answer)
         hear(said)
     return None
 
 
-def _greeted(wire: Wire, greeting: bytes, answer: bytes) -> bool:
+def _greet(wire: Wire, greeting: bytes, answer: bytes) -> bool:
     for _ in range(TRIES):
         wire.send(greeting)
         if answer in wire.receive(ANSWER_MS):
@@ -99,7 +99,7 @@ def diagnose_line(
     if found is not None:
         return [found]
     if line.is_radio:
-        return [others.best() or _by_radio(heard)]
+        return [others.best_finding() or _by_radio(heard)]
     return _by_cable(wire, line, expected, heard, others, on_step)
 
 
@@ -132,10 +132,10 @@ class _Others:
         says nothing else."""
         found = self.look(heard)
         is_echo = _is_echo(heard, spoken)
-        if found is None and not (is_echo and self.best() is None):
+        if found is None and not (is_echo and self.best_finding() is None):
             found = self.ask(heard, not is_echo)
         if found is None and is_echo:
-            said = _beside(heard, spoken)
+            said = _text_beside(heard, spoken)
             found = sure(ECHO, said=said) if said else echo()
         return found
 
@@ -144,7 +144,7 @@ class _Others:
         if foreign.is_robot(heard):
             return probably("one_way")
         found = foreign.identify_board(heard)
-        return None if found is not None and found.name in foreign.GENERAL else self._judged(found)
+        return None if found is not None and found.name in foreign.GENERAL else self._judge(found)
 
     def ask(self, heard: bytes, may_be_text: bool) -> Finding | None:
         """Send the probes, and return what surely answers, or is surely text without them.
@@ -155,30 +155,30 @@ class _Others:
         for row in foreign.ROWS:
             if row.probe:
                 self._wire.send(row.probe)
-                found = self._judged(
+                found = self._judge(
                     foreign.identify_board(heard + self._wire.receive(self._wait_ms))
                 )
                 if found is not None:
                     return found
-        if (best := self.best()) is not None and best.cause == "at_firmware":
+        if (best := self.best_finding()) is not None and best.cause == "at_firmware":
             self._wire.send(foreign.ASKS_AT)
-            found = self._judged(
+            found = self._judge(
                 foreign.identify_board(heard + self._wire.receive(dialects.ANSWER_MS))
             )
             if found is not None:
                 return found
-        return self._judged(foreign.stranger(heard)) if may_be_text else None
+        return self._judge(foreign.stranger(heard)) if may_be_text else None
 
     def settle(self, heard: bytes) -> Finding | None:
         """Return what has sent these bytes, where no question would help."""
         found = foreign.identify_board(heard)
-        return None if found is None else self._judged(found)
+        return None if found is None else self._judge(found)
 
-    def best(self) -> Finding | None:
+    def best_finding(self) -> Finding | None:
         """Return what is probably there."""
         return self._kept[0] if self._kept else None
 
-    def _judged(self, found: Foreign | None) -> Finding | None:
+    def _judge(self, found: Foreign | None) -> Finding | None:
         if found is None:
             return None
         finding = Finding(found.name, found.is_sure, {"said": found.said})
@@ -205,7 +205,7 @@ def _echo_of_one_speed(wire: Wire, baud: int) -> Finding:
     return _module(wire, (baud,)) or sure(ECHO, said="")
 
 
-def _beside(heard: bytes, spoken: bytes) -> str:
+def _text_beside(heard: bytes, spoken: bytes) -> str:
     """Return the text that came with what was sent and came back, if any did."""
     for frame in spoken.split(b"\0"):
         heard = heard.replace(frame, b"") if frame else heard
@@ -270,6 +270,6 @@ def _by_cable(
     if found_bootloader is not None:
         board, is_alone = found_bootloader
         return [sure("bootloader_only", board=board.name) if is_alone
-                else others.best() or probably("other_sketch", said="")]  # fmt: skip
-    kept = others.best()
+                else others.best_finding() or probably("other_sketch", said="")]  # fmt: skip
+    kept = others.best_finding()
     return [kept or (probably("garbled", n=str(garbage)) if garbage >= FEW else probably("silent"))]

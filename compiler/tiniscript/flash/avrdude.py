@@ -128,7 +128,7 @@ class _Watch:
         self._began_s = self._heard_s = monotonic()
 
     def __call__(self, said: str) -> None:
-        now_s, found = monotonic(), seen(said)
+        now_s, found = monotonic(), parse_progress(said)
         self._look(found)
         if said != self._said:
             self._said, self._heard_s = said, now_s
@@ -146,7 +146,7 @@ def _attempt(said: str) -> int:
     return max(map(int, _ATTEMPT.findall(said)), default=0)
 
 
-def seen(said: str) -> StepProgress | None:
+def parse_progress(said: str) -> StepProgress | None:
     """Return the progress, from its whole output."""
     bars = _BAR.findall(said)
     names = [name for name, _ in bars]
@@ -161,7 +161,7 @@ def outcome(code: int, said: str) -> Ended:
     """Return the outcome, from its exit code and its whole output."""
     if code == 0:
         return Ended(DONE)
-    began_to_write = seen(said) is not None
+    began_to_write = parse_progress(said) is not None
     for how, pattern in _CAUSES:
         if re.search(pattern, said, re.IGNORECASE):
             if began_to_write and how != DIFFERS:

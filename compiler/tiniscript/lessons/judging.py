@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from tiniscript.base.fixed_point import ONE, as_text
 from tiniscript.lessons import place_judging
-from tiniscript.lessons.findings import STILL_CM, Finding, Task, between, in_cm, in_seconds
+from tiniscript.lessons.findings import STILL_CM, Finding, Task, in_cm, in_seconds, points_between
 from tiniscript.lessons.lesson import ANY_VALUE, TIME, Criterion, Lesson
 from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, Shown
 from tiniscript.lessons.variation import is_mirrored
@@ -35,7 +35,7 @@ WHERE = AT_END | {"reaches"}
 BEFORE = {"pauses": {"reaches"}, "beeps": {"reaches", "ends_in", "pauses"}}
 
 
-def judged(run: Run, lesson: Lesson) -> list[Finding]:
+def judge_run(run: Run, lesson: Lesson) -> list[Finding]:
     """Return what is missing in a run; nothing: it is right."""
     if run.ending == ASKS:
         return [Finding("", "asks")]
@@ -116,7 +116,9 @@ def _never_touches(criterion: Criterion, task: Task) -> Finding | None:
     touches = task.run.touches
     if criterion.places:
         place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
-        there = (at.ms for at in between(task.run.track) if math.dist(place, at[1:3]) <= within_cm)
+        there = (
+            at.ms for at in points_between(task.run.track) if math.dist(place, at[1:3]) <= within_cm
+        )
         there_ms = next(there, math.inf)
         touches = tuple(touch for touch in touches if touch.ms < there_ms)
     if not touches:

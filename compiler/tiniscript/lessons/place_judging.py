@@ -6,7 +6,15 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 
-from tiniscript.lessons.findings import STILL_CM, Finding, On, Task, between, in_cm, in_seconds
+from tiniscript.lessons.findings import (
+    STILL_CM,
+    Finding,
+    On,
+    Task,
+    in_cm,
+    in_seconds,
+    points_between,
+)
 from tiniscript.lessons.lesson import Criterion
 from tiniscript.lessons.running import DONE, LIMIT, STEP_MS, Run
 from tiniscript.lessons.variation import shape_of
@@ -93,7 +101,7 @@ def _count_reached(
 ) -> tuple[int, Finding | None]:
     """Return how many of its places the robot has reached in this order, and what is missing."""
     within_cm = criterion.numbers["within_cm"]
-    way = between(task.run.track)
+    way = points_between(task.run.track)
     points = iter(way)
     at = way[0]
     for count, number in enumerate(order):

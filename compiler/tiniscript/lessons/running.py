@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tiniscript.base.trace import Event
 from tiniscript.bytecode.image import Image
 from tiniscript.lessons.lesson import Lesson, Press
-from tiniscript.lessons.variation import pressed, varied
+from tiniscript.lessons.variation import presses_of, vary
 from tiniscript.link.remote import NOTHING
 from tiniscript.link.remote import pressed_of as held
 from tiniscript.robots.kinematics import Pose
@@ -111,9 +111,9 @@ class Trial:
     def __init__(self, image: Image, profile: Robot, lesson: Lesson, seed: int) -> None:
         """Raises WorldRefused where the robot does not fit into that world."""
         robot = self.robot = VirtualRobot(
-            profile, varied(lesson, seed), Settings(seed=seed, noise=lesson.noise, eeprom_us=0)
+            profile, vary(lesson, seed), Settings(seed=seed, noise=lesson.noise, eeprom_us=0)
         )
-        self._presses = pressed(lesson, seed)
+        self._presses = presses_of(lesson, seed)
         self._witness = _Witness(robot, seed, self._presses)
         self._asks = image.start == "PING"
         if self._asks:

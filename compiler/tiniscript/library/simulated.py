@@ -125,7 +125,7 @@ class Simulated(SimulatorThread):
 def _make_robot(profile: Robot, world: str, settings: Settings, language: Language) -> VirtualRobot:
     """Return the robot in its world. Raises UsageError."""
     try:
-        return VirtualRobot(profile.speaking(language), worlds.load(world), settings)
+        return VirtualRobot(profile.with_language(language), worlds.load(world), settings)
     except NoWebAssembly as why:
         how = install_advice.command(install_advice.VIRTUAL)
         raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None

@@ -63,7 +63,7 @@ def _causes(reasons: Sequence[Reason]) -> list[Reason]:
     return causes
 
 
-def shown(value: object) -> str:
+def printable_value(value: object) -> str:
     """Return a value from a file or a person in a form for a sentence: short and printable."""
     if isinstance(value, int) and value.bit_length() > 100:
         return "…"  # Python refuses to print very long integers

@@ -33,9 +33,9 @@ from tiniscript.studio.class_keeping import (
 )
 from tiniscript.studio.entrances import new_token
 from tiniscript.studio.hosted_robot import HostedRobot
-from tiniscript.studio.hosting import Hosting, listed, port_of
+from tiniscript.studio.hosting import Hosting, list_ports, port_of
 from tiniscript.studio.names import are_alike, free_name, plain_name
-from tiniscript.studio.robot_link import BadRequest, Json, robot_of, whole
+from tiniscript.studio.robot_link import BadRequest, Json, robot_of, whole_number
 from tiniscript.studio.serving import REQUEST_BYTES
 
 MOST_NAMES = 1000  # who has not been seen for longest is forgotten
@@ -320,7 +320,7 @@ class Classroom:
         if self._over:
             pupil.knows_end = True
             return {"over": self._over}
-        turn, waiting = self._turn(pupil), self._waiting()
+        turn, waiting = self._turn(pupil), self._waiting_pupils()
         place = -1 if turn is None else 0
         if pupil in waiting:
             place = waiting.index(pupil) + 1
@@ -393,7 +393,7 @@ class Classroom:
 
     def _tend(self) -> None:
         now_s = self._clock()
-        for pupil in self._waiting():
+        for pupil in self._waiting_pupils():
             if now_s - pupil.heard_s > QUEUE_S:
                 pupil.waits = None
         for robot in self._robots:
@@ -420,17 +420,17 @@ class Classroom:
             if not hosted.name and not hosted.was_left:  # another robot is better
                 robot.free_s = now_s + REST_S
             robot.end()
-        elif self._waiting() and (
+        elif self._waiting_pupils() and (
             now_s - robot.began_s >= self._turn_s or hosted.attending.silent_s > HERE_S
         ):
             robot.take_back()
 
     def _begin_turn(self, robot: ClassRobot, now_s: float) -> None:
-        here = [pupil for pupil in self._waiting() if now_s - pupil.heard_s <= HERE_S]
+        here = [pupil for pupil in self._waiting_pupils() if now_s - pupil.heard_s <= HERE_S]
         if here and self._hosting.is_free(robot.port):
             robot.begin(here[0], now_s)
 
-    def _waiting(self) -> list[Pupil]:
+    def _waiting_pupils(self) -> list[Pupil]:
         found = [(pupil.waits, pupil) for pupil in self._pupils.values() if pupil.waits is not None]
         return [pupil for _, pupil in sorted(found, key=lambda found: found[0])]
 
@@ -453,9 +453,9 @@ class Classroom:
             if given is not None:
                 self._give(given, request.get("gives") is True)
             elif do == "class_turn":
-                self._turn_s = whole(request, "seconds", SHORTEST_S, LONGEST_S)
+                self._turn_s = whole_number(request, "seconds", SHORTEST_S, LONGEST_S)
             elif do == "class_places":
-                self._places = whole(request, "places", 1, MOST_PUPILS)
+                self._places = whole_number(request, "places", 1, MOST_PUPILS)
             elif do == "class_code":
                 self.code = _new_code()
             elif do == "class_over":
@@ -595,10 +595,10 @@ class Classroom:
             if isinstance(code, str) and len(code) == CODE_LETTERS and set(code) <= set(LETTERS):
                 self.code = code
             with suppress(BadRequest):
-                self._places = whole(kept, "places", 1, MOST_PUPILS)
+                self._places = whole_number(kept, "places", 1, MOST_PUPILS)
             if not self._is_turn_given:
                 with suppress(BadRequest):
-                    self._turn_s = whole(kept, "turn_s", SHORTEST_S, LONGEST_S)
+                    self._turn_s = whole_number(kept, "turn_s", SHORTEST_S, LONGEST_S)
             return len(self._pupils)
 
     def _give(self, given: ClassRobot, is_given: bool) -> None:
@@ -630,7 +630,7 @@ class Classroom:
             return bool(self._over) and (are_told or now_s - self._over_s > OVER_S)
 
     def _state(self) -> Json:
-        now_s, waiting = self._clock(), self._waiting()
+        now_s, waiting = self._clock(), self._waiting_pupils()
         return {
             "code": self.code,
             "turn_s": self._turn_s,
@@ -735,4 +735,6 @@ def _new_code() -> str:
 def _name_of(port: str) -> str:
     """Return the name of the robot that was there last, or nothing."""
     same = same_for_all(port)
-    return next((str(item["name"]) for item in listed() if same_for_all(item["port"]) == same), "")
+    return next(
+        (str(item["name"]) for item in list_ports() if same_for_all(item["port"]) == same), ""
+    )

@@ -82,9 +82,9 @@ def ready(recording: Recording) -> Ready:
         raise BadRecording("other_program")
     sensors = _shown_sensors(compiled.program)
     places = map_of_compiled(compiled)
-    shows = {place.offset: sensors[its.span.start] for its, place in
+    shows = {place.offset: sensors[part.span.start] for part, place in
              zip(compiled.places, places.places, strict=True)
-             if its.span.start in sensors}  # fmt: skip
+             if part.span.start in sensors}  # fmt: skip
     names = {device.name for device in profile.kit.readings}
     lines = compiled.source.text.split("\n")
     reads = tuple(item.offset for item in places.places if names & _words(lines, item))

@@ -100,7 +100,7 @@ class RobotLink:
 
         Raises BadRequest, ConnectionLost.
         """
-        number, do = whole(request, "id", 0, MOST_COUNT), request.get("do")
+        number, do = whole_number(request, "id", 0, MOST_COUNT), request.get("do")
         if do == "stop":
             self.stop()
             self._answers.append({"id": number, "ok": True})
@@ -110,7 +110,7 @@ class RobotLink:
         if do != "keys" and sum(not item.is_keys for item in self._asked) >= MOST_WAITING:
             raise BadRequest
         make = _MAKERS[do](request)
-        limit_ms = whole(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
+        limit_ms = whole_number(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
         refused = self._refusal_of(request) if "image" in request else None
         if refused is not None:
             self._answers.append({"id": number, **self._failure(refused)})
@@ -299,15 +299,15 @@ def _trim(request: Json) -> _Make:
         result.get("is_exchanged") is True,
         result.get("is_left_reversed") is True,
         result.get("is_right_reversed") is True,
-        whole(result, "balance", -MOST_BALANCE, MOST_BALANCE),
-        whole(result, "least", 0, MOST_LEAST),
+        whole_number(result, "balance", -MOST_BALANCE, MOST_BALANCE),
+        whole_number(result, "least", 0, MOST_LEAST),
     )
     return lambda session: session.trim(trim.data())
 
 
 def _keys(request: Json) -> _Make:
-    keys = whole(request, "keys", 0, (1 << len(REMOTE_KEYS)) - 1)
-    held = Pressed(keys, *(whole(request, way, -MOST_PAD, MOST_PAD) for way in ("x", "y")))
+    keys = whole_number(request, "keys", 0, (1 << len(REMOTE_KEYS)) - 1)
+    held = Pressed(keys, *(whole_number(request, way, -MOST_PAD, MOST_PAD) for way in ("x", "y")))
     return lambda session: session.press(*held)
 
 
@@ -326,7 +326,7 @@ _MAKERS: dict[str, Callable[[Json], _Make]] = {
 }
 
 
-def whole(found: Json, name: str, low: int, high: int, usual: int | None = None) -> int:
+def whole_number(found: Json, name: str, low: int, high: int, usual: int | None = None) -> int:
     """Return a number of a request. Raises BadRequest."""
     number = found.get(name, usual)
     if type(number) is not int or not low <= number <= high:

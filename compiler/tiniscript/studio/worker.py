@@ -63,7 +63,7 @@ def _loose(fields: Answer, data: bytes) -> int:
 
 
 def _open(fields: Answer, data: bytes) -> Answer:
-    return _post_answer(checking.opened(data, fields["robot"], fields["language"]))
+    return _post_answer(checking.open_text(data, fields["robot"], fields["language"]))
 
 
 def _line(fields: Answer, data: bytes) -> Answer:

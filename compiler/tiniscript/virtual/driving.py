@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.robots.kinematics import Pose, moved, points
+from tiniscript.robots.kinematics import Pose, move_pose, points
 from tiniscript.robots.profile import Body
 from tiniscript.virtual.geometry import Point, Segment, distance, gap_between
 
@@ -198,7 +198,7 @@ class Driving:
                 free_cm -= speed * step_ms
                 is_known = False
             else:
-                expected = moved(self.body, pose, *self._pushed_wheel_speeds(pose), step_ms)
+                expected = move_pose(self.body, pose, *self._pushed_wheel_speeds(pose), step_ms)
                 pushed, free_cm = self._slide_along(pose, expected)
                 way.append(pushed)
                 is_known = True

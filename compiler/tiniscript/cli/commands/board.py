@@ -15,7 +15,7 @@ SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the plac
 
 
 def run(options: Namespace, language: str) -> int:
-    robot = inputs.wired_robot(options, language).speaking(language)
+    robot = inputs.wired_robot(options, language).with_language(language)
     if not robot.kit.has_remote:
         say_aside("board_no_remote", language, robot=robot.name, most=str(OWN_BESIDE_REMOTE))
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")

@@ -24,7 +24,7 @@ from tiniscript.conformance.kit import (
     LINK_VERSION,
     VERSION,
     NotMade,
-    link_kit,
+    link_test_suite,
     machine_cases,
 )
 from tiniscript.conformance.machine_process import CannotStart, MachineProcess
@@ -87,7 +87,7 @@ def _port(options: Namespace, language: str) -> int:
         raise CommandError(2, "conform_timeout")
     port = inputs.port(options.port)
     baud = baud_of(options, robots.load(robots.DEFAULT), language)
-    checks = port_checks.all_checks(link_kit())
+    checks = port_checks.all_checks(link_test_suite())
     checks = [check for check in checks if (options.only or "") in check.name]
     if not checks:
         raise CommandError(2, "conform_no_case", found=printable_name(options.only))
@@ -99,7 +99,7 @@ def _port(options: Namespace, language: str) -> int:
     verdicts: list[Verdict] = []
     try:
         wire.receive(0 if is_radio else BOOT_MS)
-        hello = port_checks.met(robot)
+        hello = port_checks.greet(robot)
         if not hello.status and hello.number("features") & OWNED:
             raise CommandError(3, "conform_owned")
         verdicts.extend(port_checks.verdicts(robot, checks))

@@ -56,7 +56,7 @@ def run(options: Namespace, language: str) -> int:
 
 def _esp32(options: Namespace, language: str) -> int:
     """Build and write the firmware of a robot with an ESP32, by PlatformIO alone."""
-    robot = inputs.robot(options, language).speaking(language)
+    robot = inputs.robot(options, language).with_language(language)
     values = {"robot": robot.name, "board": robot.board.chip}
     if options.build:
         firmware_build.upload(robot, None, options, language)

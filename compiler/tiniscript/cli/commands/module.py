@@ -11,7 +11,7 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.causes import rows
-from tiniscript.doctor.diagnosis import unopened
+from tiniscript.doctor.diagnosis import open_failure
 from tiniscript.doctor.findings import Finding, sure
 from tiniscript.doctor.system import System
 from tiniscript.link import ports
@@ -38,7 +38,7 @@ def run(options: Namespace, language: str) -> int:
     try:
         wire = Wire(ports.open_port(port, BAUDS[0]))
     except PortError as failure:
-        return _end(unopened(System(), port, failure)._replace(of="module"), language)
+        return _end(open_failure(System(), port, failure)._replace(of="module"), language)
     steps: list[Step] = []  # the speed, once a command for it may have been sent
     try:
         return _SetUp(wire, options, expected, language, steps).run()

@@ -57,7 +57,7 @@ def record(given: Input, options: Namespace, language: str) -> int:
     max_ms = thousandths("--max-time", options.max_time, MAX_MS, 0, MOST_MS, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     message = sensor_lists(options.sensor, robot, language)
-    world, form = recordings.kept(world_of(options, language))
+    world, form = recordings.stored_form(world_of(options, language))
     result = images.ready(given, robot, language, is_strict=True)
     if result is None:
         return 1
@@ -79,7 +79,7 @@ def record(given: Input, options: Namespace, language: str) -> int:
     head = recordings.head(
         VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=message
     )
-    whole = recordings.written(head, rows, end_ms)
+    whole = recordings.encode(head, rows, end_ms)
     outputs.write(Path(options.record), whole.encode(), "unwritable_more --record")
     if fault:
         text = fault_text(fault, fault_at or 0, result.places, given.is_image, language)
@@ -111,7 +111,7 @@ def play(given: Input, options: Namespace, language: str) -> int:
 
 def _read(given: Input) -> Ready:
     try:
-        return ready(recordings.read(given.data))
+        return ready(recordings.decode(given.data))
     except BadRecording as bad:
         values = {"file": inputs.printable_name(given.name), "line": str(bad.line)}
         raise CommandError(2, f"recording_{bad.reason}", **values) from None

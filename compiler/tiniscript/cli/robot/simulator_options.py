@@ -48,7 +48,7 @@ def make_robot(
     message = sensor_lists(options.sensor, profile, language)
     settings = Settings(seed=seed, noise=noise, motors=motors, told=message, baud=baud)
     with convert_refusal(world.name, language):
-        return VirtualRobot(profile.speaking(language), world, settings, memory)
+        return VirtualRobot(profile.with_language(language), world, settings, memory)
 
 
 @contextmanager

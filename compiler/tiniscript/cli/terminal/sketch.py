@@ -81,7 +81,7 @@ class Sketch:
         return most
 
     def draw(self, columns: int, rows: int, now_ms: float) -> list[Text]:
-        ahead = self.way.ahead(now_ms)
+        ahead = self.way.points_ahead(now_ms)
         view = self._view(columns, rows, ahead)
         corners = self.way.corners
         self.canvas.lines(map(view.dot, corners[max(0, self.joined - 1) :]))
