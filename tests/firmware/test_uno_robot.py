@@ -77,7 +77,7 @@ def test_a_program_drives(uno: Uno) -> None:
     wired.run(1100)
     assert states(uno) == OFF
     assert [event.name for event in wired.session.events()] == ["DONE"]
-    assert not uno.lost
+    assert not uno.lost_bytes
 
 
 def test_an_undo_writes_eight_bytes(uno: Uno) -> None:
@@ -159,7 +159,7 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
             )
             for name in ("left", "right")
         )
-        zero = max(byte.cycle for byte in uno.received if byte.cycle < on)
+        zero = max(byte.cycle for byte in uno.received_bytes if byte.cycle < on)
         taken.append(on - zero)
         wired.run(140)
     assert sorted(taken)[len(taken) * 3 // 4] <= LIVE_CYCLES
@@ -223,7 +223,7 @@ def test_a_radio_that_is_not_there_ends_nothing_and_a_second_of_silence_does(uno
     send(wired, AWAY)
     wired.run(300)
     assert states(uno) == FORWARD
-    last = max(byte.cycle for byte in uno.received)
+    last = max(byte.cycle for byte in uno.received_bytes)
     uno.run_ms(1500)
     assert states(uno) == OFF
     assert max(uno.pins[name].cycle for name in MOTORS) - last <= 1050 * CYCLES_PER_MS

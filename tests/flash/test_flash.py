@@ -349,7 +349,8 @@ def test_every_board_of_the_option_is_one_that_is_built() -> None:
     built = {name.partition("_")[0] for name in firmware_size.environments()}
     assert {board for board, _ in BOARDS.values()} == built
     brought = {
-        (robot.name, robot.board.chip, robot.board.language) for robot in firmware_files.shipped()
+        (robot.name, robot.board.chip, robot.board.language)
+        for robot in firmware_files.shipped_robots()
     }
     assert brought == {
         (robot or robots.DEFAULT, board, language)

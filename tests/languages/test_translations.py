@@ -32,7 +32,7 @@ from tiniscript.cli.texts import Said
 from tools import languages as tool
 from tools import translation_files, translators
 from tools.languages import check_lexicon, check_robot, pseudo
-from tools.translation_files import Translation, quoted, written
+from tools.translation_files import Translation, format_rows, quote
 
 ENGLISH = """
 [note]
@@ -377,7 +377,7 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
         '[verb]\na = "Open"\nb = ["Shut", "Open"]\n[door]\ndoor.own = "Open"\n[menu]\nd = "Open"\n',
     )
     own = opened(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
-    entries = [entry for entry in own.joined("some").entries.values() if not entry.is_same]
+    entries = [entry for entry in own.merge("some").entries.values() if not entry.is_same]
     assert [(entry.key, entry.english, entry.notes, entry.said[""]) for entry in entries] == [
         ("a", "Open", ["verb", "menu"], "Abrir"), ("b", "Shut", ["verb"], "Cierra"),
         ("door", "Open", [], "Abierta"),
@@ -407,8 +407,8 @@ TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"))
 @given(TEXTS, st.lists(TEXTS, min_size=2))
 def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
     forms = [{"": text} if text else {} for text in texts]
-    rows = written(key, forms, True) + written(f"{key}.", [{"": texts[0] or "x"}], False)
-    plural = written(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
+    rows = format_rows(key, forms, True) + format_rows(f"{key}.", [{"": texts[0] or "x"}], False)
+    plural = format_rows(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
     read, _, wrong = catalogue_source.rows(rows + plural)
     assert wrong == []
     assert {row.key: row.value for row in read} == {
@@ -421,7 +421,7 @@ def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
     ("a\nb\\", '"""\na\nb\\\\"""'), ('a\n"b"', '"""\na\n"b\\""""'), ("\t\x07", '"\\t\\u0007"'),
 ])  # fmt: skip
 def test_a_text_is_written_as_a_person_would(said: str, row: str) -> None:
-    assert quoted(said) == row
+    assert quote(said) == row
 
 
 def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
@@ -513,7 +513,7 @@ def test_what_is_missing_is_named_with_the_line_that_it_goes_after() -> None:
     said = {"": "x"}
     rows = [Entry("a", "A"), Entry("b", "B", said=said, line=7), Entry("c", "C", line=99),
             Entry("d", "D", said=said, line=3), Entry("e", "E")]  # fmt: skip
-    found = [(line, what.partition(" ")[0]) for line, what in tool.missing(rows)]
+    found = [(line, what.partition(" ")[0]) for line, what in tool.missing_rows(rows)]
     assert found == [(1, "a"), (7, "c"), (3, "e")]
 
 
@@ -723,7 +723,7 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
         """more = ["", "", '¡Fuera "x"!', "Ponlo."]\n"""
     )
     translation = opened(place)
-    assert problems(translation) == [] and translation.joined("some").entries["b", "Stop."].is_stale
+    assert problems(translation) == [] and translation.merge("some").entries["b", "Stop."].is_stale
     write(Path("xx.po"), said.replace("#, fuzzy", "#"))
     translators.exchange("xx.po", opened(place).english)
     languages.forget()
@@ -746,7 +746,7 @@ def test_a_language_goes_out_and_comes_back_with_every_text(
     assert translators.take(Path("out.po"), Translation(language, english)) == 0
     after = Translation(language, english)
     for name in english:
-        old, new = (translation.joined(name) for translation in (before, after))
+        old, new = (translation.merge(name) for translation in (before, after))
         assert new.problems == []
         for at, entry in old.entries.items():
             is_asked = not entry.is_same

@@ -370,7 +370,7 @@ def test_the_largest_program_takes_little_more_than_the_wire() -> None:
     assert profile.board.program_bytes == 8192
     robot = Esp32Robot(profile)
     robot.wait(300)
-    took = large_upload.uploaded(robot, profile.kit.fingerprint, 8192)
+    took = large_upload.upload(robot, profile.kit.fingerprint, 8192)
     robot.close()
     assert took.times <= large_upload.MUST
     assert took.sent_bytes < 8192 * 1.1

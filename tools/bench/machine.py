@@ -24,7 +24,7 @@ ROWS = ("TiniScript", "TiniScript, in the shipped sketch")
 def count(code: bytes, readings: Sequence[int], budget: int, *more: str) -> tuple[list[int], int]:
     """Return the values that the chip shows, and the cycles in `tick` in all."""
     request = pack(f"<BB{len(readings)}iH", budget, len(readings), *readings, len(code)) + code
-    text = avr_bench.run(avr_bench.built("cycles", avr_bench.SOURCES, *more), request)
+    text = avr_bench.run(avr_bench.build("cycles", avr_bench.SOURCES, *more), request)
     *shown, cycles, status = (line.split() for line in text)
     if status != ["STATUS", str(DONE)]:
         raise RuntimeError(f"the program did not end, or a tick was too long: {text[-5:]}")

@@ -44,7 +44,7 @@ tools/builds/firmware_files.py, which has made these, in TiniScript's source.
 """
 
 
-def shipped() -> list[Robot]:
+def shipped_robots() -> list[Robot]:
     """Return each shipped robot on each board that it fits, in each language."""
     return [
         robot
@@ -78,7 +78,7 @@ def build_all(target: Path, licence: Path) -> list[Path]:
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         new = Path(scratch) / "ready"
         new.mkdir()
-        paths = [build(robot, new) for robot in shipped()]
+        paths = [build(robot, new) for robot in shipped_robots()]
         (new / NOTICE).write_text(NOTICE_TEXT, encoding="utf-8")
         shutil.copy(licence, new / LICENCE_NAME)
         if target.exists():

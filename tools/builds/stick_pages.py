@@ -23,7 +23,7 @@ from tiniscript.base.languages import SOURCE, about, text, translated_languages
 from tiniscript.lessons import catalogue
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.plan import plan_of
-from tools.generate.built import built
+from tools.generate.built import build_all
 from tools.site.documents import language_of, name_in, sources
 
 STYLE = """\
@@ -50,11 +50,13 @@ def make(root: Path, folder: Path) -> None:
     """Write all pages into a folder, with an index in each language."""
     pages = {path: path.read_text(encoding="utf-8")
              for path in (*root.glob("*.md"), *root.glob("docs/**/*.md"))}  # fmt: skip
-    pages |= {root / name: made for name, made in built().items() if name.endswith("command.md")}
+    pages |= {
+        root / name: made for name, made in build_all().items() if name.endswith("command.md")
+    }
     expected = {(root / name).resolve() for name in sources(root, POSTER).values()}
     titles: dict[str, str] = {}
     for source, markdown in pages.items():
-        body, title = rendered(markdown)
+        body, title = render(markdown)
         expected |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
         body = LINK.sub(partial(_to_page, folder=source.parent, documents=list(pages)), body)
         name = source.relative_to(root).as_posix()
@@ -83,7 +85,7 @@ def page(title: str, body: str, language: str) -> str:
     )
 
 
-def rendered(text: str) -> tuple[str, str]:
+def render(text: str) -> tuple[str, str]:
     """Return the HTML of a Markdown text, whose headings have names as on GitHub, and its title."""
     reader = MarkdownIt("commonmark", {"html": False}).enable("table")
     tokens = reader.parse(text)

@@ -16,7 +16,7 @@ from tiniscript.robots.wiring.drawing import FONT
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
 from tools import ROOT
-from tools.generate.arena import FLOOR, WALL, WAY, arena, driven
+from tools.generate.arena import FLOOR, WALL, WAY, arena, drive_way
 from tools.site.documents import sources
 
 REFERENCE, GUIDE = "docs/en/language.md", "docs/en/monday.md"
@@ -81,7 +81,7 @@ def _path_pictures(command: str, robot: str, *runs: tuple[World, str, int]) -> s
     side, parts = 330 if len(runs) == 1 else 240, []
     scale = side / max(runs[0][0].width_cm, runs[0][0].height_cm)
     for k, (world, program, lasts_ms) in enumerate(runs):
-        way = driven(program, robot, world, lasts_ms)
+        way = drive_way(program, robot, world, lasts_ms)
         parts += arena(world, way, PAD + k * (side + PAD), PAD, scale)
     width = (len(runs) - 1) * (side + PAD) + world.width_cm * scale
     return _svg(command, width, world.height_cm * scale, parts)
@@ -105,7 +105,7 @@ def hand(command: str) -> str:
     """Return what a robot before something shows when a guide asks it for the distance."""
     [line, said] = re.findall(r'tsc live "(SHOW\(.*?\))"\n(\w+ \d+)', _text(GUIDES["en"]))[0]
     world, scale = before(int(said.split()[1])), 4.0
-    way = driven(f"SI|{line}", "tinibot", world, 200)
+    way = drive_way(f"SI|{line}", "tinibot", world, 200)
     front, wall = (PAD + x * scale for x in (way.points[0][0] + FRONT, world.width_cm))
     y = PAD + world.height_cm / 2 * scale
     parts = arena(world, way, PAD, PAD, scale)

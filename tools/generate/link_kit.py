@@ -21,7 +21,7 @@ from tiniscript.conformance.kit import LINK_FORM, LINK_VERSION
 from tiniscript.link.messages import MAJOR, MINOR
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
-from tools.generate.machine_kit import STEPS, TINIBOT, USUAL, Run, arithmetic, documented
+from tools.generate.machine_kit import STEPS, TINIBOT, USUAL, Run, arithmetic, documented_runs
 
 LONGEST_MS = 3000
 MOST_SHOWS = 40
@@ -33,7 +33,7 @@ BYTES = re.compile(r"((?:[0-9a-f]{2} ?)+)(?:   (.*))?$")
 
 def link_kit(command: str) -> str:
     """Return the text of the file: a line for each case."""
-    runs = [run for run in documented() if run.when == USUAL and not run.needs]
+    runs = [run for run in documented_runs() if run.when == USUAL and not run.needs]
     runs += [run for run in arithmetic() if answers_fault(run)]
     parts = {
         "programs": list(programs(runs)),

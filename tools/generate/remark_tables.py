@@ -9,7 +9,7 @@ from tiniscript.codegen.text.problems import OF_DEFS, PROBLEMS, REMARKS, problem
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answer_languages, language_number
 from tiniscript.robots.text_levels import LEVELS
-from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, packed
+from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, pack
 from tools.generate.text_tables import bytes_of_table, file_of, numbers_of
 
 SMALLEST = "uno"
@@ -147,7 +147,7 @@ def _table_function(function: str, table: str, at: str = "") -> list[str]:
 def _tables(language: str, rows: Sequence[str]) -> list[str]:
     """Return the texts of a language. On a board the linker leaves the others out."""
     language = language.title()
-    data = packed(rows)
+    data = pack(rows)
     lines = [data.texts[at : at + 16] for at in range(0, len(data.texts), 16)]
     return [
         f"const uint8_t k{language}[] tini_progmem = {{",
