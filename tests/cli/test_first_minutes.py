@@ -20,14 +20,14 @@ from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, requested_comman
 from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.live_state import Known
+from tiniscript.cli.robot.live_state import LiveState
 from tiniscript.library.other_robots import hints_among
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import LOOK_S, Event, MissedEvent, ShownEvent
 from tiniscript.link.payloads import DoneEvent
 from tiniscript.robots import given
 from tiniscript.virtual import directory
-from tiniscript.virtual.directory import Running
+from tiniscript.virtual.directory import RunningRobot
 from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import Transports
 
@@ -176,7 +176,7 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
 
     usb = tmp_path / "usb"
     known_ports.remember(str(usb), "TINI")
-    here = [Running("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
+    here = [RunningRobot("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
     monkeypatch.setattr(directory, "running_robots", lambda: here)
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
     usb.touch()
@@ -331,7 +331,7 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
 
 
 def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
-    known = Known(robots.load("tinibot").kit)
+    known = LiveState(robots.load("tinibot").kit)
     for line in ("exit", "QUIT", " Salir ", "exit;", "exit()", "quit ( ) ;"):
         assert requested_command(line, known) == LEAVE, line
     for line in ("help", "ayuda", "?", "HELP;"):
@@ -344,7 +344,7 @@ def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
 
 def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture[str]) -> None:
     """It is the smallest number: `Y = -2147483.647 - 0.001` gives it."""
-    known = Known(robots.load("tinibot").kit)
+    known = LiveState(robots.load("tinibot").kit)
     for before in (0, 1, 2):  # of the program's own, by chance
         catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
         for value in (*[MARK] * before, MARK, MARK, 7):
@@ -359,7 +359,7 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     def show(value: int) -> ShownEvent:
         return ShownEvent(value, 0)
 
-    known = Known(robots.load("tinibot").kit)
+    known = LiveState(robots.load("tinibot").kit)
     for end in ("STOPPED", "DONE"):
         catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
         assert not catch.hold(show(7))

@@ -18,7 +18,7 @@ from tests.support.texts import said as all_said
 from tests.support.verbs import parsers, words_of
 from tiniscript import robots
 from tiniscript.cli import help, main
-from tiniscript.cli.texts.options import OPTIONS, Option, of_verb, shown_of
+from tiniscript.cli.texts.options import OPTIONS, Option, options_of, shown_of
 from tiniscript.cli.texts.options import PROGRAM as A_PROGRAM
 from tiniscript.cli.texts.verbs import COMMANDS, FIRST, NOTES, VERBS, command_words, steps_of
 from tiniscript.cli.texts.verbs import of_verb as of_verb_text
@@ -44,7 +44,7 @@ def rows_of(said: str) -> list[str]:
 def flags_in_help(verb: str) -> list[str]:
     """Return the flags that a verb takes, without those that it takes in silence."""
     taken = {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
-    silent = [option for option in of_verb(verb) if option not in shown_of(verb)]
+    silent = [option for option in options_of(verb) if option not in shown_of(verb)]
     unsaid = {flag for option in silent if not option.is_argument for flag in option.flags.split()}
     assert unsaid <= taken
     return sorted(taken - unsaid)
@@ -205,7 +205,7 @@ WRITTEN = [name for name in robots.names() if robots.load(name).board.chip in AV
 def test_names_that_help_lists_are_those_that_there_are(
     verb: str, flag: str, names: list[str], language: str
 ) -> None:
-    (option,) = (option for option in of_verb(verb) if option.flags == flag)
+    (option,) = (option for option in options_of(verb) if option.flags == flag)
     listed = re.split(r"[^a-z0-9-]+", option.help(language))
     assert set(names) <= set(listed)
 
@@ -214,7 +214,7 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
     tsc: Tsc, tmp_path: Path
 ) -> None:
     """`upload`, which takes one too, needs a robot, `class` some, `lesson` a task: see theirs."""
-    takes = [verb for verb in VERBS if any(option.kind is A_PROGRAM for option in of_verb(verb))]
+    takes = [verb for verb in VERBS if any(option.kind is A_PROGRAM for option in options_of(verb))]
     assert takes == ["lesson", "check", "run", "compile", "show", "fmt", "upload", "class"]
     for verb in takes:
         assert "-e" in {flag for action in PARSERS[verb]._actions for flag in action.option_strings}

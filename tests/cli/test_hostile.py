@@ -192,7 +192,7 @@ def test_files_of_the_cache_may_be_anything(kind: str) -> None:
                 file.truncate(1 << 40)
         else:
             path.symlink_to("/dev/zero" if kind == "device" else path)
-    assert known_ports.remembered_ports() == known_ports.Known(None, {})
+    assert known_ports.remembered_ports() == known_ports.KnownPorts(None, {})
     assert directory.running_robots() == []
     assert registry.find_registration(port) is None
     assert registry.find_all() == []

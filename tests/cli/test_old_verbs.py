@@ -16,7 +16,7 @@ from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript.base.languages import FOLDER
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.options import choosers_of, chosen, of_verb
+from tiniscript.cli.texts.options import choosers_of, chosen, options_of
 from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, command_words
 from tiniscript.cli.verbless import is_help
 
@@ -82,7 +82,7 @@ def wrong_in(command: str) -> str | None:
         return words[0]
     name, _ = chosen(words[0] if words[0] in VERBS else "help", words[1:])
     known = {
-        flag for option in [*of_verb(name), *choosers_of(name)] for flag in option.flags.split()
+        flag for option in [*options_of(name), *choosers_of(name)] for flag in option.flags.split()
     }
     flags = [re.match("-[-a-z0-9]+", word) for word in words[1:]]
     given = [flag[0] for flag in flags if flag is not None and flag[0].startswith("--")]

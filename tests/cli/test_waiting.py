@@ -66,14 +66,14 @@ def test_who_waits_for_a_board_is_told_until_it_is_written(
     looks_on(monkeypatch)
     said = ""
 
-    def write(*given: object) -> avrdude.Ended:
+    def write(*given: object) -> avrdude.WriteResult:
         def is_said() -> bool:
             nonlocal said
             said += capsys.readouterr().err
             return "Waiting for the board on /dev/x …\n" in said
 
         until(is_said, "the sentence")
-        return avrdude.Ended(avrdude.DONE)
+        return avrdude.WriteResult(avrdude.DONE)
 
     monkeypatch.setattr(avrdude, "write", write)
     made = Ready("tinibot", "uno", "1", Path("x"))

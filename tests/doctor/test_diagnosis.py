@@ -18,7 +18,7 @@ from tests.support.simulated_ends import KIT, Firmware, Nobody
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
 from tiniscript.cli.texts.causes import sentences_of
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
-from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.examination import Expectations
 from tiniscript.doctor.findings import CAUSES
 from tiniscript.doctor.robot import SILENT
 from tiniscript.link import errors
@@ -91,7 +91,7 @@ class Case:
         self.watched = Shared(Reply(LOST))
         self.watch_ms = 0
         self.virtual: tuple[str, ...] = ()
-        self.expected = Expected(None, "tinibot", {KIT: "tinibot"}.get)
+        self.expected = Expectations(None, "tinibot", {KIT: "tinibot"}.get)
 
     def with_bluetooth(self, *paired: str, is_off: bool = False) -> Case:
         self.system.write("/sys/class/bluetooth/hci0/address", "0")

@@ -28,7 +28,7 @@ from tiniscript.base.translations import (
     read_own,
     read_seen,
 )
-from tiniscript.cli.texts import Said
+from tiniscript.cli.texts import Sentence
 from tools import languages as tool
 from tools import translation_files, translators
 from tools.languages import check_lexicon, check_robot, pseudo
@@ -268,7 +268,7 @@ def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
     ("en", "{n} checks", "1 check"), ("es", "{n} pruebas", "1 prueba"),
 ])  # fmt: skip
 def test_a_sentence_has_the_form_of_its_number(language: str, many: str, one: str) -> None:
-    said = Said(many)
+    said = Sentence(many)
     said.language = language
     assert said.format(n="1") == one
     assert said.format(n=0) != f"0 {one[2:]}"

@@ -24,7 +24,7 @@ from tiniscript.link import known_ports, ports
 if TYPE_CHECKING:  # without zeroconf there is none
     from zeroconf import ServiceInfo, Zeroconf
 
-    from tiniscript.link.transports.network import Announced
+    from tiniscript.link.transports.network import AnnouncedRobot
 
 
 @pytest.fixture
@@ -120,7 +120,7 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
         sender.join()
 
 
-def ours(found: list[Announced], number: int) -> list[Announced]:
+def ours(found: list[AnnouncedRobot], number: int) -> list[AnnouncedRobot]:
     """Those at a TCP port of this computer: a robot of the room may announce itself, too."""
     return [each for each in found if each.port == f"socket://127.0.0.1:{number}"]
 
@@ -207,7 +207,7 @@ def test_a_packet_may_announce_anything(
     """Written by hand: zeroconf refuses to announce some of these, and to believe others."""
     monkeypatch.setattr(network, "LISTED_S", 0.5)
     heard = ["_tcp", "a.b", "plain", "x" * 63, "\u202ex"]
-    found: list[Announced] = []
+    found: list[AnnouncedRobot] = []
 
     def all_are_heard() -> bool:
         found[:] = ours(network.list_robots(), 7007)

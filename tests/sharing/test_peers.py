@@ -167,7 +167,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
         address = f"socket://127.0.0.1:{number}"
-        note = directory.announce(directory.Running(address, "tinibot", "room", "", ""))
+        note = directory.announce(directory.RunningRobot(address, "tinibot", "room", "", ""))
         assert [each.address for each in directory.running_robots()] == [address]
         monkeypatch.setattr(peers, "is_of_another", lambda port: port == number)
         for _ in range(2):

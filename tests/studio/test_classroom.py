@@ -770,7 +770,7 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Kee
 
 def test_one_class_of_a_user_has_the_file(kept_at: Path, keeper: Keeper) -> None:
     keeper.keep(Room().made.state_to_keep())
-    with pytest.raises(class_keeping.Taken):
+    with pytest.raises(class_keeping.ClassTaken):
         Keeper()
     assert kept_at.exists()
     keeper.close()  # its command has ended

@@ -11,7 +11,7 @@ import pytest
 from tests.studio.runs_again import differs, recorded
 from tiniscript import compile, robots
 from tiniscript.studio import recordings
-from tiniscript.studio.playing import Parting, Played, play, ready
+from tiniscript.studio.playing import Parting, PlayedRun, play, ready
 from tiniscript.studio.recordings import BadRecording, Row, Rows, decode, encode, head
 
 LOOKS = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
@@ -266,7 +266,7 @@ def test_a_run_is_the_same_again(number: int) -> None:
 
 def test_a_played_run_takes_nothing_of_who_looks_on() -> None:
     data, rows = recorded(5)
-    played = Played(ready(decode(data)))
+    played = PlayedRun(ready(decode(data)))
     while not played.is_over:
         played.press(63, 100, 100)
         played.push()

@@ -59,7 +59,7 @@ def cycles() -> None:
         matches = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
         sketch = [f"{item:,.0f}" for item in matches]
     rows = zip(ROWS, (alone, sketch), strict=True)
-    page.show("machine", [(row, "thousandths", *its) for row, its in rows])
+    page.show("machine", [(row, "thousandths", *figures) for row, figures in rows])
     for why in filter(None, (avr_bench.missing(), uno.missing())):
         print(f"\n{why}")
 

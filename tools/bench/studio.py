@@ -126,7 +126,7 @@ def main() -> None:
         studio.browser(driver, is_whole=True) as browser,
     ):
         for rows in (_measure, _time_to_move, _drawing_cost):
-            matches += [(ROWS[name], *its) for name, *its in rows(browser, server.address)]
+            matches += [(ROWS[name], *cells) for name, *cells in rows(browser, server.address)]
         slowest_ms = _stopped_ms(browser)
     with studio.served(_packed_files()) as server:
         rated = _lighthouse_scores(server.address).values()

@@ -53,8 +53,8 @@ def main() -> int:
 def print_figures(found: dict[int, list[float]], _: Path) -> bool:
     """Print the figures; return whether the short line's are kept."""
     by_line = zip(*found.values(), strict=True)
-    page.show("text", [(row, *(f"{ms:.2f} ms" for ms in its))
-                       for row, its in zip(ROWS, by_line, strict=True)])  # fmt: skip
+    page.show("text", [(row, *(f"{ms:.2f} ms" for ms in figures))
+                       for row, figures in zip(ROWS, by_line, strict=True)])  # fmt: skip
     return all(short_ms <= MUST_MS for short_ms, _ in found.values())
 
 

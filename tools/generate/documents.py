@@ -100,11 +100,13 @@ def language_document(document: str, language: str) -> str:
     by_hand = set(re.findall(r"`([A-Z_]+)`", whole.partition("<!-- begin generated: fixed")[0]))
     words = [word for word in WORDS.values() if word.role.is_instruction]
     rows = {
-        "fixed": [f"`{it.usage.upper()}` = `{it.stands_for}`" for it in words if it.stands_for],
+        "fixed": [
+            f"`{word.usage.upper()}` = `{word.stands_for}`" for word in words if word.stands_for
+        ],
         "others": [
-            f"`{it.usage.upper()}` {as_block(it, language)}".rstrip()
-            for it in words
-            if not it.stands_for and it.text not in by_hand
+            f"`{word.usage.upper()}` {as_block(word, language)}".rstrip()
+            for word in words
+            if not word.stands_for and word.text not in by_hand
         ],
     }
     said = {key: text("documents", f"language/{key}", language) for key in rows}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tiniscript.base import languages
-from tiniscript.cli.texts import Said, text
+from tiniscript.cli.texts import Sentence, text
 
 
 class CommandError(Exception):
@@ -24,7 +24,7 @@ class CommandError(Exception):
             suggestion = text("did_you_mean", language).format(near=self.values["near"])
             try_it = f" {languages.text('messages', 'label/try', language)}  "
             what, advice, example = result.rpartition(try_it)  # what was typed may have it, too
-            return Said(
+            return Sentence(
                 f"{what} {suggestion}{advice}{example}" if advice else f"{result} {suggestion}"
             )
         return result

@@ -181,10 +181,10 @@ def _paragraphs(text: str, width: int) -> str:
 def _wrap(text: str, width: int) -> list[str]:
     """Return the lines of a text. What stands between backticks is not broken, if it fits."""
 
-    def kept(match: re.Match[str]) -> str:
+    def keep_spaces(match: re.Match[str]) -> str:
         return match[1].replace(" ", "\0") if len(match[1]) <= width else match[1]
 
-    whole = re.sub("`([^`]*)`", kept, text)
+    whole = re.sub("`([^`]*)`", keep_spaces, text)
     lines = wrap(whole, width, break_long_words=False, break_on_hyphens=False)
     return [line.replace("\0", " ") for line in lines]
 

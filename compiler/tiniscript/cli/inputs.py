@@ -13,7 +13,7 @@ from tiniscript.base.files import is_pipe
 from tiniscript.base.source import LARGEST_SOURCE, printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
-from tiniscript.cli.texts import Said, say_aside
+from tiniscript.cli.texts import Sentence, say_aside
 from tiniscript.library import named_robot
 from tiniscript.robots.profile import ProfileRefused, Robot
 
@@ -159,4 +159,6 @@ def refusal(
     lines = describe(why, language)
     if len(lines) == 1 and why.reasons[0][0].startswith(alone):
         return CommandError(2, "plain", said=lines[0])
-    return CommandError(2, key, reasons=Said("\n".join("  " + line for line in lines)), **values)
+    return CommandError(
+        2, key, reasons=Sentence("\n".join("  " + line for line in lines)), **values
+    )

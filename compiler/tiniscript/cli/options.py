@@ -16,7 +16,7 @@ from tiniscript.cli import paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.texts import text
-from tiniscript.cli.texts.options import Option, choosers_of, of_verb
+from tiniscript.cli.texts.options import Option, choosers_of, options_of
 from tiniscript.cli.texts.verbs import STEPS, command_words, steps_of, verb_text
 from tiniscript.robots.profile import Robot
 
@@ -45,7 +45,7 @@ class Options(ArgumentParser):
             f"tsc {self.verb}", add_help=False, allow_abbrev=False, formatter_class=plain
         )
         self.language = language
-        self.table = of_verb(command)
+        self.table = options_of(command)
         for option in self.table:
             self._add_option(option)
 
@@ -147,7 +147,7 @@ class Options(ArgumentParser):
 
 
 def _has(command: str, flag: str) -> bool:
-    return any(flag in option.flags.split() for option in of_verb(command))
+    return any(flag in option.flags.split() for option in options_of(command))
 
 
 def _suggestion(found: str, known: Sequence[str]) -> str:

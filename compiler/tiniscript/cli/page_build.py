@@ -44,12 +44,12 @@ def build(options: Namespace, language: str) -> None:
         fetching.install(install_advice.STUDIO, NODE, language)
     growing = fetching.FolderProgress(building.MODULES, building.NODE_MODULES_MB)
 
-    def seen(said: str) -> Step:
+    def read_step(said: str) -> Step:
         step = max(building.step(said), 0 if NPM in parts else 1)
         is_fetching = STEPS[step] == "fetch_npm_now"
         return Step(STEPS[step], growing.percent() if is_fetching else PERCENT[step])
 
-    fetching.run([sys.executable, "-m", building.MODULE], building.CLONE, seen, language)
+    fetching.run([sys.executable, "-m", building.MODULE], building.CLONE, read_step, language)
 
 
 def missing_parts() -> list[Part]:

@@ -37,14 +37,14 @@ def repair(given: Input, robot: Robot) -> Repaired:
     if not isinstance(text, str):
         return Repaired(given.data, 0, text)
 
-    def compiled(data: bytes) -> Compiled:
+    def compile_data(data: bytes) -> Compiled:
         return compiling.compile_input(given._replace(data=data), robot, is_strict=False)
 
-    result = repair_program(text, lambda changed: compiled(changed.encode()).diagnostics)
+    result = repair_program(text, lambda changed: compile_data(changed.encode()).diagnostics)
     new = result.text.encode()
     if given.data.startswith(_BOM):
         new = _BOM + new
-    return Repaired(new, result.repairs, compiled(new))
+    return Repaired(new, result.repairs, compile_data(new))
 
 
 def print_difference(old: bytes, new: bytes, name: str) -> None:

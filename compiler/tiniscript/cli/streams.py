@@ -19,7 +19,7 @@ import sys
 from time import monotonic
 from typing import Any, TextIO
 
-from tiniscript.cli.texts import Said
+from tiniscript.cli.texts import Sentence
 
 UNREAD_S = 1.0  # timeout for a reader when a command is interrupted
 NAME = "tiniscript_plain"  # of the handler of errors
@@ -148,7 +148,7 @@ def _write_all(stream: TextIO, pipe: int) -> bool:
 
 
 class Wrapping:
-    """A terminal that breaks sentences, each a `Said`, at its width. Frames and tables are none."""
+    """A terminal that breaks each `Sentence` at its width. Frames and tables are none."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
@@ -157,7 +157,7 @@ class Wrapping:
         return getattr(self._stream, name)
 
     def write(self, text: str) -> int:
-        if isinstance(text, Said):
+        if isinstance(text, Sentence):
             from shutil import get_terminal_size
 
             text = wrap(text, get_terminal_size().columns)
@@ -173,12 +173,12 @@ def wrap(said: str, columns: int) -> str:
     """Return a sentence in rows; what stands after two blanks is a command."""
     from textwrap import fill
 
-    def whole(command: re.Match[str]) -> str:
+    def keep_spaces(command: re.Match[str]) -> str:
         is_kept = len(command[0]) < columns or os.sep in command[0].partition(" ")[0]
         return command[0].replace(" ", "\0") if is_kept else command[0]
 
     rows = []
-    for row in _COMMAND.sub(whole, said).split("\n"):
+    for row in _COMMAND.sub(keep_spaces, said).split("\n"):
         indent = row[: len(row) - len(row.lstrip(" "))]
         filled = fill(row, columns, replace_whitespace=False, subsequent_indent=indent,
                       break_long_words=False, break_on_hyphens=False)  # fmt: skip

@@ -20,7 +20,7 @@ from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.options import chosen, of_verb
+from tiniscript.cli.texts.options import chosen, options_of
 from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, command_words, verb_text
 from tiniscript.cli.texts.verbs import of_verb as said_of
 
@@ -115,16 +115,16 @@ def verbs_for(said: str) -> list[str]:
 
 def _weights(verb: str) -> dict[str, int]:
     """Return what each stem of a command's texts counts."""
-    options = [option for option in of_verb(verb) if option.verbs not in ("*", "tsc")]
+    options = [option for option in options_of(verb) if option.verbs not in ("*", "tsc")]
 
-    def said(what: str) -> set[str]:
+    def stems_of(what: str) -> set[str]:
         return {stem for language in languages() for stem in _stems(said_of(verb, what, language))}
 
     helps = (option.help(language) for option in options for language in languages())
     flags = (option.flags for option in options)
-    weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | said("ends"), 1)
-    weights |= dict.fromkeys(said("says"), 2)
-    weights |= dict.fromkeys(said("summary"), 4)
+    weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | stems_of("ends"), 1)
+    weights |= dict.fromkeys(stems_of("says"), 2)
+    weights |= dict.fromkeys(stems_of("summary"), 4)
     weights |= dict.fromkeys(_stems(_names_in_languages(verb)), 6)
     return weights | dict.fromkeys(_stems(verb), 12)
 

@@ -22,7 +22,7 @@ from tiniscript.doctor.computer import (
     looks_wireless,
     without_driver,
 )
-from tiniscript.doctor.examination import Expected, Heard, examine
+from tiniscript.doctor.examination import Expectations, RobotAnswers, examine
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.line import Line
 from tiniscript.doctor.robot import SharedRobot
@@ -82,7 +82,7 @@ class Question(NamedTuple):
     port: str | None
     last: str | None
     baud: int
-    expected: Expected
+    expected: Expectations
     nonce: int
     watch_ms: int = 0
     virtual: tuple[str, ...] = ()
@@ -135,9 +135,9 @@ def _diagnose_open_port(
         )
     is_radio = is_radio and not port.startswith(PSEUDO)
     asked = Line(question.baud, is_radio, question.nonce)
-    expected, heard = question.expected, list[Heard]()
+    expected, heard = question.expected, list[RobotAnswers]()
 
-    def hear(each: Heard) -> None:
+    def hear(each: RobotAnswers) -> None:
         heard.append(each)
         expected.hear(each)
 

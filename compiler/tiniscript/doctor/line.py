@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
-from tiniscript.doctor.examination import Expected, examine
+from tiniscript.doctor.examination import Expectations, examine
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
 from tiniscript.flash.bootloaders import MEGA, NANO_OLD, UNO, Bootloader
@@ -80,7 +80,7 @@ class Line(NamedTuple):
 
 
 def diagnose_line(
-    wire: Wire, line: Line, expected: Expected,
+    wire: Wire, line: Line, expected: Expectations,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
     """Return what is at the other end. `on_step` gets what is done next, a short name."""
@@ -103,7 +103,7 @@ def diagnose_line(
     return _by_cable(wire, line, expected, heard, others, on_step)
 
 
-def _robot(wire: Wire, line: Line, expected: Expected) -> WireRobot:
+def _robot(wire: Wire, line: Line, expected: Expectations) -> WireRobot:
     kit = expected.kit or 0
     return WireRobot(wire, line.nonce, kit, RADIO_MS if line.is_radio else CABLE_MS)
 
@@ -188,7 +188,7 @@ class _Others:
         return None
 
 
-def _echo(wire: Wire, line: Line, expected: Expected) -> Finding:
+def _echo(wire: Wire, line: Line, expected: Expectations) -> Finding:
     """Return what sends back: a sketch has one speed, a wire has every one."""
     if line.is_radio:
         return probably("echo")
@@ -234,7 +234,7 @@ def _by_radio(heard: bytes) -> Finding:
 
 
 def _by_cable(
-    wire: Wire, line: Line, expected: Expected, heard: bytes, others: _Others,
+    wire: Wire, line: Line, expected: Expectations, heard: bytes, others: _Others,
     on_step: Callable[[str], None],
 ) -> list[Finding]:  # fmt: skip
     garbage = len(heard)

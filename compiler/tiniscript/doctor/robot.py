@@ -122,13 +122,13 @@ class SharedRobot(Robot):
         self.line.event(wait_ms / 1000)
 
     def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
-        def limited(session: Requester) -> PendingRequest[Any]:
+        def with_limit(session: Requester) -> PendingRequest[Any]:
             request: PendingRequest[Any] = getattr(session, name.lower())()
             request.limit_ms = SHARED_MS
             return request
 
         if self._unanswered < SILENT:
-            reply: Reply[SentReply] = self._wait(self.line.begin(limited))
+            reply: Reply[SentReply] = self._wait(self.line.begin(with_limit))
             if reply.status not in (LOST, CANCELLED):
                 self._unanswered = 0
                 return reply

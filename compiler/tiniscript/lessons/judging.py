@@ -15,7 +15,7 @@ from tiniscript.base.fixed_point import ONE, as_text
 from tiniscript.lessons import place_judging
 from tiniscript.lessons.findings import STILL_CM, Finding, Task, in_cm, in_seconds, points_between
 from tiniscript.lessons.lesson import ANY_VALUE, TIME, Criterion, Lesson
-from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, Shown
+from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, ShownValue
 from tiniscript.lessons.variation import is_mirrored
 from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import distance as distance_to
@@ -332,7 +332,7 @@ def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
     return Finding("shows", f"shows/{key}", values)
 
 
-def _should_show(shown: Shown, what: str, wanted: float, run: Run) -> float | None:
+def _should_show(shown: ShownValue, what: str, wanted: float, run: Run) -> float | None:
     """Return the thousandths that a value should be, or None for any."""
     if what == TIME:  # that of the moment, or of any since it has stopped
         return float(min(max(shown.value, _stopped_ms(shown, run)), shown.ms))
@@ -342,7 +342,7 @@ def _should_show(shown: Shown, what: str, wanted: float, run: Run) -> float | No
     return None if wanted == ANY_VALUE else wanted * ONE
 
 
-def _stopped_ms(shown: Shown, run: Run) -> int:
+def _stopped_ms(shown: ShownValue, run: Run) -> int:
     """Return since when the robot stood as it showed a value, or that moment if it drove."""
     since_ms = shown.ms
     for ms, *powers in run.motors:

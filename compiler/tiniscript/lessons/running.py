@@ -38,14 +38,14 @@ class Sample(NamedTuple):
     pose: Pose
 
 
-class Touch(NamedTuple):
+class Collision(NamedTuple):
     """It came against something: `what` is "wall", "box" or "border"."""
 
     ms: int
     what: str
 
 
-class Shown(NamedTuple):
+class ShownValue(NamedTuple):
     """A value of SHOW in thousandths (0 and 1 for yes/no), and where the robot was then."""
 
     ms: int
@@ -80,8 +80,8 @@ class Run(NamedTuple):
     fault: str
     end_ms: int
     track: tuple[Sample, ...]
-    touches: tuple[Touch, ...]
-    shown: tuple[Shown, ...]
+    touches: tuple[Collision, ...]
+    shown: tuple[ShownValue, ...]
     beeps: tuple[Beep, ...]
     switched: tuple[Switched, ...]
     motors: tuple[tuple[int, int, int], ...]
@@ -189,8 +189,8 @@ class _Witness:
         self.events = 0
         self._bumps = 0
         self._track: list[Sample] = []
-        self._touches: list[Touch] = []
-        self._shown: list[Shown] = []
+        self._touches: list[Collision] = []
+        self._shown: list[ShownValue] = []
         self._beeps: list[Beep] = []
         self._switched: list[Switched] = []
         self._on: dict[int, int] = {}
@@ -216,7 +216,7 @@ class _Witness:
             self._track.append(Sample(ms, pose))
         if robot.driving.bumps != self._bumps:
             self._bumps = robot.driving.bumps
-            self._touches.append(Touch(ms, self._nearest_obstacle(pose)))
+            self._touches.append(Collision(ms, self._nearest_obstacle(pose)))
 
     def _record_event(self, event: Event, ms: int, pose: Pose) -> None:
         if event.what == "MOTORS":
@@ -238,7 +238,7 @@ class _Witness:
         elif event.what == "SHOW":
             self._happened.append("shows")
             is_yes_no = event.text.endswith(("TRUE", "FALSE"))
-            self._shown.append(Shown(ms, event.values[0], is_yes_no, pose))
+            self._shown.append(ShownValue(ms, event.values[0], is_yes_no, pose))
 
     def _stops(self, ms: int) -> None:
         """Note a stop, before what it has shown in the same moment."""

@@ -160,14 +160,14 @@ class Client:
     ) -> PendingRequest[T]:
         """Begin a request with a timeout."""
 
-        def limited(session: Requester) -> PendingRequest[T]:
+        def with_limit(session: Requester) -> PendingRequest[T]:
             request = make(session)
             request.limit_ms = limit_ms or PATIENCE_MS
             return request
 
         self._heed()  # a robot that answers at once makes nobody wait
         with self._convert_loss():
-            return self.line.begin(limited)
+            return self.line.begin(with_limit)
 
     def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
         def watch() -> None:

@@ -22,19 +22,19 @@ _LINE = re.compile(
 )
 
 
-class Named(NamedTuple):
+class NamedRobot(NamedTuple):
     """The name as it is written, and its place."""
 
     name: str
     span: Span
 
 
-def named_robot(text: str) -> Named | None:
+def named_robot(text: str) -> NamedRobot | None:
     """Return the robot that a program names first, or None."""
     at = 0
     while at < len(text) and (line := _LINE.match(text, at)):
         if line["name"]:
-            return Named(line["name"], Span(*line.span("name")))
+            return NamedRobot(line["name"], Span(*line.span("name")))
         at = line.end()
     return None
 

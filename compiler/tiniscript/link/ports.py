@@ -19,7 +19,7 @@ from tiniscript.link.transports import Port, Transport
 
 if TYPE_CHECKING:
     from tiniscript.link.transports.bluetooth_search import SeenDevice
-    from tiniscript.link.transports.network import Announced
+    from tiniscript.link.transports.network import AnnouncedRobot
 
 OPEN_S = 20.0  # timeout of opening: a radio that is out of reach takes long
 # which ports a transport has; all others are of `serial`
@@ -89,7 +89,7 @@ def find_in_reach() -> list[SeenDevice]:
     return bluetooth.list_robots()
 
 
-def find_announced() -> list[Announced]:
+def find_announced() -> list[AnnouncedRobot]:
     """Return the robots that announce themselves in the network. Raises PortError."""
     with _convert_import_error():
         from tiniscript.link.transports import network

@@ -134,7 +134,7 @@ class PendingExchange(PendingRequest[T]):
         self.resumes: Interrupted | None = None
 
     @property
-    def wanted(self) -> PendingExchange[Any]:
+    def target(self) -> PendingExchange[Any]:
         """The exchange itself, or the one before which something else is done first."""
         return self if self.resumes is None else self.resumes.pending
 
@@ -236,10 +236,10 @@ class Session(Requester):
                 for pending_exchange in self._waiting
                 if pending_exchange is not request
             )
-        elif self._pending is None or self._pending.wanted is not request:
+        elif self._pending is None or self._pending.target is not request:
             return
         elif self._may_start():
-            self._pending.wanted.is_void = True
+            self._pending.target.is_void = True
             return
         else:
             self._pending = None
@@ -565,7 +565,7 @@ class Session(Requester):
     def _lose_seal(self, frame: Frame, now_ms: int) -> None:
         """The robot does not know our seal. Anybody may say so: nothing is done twice for that."""
         if self._pending and not self._pending.presses:
-            self._pending.wanted.may_be_done = True
+            self._pending.target.may_be_done = True
         if frame.epoch == self._epoch:
             self._authenticate_again(now_ms)
             return
@@ -676,8 +676,8 @@ class Session(Requester):
         self._epoch = frame.epoch
         if not is_same:
             self._told_epoch = None  # its epochs begin anew
-        if is_same and self._pending and self._pending.wanted.may_be_done:
-            self._pending.wanted.is_void = True
+        if is_same and self._pending and self._pending.target.may_be_done:
+            self._pending.target.is_void = True
         if self._handshake.is_in_doubt:
             is_fault = self._is_one_fault(robot.state, frame.epoch)
             # HELLO is not sealed: where that counts, anybody may have said what it says
@@ -694,8 +694,8 @@ class Session(Requester):
         """
         self._remote.let_go()
         for pending in (*self._waiting, *([self._pending] if self._pending else [])):
-            if began is None or pending.wanted.epoch != began:
-                pending.wanted.is_void = True
+            if began is None or pending.target.epoch != began:
+                pending.target.is_void = True
 
     def _tell_stop(self, event: StoppedEvent) -> None:
         """Tell that STOP has stopped the robot, if its event has not."""
@@ -708,7 +708,7 @@ class Session(Requester):
         still for so long. An answer to DATA that brings nothing new is no progress.
         """
         pending = self._pending
-        if pending is None or pending.wanted.is_whole or reply.status != OK:
+        if pending is None or pending.target.is_whole or reply.status != OK:
             return
         if isinstance(reply.values, NextReply):
             is_data = isinstance(self._transmission, Window)
@@ -909,7 +909,7 @@ class Session(Requester):
     def _lose(self, now_ms: int) -> None:
         """Give up: the robot does not answer, or is not ready."""
         assert self._pending
-        pending, self._pending = self._pending.wanted, None
+        pending, self._pending = self._pending.target, None
         # a robot that answers, but waits for too long, is not lost
         is_there = pending.waits_for and now_ms - pending.answered_ms <= DEAF_MS
         if pending.waits_for and not self._transmission.is_sent:
@@ -937,7 +937,7 @@ class Session(Requester):
 
     def _cancel(self, status: int) -> None:
         if self._pending:
-            expected = self._pending.wanted
+            expected = self._pending.target
             is_midway = status == CANCELLED and expected.is_midway
             expected.outcome = Reply(status, MIDWAY if is_midway else 0)
         self._pending = self._orphan = self._handshake.doubted = None

@@ -122,13 +122,13 @@ class _Checker(Scope):
     def take(self, values: Sequence[Value], span: Span, output: list[Statement]) -> int:
         """Add the readings that come before an instruction; return them as bits."""
         result = 0
-        for sensor in self.missing(values, self.surely_read):
+        for sensor in self.unread_sensors(values, self.surely_read):
             output.append(ir.Read(sensor, span))
             result |= 1 << sensor
         return result
 
     @staticmethod
-    def missing(values: Sequence[Value], read: int) -> tuple[int, ...]:
+    def unread_sensors(values: Sequence[Value], read: int) -> tuple[int, ...]:
         """Return the sensors in `values`, each once, in order, that `read` does not hold."""
         expected: list[int] = []
         for value in values:
@@ -260,7 +260,7 @@ class _Checker(Scope):
     def until(self, argument: ast.Argument, word: str = "UNTIL") -> ir.Until:
         """Return the check of an UNTIL or a WHEN."""
         value = self.condition(argument, word)
-        return ir.Until(self.missing([value], 0), value.terms)
+        return ir.Until(self.unread_sensors([value], 0), value.terms)
 
     def condition(self, argument: ast.Argument, word: str) -> Value:
         value = self.types.value(argument)
@@ -387,7 +387,7 @@ class _Checker(Scope):
                 value = self.condition(arm.condition, "ELSEIF" if arms else "IF")
             reads: tuple[int, ...] = ()
             if arms:
-                reads = self.missing([value], before | chain)
+                reads = self.unread_sensors([value], before | chain)
                 for sensor in reads:
                     chain |= 1 << sensor
             else:
@@ -415,7 +415,7 @@ class _Checker(Scope):
         if node.condition is not None:
             value = self.condition(node.condition, "WHILE")
         body = self.loop_body(node)
-        reads = self.missing([value], 0)
+        reads = self.unread_sensors([value], 0)
         output.append(ir.While(reads, value.terms, body, node.span))
 
     def break_(self, node: ast.Break, output: list[Statement]) -> None:

@@ -339,7 +339,8 @@ def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, st
     """Return the values of a diagnostic: `fix`, or an example, or none."""
     arguments = node.arguments or ()
     texts = [
-        source[Span(it.span.start, it.unit.end if it.unit else it.span.end)] for it in arguments
+        source[Span(argument.span.start, argument.unit.end if argument.unit else argument.span.end)]
+        for argument in arguments
     ]
     values: dict[str, str] = {}
     if len(texts) != 2 or not all(argument.is_plain for argument in arguments):

@@ -92,7 +92,7 @@ class Pupil:
 
 
 @dataclass(eq=False)
-class Kept:
+class KeptWork:
     """Work of who is not here. What comes from a file has no token and no address.
 
     `given_to` is the token of the pupil whose page the teacher wants to have it.
@@ -182,7 +182,7 @@ class Classroom:
         self._wrong = Rate(*WRONG)
         self._requests = Rate(*REQUESTS)
         self._numbers = count(1)  # of pupils, of places in the queue and of hands
-        self._kept: dict[str, Kept] = {}  # by key
+        self._kept: dict[str, KeptWork] = {}  # by key
         self._goes_on = False  # after a crash, and the teacher has not said otherwise
         self._over = ""  # or whether pupils' work is kept
         self._over_s = 0.0
@@ -251,18 +251,20 @@ class Classroom:
                 return {"failure": "class_crowded"}
             if self._works() >= MOST_WORKS:
                 return {"failure": "class_full"}
-            back = Kept(free_name(plain, self._names()), plain, NOTHING, new_token())
+            back = KeptWork(free_name(plain, self._names()), plain, NOTHING, new_token())
         self._begin(back, address, now_s)
         return {"token": back.token, "name": back.name}
 
-    def _begin(self, work: Kept, address: str, now_s: float) -> None:
+    def _begin(self, work: KeptWork, address: str, now_s: float) -> None:
         """Who has made this work is here from now on."""
         self._kept.pop(work.key, None)
         self._pupils[work.token] = Pupil(
             next(self._numbers), work.token, work.name, work.written, address, now_s, work.work
         )
 
-    def _returning_pupil(self, token: object, written: str, now_s: float) -> Pupil | Kept | None:
+    def _returning_pupil(
+        self, token: object, written: str, now_s: float
+    ) -> Pupil | KeptWork | None:
         """Return who comes back with the token of an earlier page, and the same name."""
         for pupil in self._all_work():
             is_here = isinstance(pupil, Pupil) and now_s - pupil.heard_s <= PLACE_S
@@ -281,7 +283,7 @@ class Classroom:
         """Return the names of all who have a token."""
         return [item.name for item in self._all_work() if item.token]
 
-    def _all_work(self) -> list[Kept | Pupil]:
+    def _all_work(self) -> list[KeptWork | Pupil]:
         return [*self._kept.values(), *self._pupils.values()]
 
     def _give_place_away(self, now_s: float, silent_s: float, pupils: list[Pupil]) -> bool:
@@ -296,12 +298,12 @@ class Classroom:
         """A pupil is here no more; the work stays, for who comes back."""
         del self._pupils[pupil.token]
         if pupil.work.text:
-            self._keep(Kept(pupil.name, pupil.written, pupil.work, pupil.token, pupil.address))
+            self._keep(KeptWork(pupil.name, pupil.written, pupil.work, pupil.token, pupil.address))
         for item in self._kept.values():
             if item.given_to == pupil.token:
                 item.given_to = ""
 
-    def _keep(self, kept: Kept) -> None:
+    def _keep(self, kept: KeptWork) -> None:
         self._kept[kept.key] = kept
 
     def _report_page(self, pupil: Pupil, request: Json) -> Json:
@@ -518,7 +520,7 @@ class Classroom:
             return
         if self._works() >= MOST_WORKS:
             raise BadRequest
-        self._keep(Kept(plain, plain, work))
+        self._keep(KeptWork(plain, plain, work))
 
     def _give_back(self, request: Json) -> None:
         """Give kept work to one pupil: their page puts it into the editor."""
@@ -709,13 +711,13 @@ def _rows(kept: Json, name: str) -> list[Json]:
     return [item for item in result if isinstance(item, dict)] if isinstance(result, list) else []
 
 
-def _work_of_row(row: Json, work: Work | None) -> Kept | None:
+def _work_of_row(row: Json, work: Work | None) -> KeptWork | None:
     """Return whose work it is in a row of a file; None if it is nobody's, or no work."""
     name = row.get("name")
     plain = plain_name(name) if isinstance(name, str) else ""
     if work is None or not plain:
         return None
-    result = Kept(plain, plain, work)
+    result = KeptWork(plain, plain, work)
     written, address = row.get("written"), row.get("address")
     result.written = (plain_name(written) if isinstance(written, str) else "") or plain
     result.address = address if isinstance(address, str) else ""

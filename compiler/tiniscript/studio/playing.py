@@ -98,7 +98,7 @@ def _words(lines: list[str], place: MapLocation) -> set[str]:
     return set(_WORD.findall(part[place.column - 1 : end].upper()))
 
 
-class Played(Simulation):
+class PlayedRun(Simulation):
     """The run of a recording, in `world` if it is a real robot's. It ends where the recording does.
 
     A program that waits for its button has it pushed. Raises WorldRefused.
@@ -385,9 +385,9 @@ class Played(Simulation):
         return Parting("unread", agreed, line, None, row, name, row.ms + started_ms)
 
 
-def play(ready: Ready, world: World | None = None) -> Played:
+def play(ready: Ready, world: World | None = None) -> PlayedRun:
     """Return the run, when it is over. Raises WorldRefused."""
-    played = Played(ready, world)
+    played = PlayedRun(ready, world)
     while not played.is_over:
         played.go(STEP_MS)
     return played

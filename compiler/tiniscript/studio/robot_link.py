@@ -116,13 +116,13 @@ class RobotLink:
             self._answers.append({"id": number, **self._failure(refused)})
             return
 
-        def limited(session: Requester) -> PendingRequest[Any]:
+        def with_limit(session: Requester) -> PendingRequest[Any]:
             pending = make(session)
             if do != "claim":  # it waits for a hand on the button
                 pending.limit_ms = limit_ms
             return pending
 
-        pending = self._connection.begin(limited)
+        pending = self._connection.begin(with_limit)
         self._asked.append(_Asked(number, pending, do in ("upload", "start"), do == "keys"))
 
     def stop(self) -> None:

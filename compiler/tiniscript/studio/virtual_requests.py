@@ -55,7 +55,7 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
         if fields.get("plays"):
             assert _opened is not None, "no run was opened"
             beside = None if _opened.recording.is_virtual else _world(where)
-            _simulation = playing.Played(_opened, beside, marks)
+            _simulation = playing.PlayedRun(_opened, beside, marks)
         elif "until_ms" in where:
             judged = (fields["robot"], where["lesson"], where["seed"], where["until_ms"])
             _simulation = _lessons().JudgedRun(*judged, data, marks)

@@ -224,7 +224,7 @@ class SimulatorThread:
         self._is_pushed = self._is_over = False
         self._bug: BaseException | None = None
         names = robot.profile.name, robot.world.name
-        self._note = directory.announce(directory.Running(self.port, *names, "", "", verb))
+        self._note = directory.announce(directory.RunningRobot(self.port, *names, "", "", verb))
         self._thread = Thread(target=self._run, name="virtual robot", daemon=True)
 
     def push(self) -> None:

@@ -28,11 +28,11 @@ from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.robot.port_rows import lines as lines_of_ports
 from tiniscript.cli.robot.port_rows import list_rows
 from tiniscript.cli.robot.simulator import running_address
-from tiniscript.cli.texts import Said, text
+from tiniscript.cli.texts import Sentence, text
 from tiniscript.cli.texts.causes import as_data, sentences_of
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis
-from tiniscript.doctor.examination import PINGS, Expected, Heard
+from tiniscript.doctor.examination import PINGS, Expectations, RobotAnswers
 from tiniscript.doctor.findings import OPEN
 from tiniscript.library import opening
 from tiniscript.link.authority import ownership_of
@@ -56,7 +56,7 @@ def run(options: Namespace, language: str) -> int:
         work = partial(_examine_member, expected)
         return run_together(options, inputs.robot(options, language), language, work)
     told: dict[str, str] = {}  # by a robot, of itself
-    heard: list[Heard] = []
+    heard: list[RobotAnswers] = []
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
     expected = expected._replace(note=told.update, hear=heard.append)
     diagnosis = diagnosis_of(options, _port(options), expected, language, watch_s * 1000)
@@ -77,7 +77,7 @@ def run(options: Namespace, language: str) -> int:
             if heard[-1].trips_ms:
                 lines.append(trips_in_words([*heard[-1].trips_ms], language))
         lines += ["", text("doctor_ports", language), *lines_of_ports(rows, language)]
-        print(Said("\n".join(lines)), flush=True)
+        print(Sentence("\n".join(lines)), flush=True)
     if options.report is not None:
         data = "\n".join(_report(diagnosis, told, language)) + "\n"
         outputs.write(Path(options.report), data.encode(), "unwritable_at --report")
@@ -96,7 +96,7 @@ def _port(options: Namespace) -> str | None:
     return None if port is None else inputs.port(port)
 
 
-def _examine_member(expected: Expected, connection: Connection, member: Member) -> Result:
+def _examine_member(expected: Expectations, connection: Connection, member: Member) -> Result:
     """Examine one of many robots as if it were the only one."""
     member.meet(connection)
     language = connection.language
@@ -115,7 +115,7 @@ def _examine_member(expected: Expected, connection: Connection, member: Member) 
     return Result(not wrong, "; ".join(rows), fields)
 
 
-def _description(port: str, heard: Heard, language: str) -> Description:
+def _description(port: str, heard: RobotAnswers, language: str) -> Description:
     """Return what a robot says about itself, of what it has answered."""
     info = device_info_of(heard.hello)
     trim = None if heard.trim is None else trim_from_reply(heard.trim)

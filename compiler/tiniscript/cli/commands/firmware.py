@@ -14,7 +14,7 @@ from tiniscript.cli.robot.description import describe_robot
 from tiniscript.cli.terminal.progress import Progress, show_wait
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.flash import avrdude
-from tiniscript.flash.avrdude import Ended, StepProgress
+from tiniscript.flash.avrdude import StepProgress, WriteResult
 from tiniscript.flash.bootloaders import BOARDS, UNO, Bootloader
 from tiniscript.flash.ready import Ready
 from tiniscript.link import ports
@@ -121,7 +121,7 @@ def _write(
 
 def _write_firmware(
     command: list[str], bootloader: Bootloader, port: str, firmware: Ready, language: str
-) -> Ended:
+) -> WriteResult:
     progress = Progress(language, 100)
     has_begun = False
 

@@ -11,7 +11,7 @@ from tiniscript.cli.lesson_check import check
 from tiniscript.cli.terminal import pager
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.cli.texts.options import LESSON_ACTIONS as ACTIONS
-from tiniscript.cli.texts.options import of_verb
+from tiniscript.cli.texts.options import options_of
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.lesson import Lesson, LessonRefused
 from tiniscript.lessons.markdown import as_text
@@ -47,7 +47,7 @@ def run(options: Namespace, language: str) -> int:
 
 def _refuse_others(options: Namespace, action: str) -> None:
     """Refuse what only goes with another action."""
-    for option in of_verb("lesson"):
+    for option in options_of("lesson"):
         is_others = any(option.name in item for item in ACTIONS.values())
         if is_others and option.name not in ACTIONS.get(action, ()):
             if getattr(options, option.name):

@@ -17,7 +17,7 @@ from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.description import introduce
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
-from tiniscript.cli.robot.live_state import Known, Line, Value, header, open_ends
+from tiniscript.cli.robot.live_state import Line, LiveState, Value, header, open_ends
 from tiniscript.cli.robot.remote_keys import TerminalRemote
 from tiniscript.cli.robot.run_monitor import INTERRUPTED, RunMonitor, stop_and_say
 from tiniscript.cli.texts import say, say_aside, text
@@ -44,7 +44,7 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(2, "keys_no_terminal")
     robot = inputs.robot(options, language)
 
-    known = Known(robot.kit)
+    known = LiveState(robot.kit)
     if line is not None and line != "-" and not _is_runnable(line, known, robot, options):
         return 1
     with Connection(options, robot, language) as connection:
@@ -59,7 +59,7 @@ def run(options: Namespace, language: str) -> int:
         return talk.run_line(line, is_last=True)
 
 
-def _is_runnable(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
+def _is_runnable(line: str, known: LiveState, robot: Robot, options: Namespace) -> bool:
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
     language: str = options.language
     if options.robot is None:
@@ -72,7 +72,7 @@ def _is_runnable(line: str, known: Known, robot: Robot, options: Namespace) -> b
 
 
 def _compile(
-    line: str, known: Known, robot: Robot, language: str, is_last: bool, room: int,
+    line: str, known: LiveState, robot: Robot, language: str, is_last: bool, room: int,
     warns: bool = True,
 ) -> Line | None:  # fmt: skip
     """Compile a line into at most `room` bytes of code, and print its diagnostics, those of a right
@@ -101,7 +101,7 @@ def _compile(
 class Repl:
     """Lines to a robot, one after the other."""
 
-    def __init__(self, connection: Connection, known: Known, options: Namespace) -> None:
+    def __init__(self, connection: Connection, known: LiveState, options: Namespace) -> None:
         self.connection = connection
         self.options = options
         self.language = connection.language
@@ -281,7 +281,7 @@ class Repl:
                 printer.tell(*found)
 
 
-def requested_command(line: str, known: Known) -> str:
+def requested_command(line: str, known: LiveState) -> str:
     """Return the command to tsc, not to the robot, that a line consists of, or an empty text.
 
     A name of the kit or of the user's program is no such command.
@@ -296,7 +296,7 @@ class Catch:
     """Hides the SHOW events that report a line's variables, and learns the values from them."""
 
     def __init__(
-        self, shown: tuple[str, ...], known: Known, printer: EventPrinter, says_done: bool
+        self, shown: tuple[str, ...], known: LiveState, printer: EventPrinter, says_done: bool
     ) -> None:
         self.shown = shown
         self.known = known
@@ -340,7 +340,7 @@ def _is_mark(event: ShownEvent) -> bool:
 
 
 @contextlib.contextmanager
-def _history(known: Known) -> Iterator[None]:
+def _history(known: LiveState) -> Iterator[None]:
     """Arrow keys bring back earlier lines, of earlier sessions too; Tab completes words."""
     if sys.platform == "win32":  # its console has a history of its own
         yield

@@ -14,7 +14,7 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import baud_of, open_client
 from tiniscript.cli.robot.in_reach import AT_ONCE, find_robots
 from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, list_rows
-from tiniscript.cli.texts import Said, text
+from tiniscript.cli.texts import Sentence, text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.library.known_kits import shipped_of_kit
@@ -87,5 +87,5 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "said": sentence,
         }
     if found is not None and (found.has_row or found.is_sure):
-        return {"answer": None, "said": Said(explain(found, language).said.rstrip("."))}
+        return {"answer": None, "said": Sentence(explain(found, language).said.rstrip("."))}
     return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}

@@ -65,7 +65,7 @@ def run(options: Namespace, language: str) -> int:
         if options.announce:
             name = options.name or f"{profile.name}-{transports.port}"
             announcement = _announcement(name, transports.port)
-        running = directory.Running(
+        running = directory.RunningRobot(
             transports.address, robot.profile.name, robot.world.name, options.name or "",
             transports.terminal,
         )  # fmt: skip

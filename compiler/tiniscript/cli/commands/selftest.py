@@ -17,7 +17,7 @@ from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.cli.texts import say, text
 from tiniscript.cli.texts.causes import as_data, rows
 from tiniscript.doctor import report
-from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.examination import Expectations
 from tiniscript.doctor.findings import CAUSES, OK, OPEN, WRONG, Finding, sure
 from tiniscript.library import opening
 
@@ -52,7 +52,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _without_robot(
-    options: Namespace, port: str | None, expected: Expected, failure: CommandError,
+    options: Namespace, port: str | None, expected: Expectations, failure: CommandError,
     language: str,
 ) -> list[Finding]:  # fmt: skip
     """Return what the doctor finds where no robot has answered.

@@ -100,7 +100,7 @@ def _serve(
 def _class_keeper() -> class_keeping.Keeper:
     try:
         return class_keeping.Keeper()
-    except class_keeping.Taken:
+    except class_keeping.ClassTaken:
         raise CommandError(3, "studio_two_classes") from None
 
 

@@ -41,9 +41,9 @@ def run(options: Namespace, language: str) -> int:
     if options.record is not None and (is_many or not is_followed):
         raise CommandError(2, "record_follows")
     if options.record is not None:
-        from tiniscript.cli.robot.recorded_run import known_robot, source_text
+        from tiniscript.cli.robot.recorded_run import require_known_robot, source_text
 
-        known_robot(robot)
+        require_known_robot(robot)
         options.recorded_text = source_text(given)
     if options.breaks and (is_many or not is_followed):
         raise CommandError(2, "break_follows")

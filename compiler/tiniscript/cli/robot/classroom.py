@@ -24,7 +24,7 @@ from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.robot.stopping import stop_one
 from tiniscript.cli.spreadsheet import escape_formula
 from tiniscript.cli.texts import say, say_aside, text
-from tiniscript.cli.texts.options import of_verb
+from tiniscript.cli.texts.options import options_of
 from tiniscript.link.errors import NOT_INSTALLED, PortError
 from tiniscript.link.port_connection import now_ms
 
@@ -88,7 +88,7 @@ class Classroom:
         from tiniscript.link.transports.broker import port_of
 
         ports = [port_of(*self.place, self.group, item.id) for item in found if item.is_here]
-        of_fleet = {option.name: option.unset for option in of_verb(UPLOAD)}
+        of_fleet = {option.name: option.unset for option in options_of(UPLOAD)}
         own = Namespace(**{**of_fleet, "port": None, **vars(self.options)})
         own.ports, own.verb = ports, verb
         if verb == UPLOAD:

@@ -20,7 +20,7 @@ from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import asking
 from tiniscript.cli.terminal.progress import Quiet, show_wait
-from tiniscript.cli.texts import Said, say_aside, text
+from tiniscript.cli.texts import Sentence, say_aside, text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
 from tiniscript.library.client import Client
@@ -294,7 +294,7 @@ class Connection(Client):
         if reason == FOREIGN:
             what, then = self.foreign()
             return CommandError(
-                3, reason, port=printable_name(self.port), what=Said(what), then=Said(then)
+                3, reason, port=printable_name(self.port), what=Sentence(what), then=Sentence(then)
             )
         return CommandError(3, reason, port=printable_name(self.port), id=f"{reply.detail:08x}")
 
@@ -403,7 +403,7 @@ def about_port(listed: ListedPort, language: str) -> str:
     return listed.description if is_told else text("port_built_in", language)
 
 
-def about_virtual(running: directory.Running, language: str) -> str:
+def about_virtual(running: directory.RunningRobot, language: str) -> str:
     """Return the description of a virtual robot; a shipped world has a name in each language."""
     from tiniscript.virtual import worlds
 
@@ -414,7 +414,7 @@ def about_virtual(running: directory.Running, language: str) -> str:
     return f"{running.name}: {sentence}" if running.name else sentence
 
 
-def _ask_port(language: str, can_bring: bool, virtual: list[directory.Running]) -> str:
+def _ask_port(language: str, can_bring: bool, virtual: list[directory.RunningRobot]) -> str:
     """Let the person choose a port, or one of the virtual robots."""
     names = known_ports.remembered_ports().names
     from tiniscript.link import ports

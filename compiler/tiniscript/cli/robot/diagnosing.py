@@ -17,7 +17,7 @@ from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
-from tiniscript.doctor.examination import PINGS, Expected, Heard, examine
+from tiniscript.doctor.examination import PINGS, Expectations, RobotAnswers, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
@@ -38,7 +38,7 @@ from tiniscript.virtual import directory
 
 
 def diagnosis_of(
-    options: Namespace, port: str | None, expected: Expected, language: str,
+    options: Namespace, port: str | None, expected: Expectations, language: str,
     watch_ms: int = 0, may_open: bool = False,
 ) -> Diagnosis:  # fmt: skip
     """Let the doctor look at a port, or at the one that there is; say what it does meanwhile.
@@ -62,23 +62,23 @@ def diagnosis_of(
         doing.end()
 
 
-def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expected:
+def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expectations:
     """Return the robot that the options name, and what this computer knows of all."""
     robot = inputs.robot(options, language)
     kit = None if options.robot is None else robot.kit.fingerprint
-    return Expected(kit, robot.name, name_of, _has_key, _doubt, pings=pings)
+    return Expectations(kit, robot.name, name_of, _has_key, _doubt, pings=pings)
 
 
 def examination_of(
-    connection: Connection, expected: Expected,
+    connection: Connection, expected: Expectations,
     on_step: Callable[[str], None] = lambda what: None,
-) -> tuple[list[Finding], Heard | None]:  # fmt: skip
+) -> tuple[list[Finding], RobotAnswers | None]:  # fmt: skip
     """Let the doctor examine a robot that has answered; return what it found and heard."""
     robot = SharedRobot(connection.line, connection.wait)
     reply = robot.hello()
     if reply is None:
         raise connection.failure(Reply(LOST))
-    heard: list[Heard] = []
+    heard: list[RobotAnswers] = []
     findings = examine(robot, reply, expected._replace(hear=heard.append), on_step=on_step)
     return findings, heard[-1] if heard else None
 

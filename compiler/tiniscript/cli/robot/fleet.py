@@ -42,7 +42,7 @@ NO_ROBOT = (
 )  # fmt: skip
 
 
-class Again(Exception):
+class Reconnect(Exception):
     """The connection to a robot has to be opened again."""
 
 
@@ -187,7 +187,7 @@ class Fleet:
     def _run(self, member: Member, work: Work) -> None:
         try:
             self._connect(member, work)
-        except Again:
+        except Reconnect:
             self._run(member, work)
             return
         except CommandError as failure:

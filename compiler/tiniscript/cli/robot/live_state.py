@@ -68,7 +68,7 @@ def open_ends(text: str) -> str:
     return "; ".join(reversed(ends))
 
 
-class Known:
+class LiveState:
     """The DEFs and the variables of a live session."""
 
     def __init__(self, kit: Kit) -> None:

@@ -17,7 +17,7 @@ from tiniscript.cli.robot.simulator_options import convert_refusal, world_of
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 from tiniscript.studio import recordings
-from tiniscript.studio.playing import SAME, STEP_MS, Parting, Played, Ready, ready
+from tiniscript.studio.playing import SAME, STEP_MS, Parting, PlayedRun, Ready, ready
 from tiniscript.studio.recordings import MOST_MS, VIRTUAL, BadRecording, Row
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual.robot import Settings
@@ -35,7 +35,7 @@ def refuse(options: Namespace, names: tuple[str, ...], key: str) -> None:
             raise CommandError(2, key, option="--" + name.replace("_", "-"))
 
 
-def known_robot(robot: Robot) -> None:
+def require_known_robot(robot: Robot) -> None:
     """Raise CommandError where nobody else could play a run of this robot."""
     if robot.name not in robots.names() or robots.load(robot.name).kit != robot.kit:
         raise CommandError(2, "record_robot", known=", ".join(robots.names()))
@@ -53,7 +53,7 @@ def record(given: Input, options: Namespace, language: str) -> int:
     refuse(options, NOT_RECORDED, "record_only")
     source = source_text(given)
     robot = inputs.robot_for(given, options, language)
-    known_robot(robot)
+    require_known_robot(robot)
     max_ms = thousandths("--max-time", options.max_time, MAX_MS, 0, MOST_MS, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     message = sensor_lists(options.sensor, robot, language)
@@ -95,7 +95,7 @@ def play(given: Input, options: Namespace, language: str) -> int:
         raise CommandError(2, "play_only", option="--world")
     world = run.recording.world or world_of(options, language)
     with convert_refusal(world.name, language):
-        played = Played(run, world)
+        played = PlayedRun(run, world)
     while not played.is_over:
         played.go(STEP_MS)
     started_ms = played.robot.started_ms or 0

@@ -17,12 +17,12 @@ from tiniscript.cli.robot.conversation import (
     YES,
     Conversation,
     NoPerson,
-    Turned,
+    WheelTurn,
     trim_from_answers,
 )
 from tiniscript.cli.robot.description import trim_in_words
 from tiniscript.cli.robot.diagnosing import examination_of
-from tiniscript.doctor.examination import Expected, Heard
+from tiniscript.doctor.examination import Expectations, RobotAnswers
 from tiniscript.doctor.findings import Finding, sure
 from tiniscript.library.known_kits import robot_of_kit
 from tiniscript.link.messages import RESETS, SAVED
@@ -42,11 +42,11 @@ ANSWERED = ("plain", "selftest_silent")  # failures that the robot has told: it 
 class SelfTest(Conversation):
     """The checks of a robot that has answered. `is_asking`: a person is beside it."""
 
-    def __init__(self, connection: Connection, expected: Expected, is_asking: bool) -> None:
+    def __init__(self, connection: Connection, expected: Expectations, is_asking: bool) -> None:
         super().__init__(connection, is_asking)
         self.expected = expected
         self.found: list[Finding] = []
-        self.heard: Heard | None = None
+        self.heard: RobotAnswers | None = None
         self.trim = Trim()
 
     def run(self) -> list[Finding]:
@@ -173,7 +173,7 @@ class SelfTest(Conversation):
         for side in SIDES:
             self._motor(side, is_lifted)
 
-    def _motor(self, side: str, is_lifted: bool) -> Turned | None:
+    def _motor(self, side: str, is_lifted: bool) -> WheelTurn | None:
         """Return what a person saw of a motor, which is found; None where nobody did."""
         try:
             if not is_lifted:
@@ -188,10 +188,10 @@ class SelfTest(Conversation):
         if not turned.wheel:
             self._add("still", side)
         else:
-            self._add("turns" if turned == Turned(side, True) else "other_turn", side)
+            self._add("turns" if turned == WheelTurn(side, True) else "other_turn", side)
         return turned
 
-    def _learns(self, left: Turned, right: Turned) -> bool:
+    def _learns(self, left: WheelTurn, right: WheelTurn) -> bool:
         """Have the robot keep how its motors are wired, if that is new and the person wants it."""
         trim = trim_from_answers(self.trim, left, right)
         if trim is None or trim == self.trim:

@@ -18,9 +18,9 @@ def stop_one(connection: Connection, member: Member) -> Result:
             return Result(True, text("held_back_short", connection.language))
         return Result(True, text("robot_stopped", connection.language))
     if may_be_opened(connection):
-        from tiniscript.cli.robot.fleet import Again
+        from tiniscript.cli.robot.fleet import Reconnect
 
-        raise Again
+        raise Reconnect
     raise CommandError(3, "not_confirmed", port=printable_name(connection.port))
 
 

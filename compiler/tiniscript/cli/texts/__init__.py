@@ -20,11 +20,11 @@ COUNTED = ("counted_bytes", "counted_checks")
 SEVERAL = 5  # as sentences have it
 
 
-class Said(str):
+class Sentence(str):
     """A sentence, or several: `format` makes all values printable.
 
     A value may come from a file or a robot: it must not move the cursor or begin a line. A value
-    that is a `Said` itself stays unchanged. Printed, it is still one: a terminal wraps it.
+    that is a `Sentence` itself stays unchanged. Printed, it is still one: a terminal wraps it.
     `language` is the one that it is in.
     """
 
@@ -33,7 +33,7 @@ class Said(str):
     def __str__(self) -> str:
         return self
 
-    def format(self, *values: object, **named: object) -> Said:
+    def format(self, *values: object, **named: object) -> Sentence:
         plain = {key: _printable(value) for key, value in named.items()}
         template = "".join(self)
         for key, value in plain.items():
@@ -44,18 +44,18 @@ class Said(str):
                         for n in (SEVERAL, int(value))
                     )
                     template = template.replace(several, form)
-        return Said(template.format(*map(_printable, values), **plain))
+        return Sentence(template.format(*map(_printable, values), **plain))
 
 
 def _printable(value: object) -> object:
-    if isinstance(value, str) and not isinstance(value, Said):
+    if isinstance(value, str) and not isinstance(value, Sentence):
         return printable(value, LONGEST)
     return value
 
 
 def text(key: str, language: str) -> str:
-    """Return a sentence as `Said`."""
-    result = Said(languages.text(CATALOGUE, key, language))
+    """Return the sentence with this key."""
+    result = Sentence(languages.text(CATALOGUE, key, language))
     result.language = language
     return result
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from tiniscript.cli.texts import Said, has_text, text
+from tiniscript.cli.texts import Sentence, has_text, text
 from tiniscript.doctor.findings import CAUSES, Finding
 from tiniscript.link import foreign
 from tiniscript.link.messages import RESETS
@@ -37,7 +37,7 @@ def sentences_of(
     if cause in ("no_port", "charging_cable") and filled.get("ports"):
         seen, then = "seen_no_port_others", "next_no_port_others"
     if cause in foreign.NAMES:
-        what, advice = (Said(each) for each in foreign.sentence(cause, language))
+        what, advice = (Sentence(each) for each in foreign.sentence(cause, language))
         if cause == foreign.ECHO:
             seen = "seen_echo_sketch"
         elif cause == foreign.TEXT and not filled["said"]:

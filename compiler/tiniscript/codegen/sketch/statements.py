@@ -36,7 +36,7 @@ class Comment(NamedTuple):
     text: str
 
 
-class Named(NamedTuple):
+class SketchNames(NamedTuple):
     """What things are called in C++. `reads` and `sets` are functions."""
 
     sensors: Sequence[str]
@@ -51,7 +51,7 @@ class Statements:
         self,
         source: Source,
         kit: Kit,
-        names: Named,
+        names: SketchNames,
         write: Expressions,
         comments: Sequence[Comment],
     ) -> None:

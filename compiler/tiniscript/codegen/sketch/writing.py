@@ -20,7 +20,7 @@ from tiniscript.codegen.sketch.names import (
     translated_name,
     with_locals,
 )
-from tiniscript.codegen.sketch.statements import Comment, Named, Statements, harmless
+from tiniscript.codegen.sketch.statements import Comment, SketchNames, Statements, harmless
 from tiniscript.codegen.sketch.wiring import SketchPlan, is_count, is_small
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
@@ -123,7 +123,7 @@ class _Sketch:
             variable: names.name_of(variable) for variable in dict.fromkeys(program.variables)
         }
         # values of two DEFs may have one name
-        self.named = Named(
+        self.named = SketchNames(
             *devices, procedures, [variables[variable] for variable in program.variables]
         )
         self.write = Expressions(self.use, self.is_exact, self.named.variables, self.named.sensors)

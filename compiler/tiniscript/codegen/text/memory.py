@@ -103,7 +103,7 @@ class Reader:
             self.has_room(0)
             self.length += 1
 
-    def numbered(self, number: int) -> None:
+    def emit_numbered(self, number: int) -> None:
         self.emit(1 if number < SHORTS else 2)
 
     def push(self) -> None:
@@ -187,7 +187,7 @@ class Reader:
         if self.token.kind == "=":
             self.assignment(name)
         elif name in self.sensors:
-            self.numbered(self.sensors[name])
+            self.emit_numbered(self.sensors[name])
             self.read |= 1 << self.sensors[name]
         elif name in self.defs:
             self.give(self.defs[name].values)
@@ -195,7 +195,7 @@ class Reader:
             self.emit(_JUMP)
         else:
             self.arguments()
-            self.numbered(self.actuators[name])
+            self.emit_numbered(self.actuators[name])
 
     def assignment(self, name: str) -> None:
         number = self.number_of(name, self.count)
@@ -207,7 +207,7 @@ class Reader:
         if number == self.count:
             self.variables[name] = number
             self.count += 1
-        self.numbered(number)
+        self.emit_numbered(number)
 
     def number_of(self, name: str, other: int) -> int:
         """Return the number of a variable, and `other` where there is none."""
@@ -235,7 +235,7 @@ class Reader:
         for number in values:
             self.push()
             self.value()
-            self.numbered(number)
+            self.emit_numbered(number)
             self.take_inner()
         if not values:
             self.take_inner()
@@ -359,10 +359,10 @@ class Reader:
             number = self.sensors[token.text]
             if not self.known >> number & 1:
                 self.known |= 1 << number
-                self.numbered(number)
-            self.numbered(number)
+                self.emit_numbered(number)
+            self.emit_numbered(number)
         else:
-            self.numbered(self.number_of(token.text, 0))  # TRUE and its kin are one byte, too
+            self.emit_numbered(self.number_of(token.text, 0))  # TRUE and its kin are one byte, too
         return True
 
     def number(self, token: Token) -> None:

@@ -76,12 +76,12 @@ def request_maker(
     if name == "press":
         given += (speaker,)
 
-    def limited(session: Requester) -> PendingRequest[Any]:
+    def with_limit(session: Requester) -> PendingRequest[Any]:
         request: PendingRequest[Any] = getattr(session, name)(*given)
         request.limit_ms = limit_ms
         return request
 
-    return limited
+    return with_limit
 
 
 def is_detached(message: JsonMessage) -> bool:

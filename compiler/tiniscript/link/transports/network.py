@@ -27,7 +27,7 @@ LONGEST = 63  # bytes of a name
 ROBOTS = 1000  # that a list keeps
 
 
-class Announced(NamedTuple):
+class AnnouncedRobot(NamedTuple):
     """A robot's name, and its address as a port."""
 
     name: str
@@ -52,7 +52,7 @@ def open_port(port: str, baud: int, limit_s: float) -> Port:
     return result
 
 
-def list_robots() -> list[Announced]:
+def list_robots() -> list[AnnouncedRobot]:
     """Return the robots that announce themselves. Raises PortError."""
     names: set[str] = set()
 
@@ -79,7 +79,7 @@ def list_robots() -> list[Announced]:
             if info is None:
                 continue
             try:
-                result.append(Announced(name.removesuffix(f".{SERVICE}"), _address(info)))
+                result.append(AnnouncedRobot(name.removesuffix(f".{SERVICE}"), _address(info)))
             except PortError:  # no robot has such an address
                 continue
     return result
