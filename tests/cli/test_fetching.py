@@ -38,7 +38,7 @@ import json, os, sys, time
 from importlib import metadata
 from pathlib import Path
 from tiniscript.studio import building
-assert Path.cwd() == building.CLONE and building.found_tools(), "no node"
+assert Path.cwd() == building.CLONE and building.find_tools(), "no node"
 for step in {building.STEPS!r}:
     print("build_studio:", step, file=sys.stderr, flush=True)
     {{work}}
