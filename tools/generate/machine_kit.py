@@ -170,12 +170,12 @@ class SlowRobot(TracedRobot):
 
 def answer_of(
     run: Run,
-    loaded: Callable[[bytes, Kit], Image] = load_image,
+    load_image: Callable[[bytes, Kit], Image] = load_image,
     machine_of: Callable[[bytes, Robot, int, int, int], Machine] = machine_of,
 ) -> list[str] | None:
     """Return what the machine in Python answers; None where no step of it takes time."""
     try:
-        code = loaded(run.image, run.kit).code
+        code = load_image(run.image, run.kit).code
     except Refused as refused:
         return [f"REFUSED {refused.name} {refused.offset}"]
     except ImageRefused as refused:
