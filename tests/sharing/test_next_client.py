@@ -43,7 +43,7 @@ Json = dict[str, Any]
 class SteppedLine:
     """The port of a simulated robot, without a thread."""
 
-    address, held_by, gone, heard, came, is_echoed, boot = "", "", None, 0, b"", False, 0
+    address, held_by, end_reason, heard, came, is_echoed, boot = "", "", None, 0, b"", False, 0
 
     def __init__(self) -> None:
         self.robot_itself, self.session = switched_on(), computer()

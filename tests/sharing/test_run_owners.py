@@ -29,7 +29,7 @@ PORT = "/dev/ttyUSB0"
 class FakeLine:
     """A line whose robot does what the test says: begins run 7, ends it, and tells events."""
 
-    address, gone, robot, held_by = PORT, None, None, ""
+    address, end_reason, robot, held_by = PORT, None, None, ""
     heard, came, is_echoed, boot, has_ended = 0, b"", False, 0, False
 
     def __init__(self) -> None:
