@@ -69,7 +69,7 @@ def python_of(folder: Path, system: str = os.name) -> Path:
     return folder / "Scripts" / "python.exe" if system == "nt" else folder / "bin" / "python"
 
 
-def said(key: str, **gaps: str) -> str:
+def sentence(key: str, **gaps: str) -> str:
     """Return a sentence in the person's language."""
     return in_language(SAID[key], **gaps)
 
@@ -105,7 +105,7 @@ def make(extras: str, root: Path = ROOT) -> Path:
         done_extras = []
     if extras not in done_extras:
         stamp.unlink(missing_ok=True)
-        say(said("installing"))
+        say(sentence("installing"))
         pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
         # Python compiles what it imports, a third of what there is.
         pip += ["--no-input", "--no-compile", "--editable", f"{root}{extras}"]
@@ -120,7 +120,9 @@ def make(extras: str, root: Path = ROOT) -> Path:
             log = root / ".venv" / "pip.log"
             log.write_text(completed.stdout, encoding="utf-8")
             rows = [row.strip() for row in completed.stdout.splitlines() if "ERROR:" in row]
-            _fail(said("no_pip", log=log.relative_to(root).as_posix(), end="\n".join(rows[-2:])))
+            _fail(
+                sentence("no_pip", log=log.relative_to(root).as_posix(), end="\n".join(rows[-2:]))
+            )
         stamp.write_text("\n".join((source, *done_extras, extras)), encoding="utf-8")
     return python
 
@@ -128,23 +130,23 @@ def make(extras: str, root: Path = ROOT) -> Path:
 def check_version(version: tuple[int, int]) -> None:
     """Exit with a sentence where this Python is too old."""
     if version < NEEDED:
-        get = said("get_windows" if os.name == "nt" else "get")
-        _fail(said("old", version=".".join(map(str, version)), get=get))
+        get = sentence("get_windows" if os.name == "nt" else "get")
+        _fail(sentence("old", version=".".join(map(str, version)), get=get))
 
 
 def _make_empty(folder: Path) -> None:
     import shutil
 
-    say(said("making"))
+    say(sentence("making"))
     try:
         if folder.exists():
             shutil.rmtree(folder)
     except OSError as why:  # Windows removes no program that runs
-        _fail(said("in_use", why=why.strerror or str(why)))
+        _fail(sentence("in_use", why=why.strerror or str(why)))
     if not _runs(Path(sys.executable), "-c", "import ensurepip"):
-        _fail(said("no_venv"))
+        _fail(sentence("no_venv"))
     if subprocess.run([sys.executable, "-m", "venv", str(folder)]).returncode:
-        _fail(said("no_venv"))
+        _fail(sentence("no_venv"))
 
 
 def _runs(python: Path, *words: str) -> bool:

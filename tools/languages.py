@@ -165,14 +165,16 @@ def main() -> int:
             print(f"{language}: no such language. Try:  python -m tools.languages {language}")
             return 1
         if language != SOURCE:
-            wrong += in_step(language, english, options.check, options.seen and options.seen[1:])
+            wrong += update_language(
+                language, english, options.check, options.seen and options.seen[1:]
+            )
         for row in check_lexicon(language):
             print(f"languages/{language}/lexicon.txt: no row of a lexicon: {row}")
             wrong += 1
     return 1 if wrong else 0
 
 
-def in_step(
+def update_language(
     language: str, english: dict[str, Catalogue], is_check: bool, seen: list[str] | None
 ) -> int:
     """Bring a language in step, and say what is wrong with it; return how much that is.
@@ -199,13 +201,13 @@ def in_step(
 def _heading(language: str) -> str:
     """Return what a new language says of itself, without Babel nearly nothing."""
     try:
-        from tools.translators import itself
+        from tools.translators import language_facts
     except ImportError:
         return heading(language, language, ("one", "other"), "n != 1")
-    return heading(*itself(language))
+    return heading(*language_facts(language))
 
 
-def missing(entries: Iterable[Entry]) -> Iterator[tuple[int, str]]:
+def missing_rows(entries: Iterable[Entry]) -> Iterator[tuple[int, str]]:
     """Yield what has no translation, with the line of the one before, after which it goes."""
     line = 1
     for entry in entries:
@@ -222,31 +224,36 @@ def report(own: Translation) -> int:
         if path.name != ITSELF and path.stem not in own.english:
             wrong += tell(path, [(1, f"there is no {SOURCE}/{path.name}")])
     entries: list[Entry] = []
-    lacks = stale = 0
+    missing_count = stale_count = 0
     for name in own.english:
-        catalogue = own.joined(name)
+        catalogue = own.merge(name)
         path = own.path(name)
         wrong += tell(path, [*check_robot(catalogue)] if name == "robot" else [])
         there = [entry for entry in catalogue.entries.values() if entry.seen or not entry.is_same]
         entries += there
-        stales = [entry for entry in there if entry.is_stale]
-        was = "its English text has changed, and so it is said in English"
-        stale += tell(
-            path, [(stale.line, f"{stale.key}: {was}: {stale.english}") for stale in stales]
+        stale_entries = [entry for entry in there if entry.is_stale]
+        change_text = "its English text has changed, and so it is said in English"
+        stale_count += tell(
+            path,
+            [
+                (stale_count.line, f"{stale_count.key}: {change_text}: {stale_count.english}")
+                for stale_count in stale_entries
+            ],
         )
         if own.language.is_complete:
-            lacks += tell(path, [*missing(there)])
+            missing_count += tell(path, [*missing_rows(there)])
     new = [entry for entry in entries if entry.seen == UNKNOWN]
     if new:
         print(f"{own.code}: {len(new)} texts are new. Note of which English texts they are:  "
               f"python -m tools.languages --seen {own.code}")  # fmt: skip
-    if stale:
-        print(f"{own.code}: {stale} texts are stale. Note of which English texts they are now:  "
+    if stale_count:
+        print(f"{own.code}: {stale_count} texts are stale. "
+              "Note of which English texts they are now:  "
               f"python -m tools.languages --seen {own.code} KEY ...")  # fmt: skip
     asked = [entry for entry in entries if not entry.is_same]
     done = sum(entry.is_translated for entry in asked)
     print(f"{own.code}: {done} of {len(asked)} texts are translated")
-    return wrong + (lacks + stale + len(new) if own.language.is_complete else 0)
+    return wrong + (missing_count + stale_count + len(new) if own.language.is_complete else 0)
 
 
 if __name__ == "__main__":

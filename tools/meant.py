@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from tiniscript import robots
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.library.compiling import compile_source
 from tiniscript.library.named_robot import robot_of
 
@@ -46,7 +46,7 @@ def figures(folder: Path) -> Figures:
     for path in sorted(folder.rglob("*.ts")):
         if path.name.endswith(MEANT):
             continue
-        result = image(fixed(path.read_text(encoding="utf-8"), check).text)
+        result = image(repair_program(path.read_text(encoding="utf-8"), check).text)
         meant = path.with_name(path.name.removesuffix(".ts") + MEANT)
         is_known = meant.exists()
         is_other = is_known and result not in (b"", image(meant.read_text(encoding="utf-8")))

@@ -256,7 +256,7 @@ def mutants(module: Module) -> list[Mutant]:
     return mutants
 
 
-def drawn(modules: Sequence[Module], count: int, seed: int, pattern: str = "*") -> list[Mutant]:
+def draw(modules: Sequence[Module], count: int, seed: int, pattern: str = "*") -> list[Mutant]:
     """Draw mutants in turn from each module, the same ones for the same seed and code."""
     rows = []
     for module in modules:
@@ -306,11 +306,11 @@ class Copy:
         if (ROOT / NODE_MODULES).is_dir():
             (folder / NODE_MODULES).symlink_to(ROOT / NODE_MODULES)
 
-    def tried(self, mutant: Mutant) -> str:
+    def try_mutant(self, mutant: Mutant) -> str:
         """Return what the tests of its module say of a mutant: what fails, or nothing."""
         result = self.notices(mutant, tests_of(mutant.file))
         named = TEST.match(result)  # one that fails without the mutant, too, notices nothing
-        if named and (why := self.failing([named[1]], is_page=mutant.file.endswith(".js"))):
+        if named and (why := self.first_failure([named[1]], is_page=mutant.file.endswith(".js"))):
             return f"undecided, without it, too: {why}"
         return result
 
@@ -321,12 +321,12 @@ class Copy:
         path.write_text(mutant.text, encoding="utf-8")
         os.utime(path, (status.st_atime, status.st_mtime + 2))  # Python looks at whole seconds
         try:
-            return self.failing(tests, is_page=path.suffix == ".js")
+            return self.first_failure(tests, is_page=path.suffix == ".js")
         finally:
             path.write_bytes(right)
             os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
 
-    def failing(self, tests: Sequence[str], *, is_page: bool = False) -> str:
+    def first_failure(self, tests: Sequence[str], *, is_page: bool = False) -> str:
         """Return what fails first of the tests, or nothing."""
         if is_page and (why := self._last_words(["-m", "tools.builds.studio", "--again"])):
             return f"the build: {why}"
@@ -368,7 +368,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--file", default="*", help="only files like this one")
     parser.add_argument("--list", action="store_true", help="only list them")
     options = parser.parse_args(arguments)
-    chosen = drawn(MODULES, options.count, options.seed, options.file)
+    chosen = draw(MODULES, options.count, options.seed, options.file)
     if options.list:
         print("\n".join(mutant.name for mutant in chosen))
         return 0
@@ -381,7 +381,7 @@ def main(arguments: list[str] | None = None) -> int:
             copy = Copy(Path(folder))
             for mutant in rest:
                 if mutant.name not in results:
-                    results[mutant.name] = copy.tried(mutant)
+                    results[mutant.name] = copy.try_mutant(mutant)
                     kept.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")
                 print(f"{mutant.name}: {results[mutant.name] or '**nothing**'}", flush=True)
 

@@ -12,9 +12,9 @@ from collections.abc import Iterable, Iterator
 
 from tiniscript import robots
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Source, applied
+from tiniscript.base.source import Source, apply_edits
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.library.compiling import analyzed, check_text
+from tiniscript.library.compiling import analyze, check_text
 from tiniscript.library.named_robot import robot_of
 from tiniscript.recovery import rewrites
 from tiniscript.recovery.lines import Step
@@ -27,18 +27,18 @@ OF_WHOLE_LINES = (
 )  # the readers that ask `search` what was meant
 
 
-def told(text: str) -> Iterator[str]:
+def trace(text: str) -> Iterator[str]:
     """Give lines on who reads a text, round by round, and on what is told of it."""
     kit = robot_of(text.encode(), robots.load(robots.DEFAULT)).kit
     rest = text
     for _ in range(ROUNDS):
-        result = analyzed(rest, kit).diagnostics
+        result = analyze(rest, kit).diagnostics
         if not any(each.is_mistake for each in result):
             break
-        wrong = Wrong(Source(rest), result, lambda each: analyzed(each, kit).diagnostics, kit)
+        wrong = Wrong(Source(rest), result, lambda each: analyze(each, kit).diagnostics, kit)
         findings = ((reader, reader(wrong)) for reader in READERS)
-        reader, its = next((each for each in findings if each[1].told), (None, None))
-        if reader is None or its is None:
+        reader, finding = next((each for each in findings if each[1].told), (None, None))
+        if reader is None or finding is None:
             yield f"{_line(rest)}: no reader, so usage.py says what it knows of the mistake"
             break
         yield f"{_line(rest)}: {reader.__name__.strip('_')}"
@@ -47,7 +47,7 @@ def told(text: str) -> Iterator[str]:
         for change in candidate.changes if candidate else ():
             for step in change.steps:
                 yield f"  {_step_text(step)}\n    by {row_of(step, kit)}"
-        rest = applied(rest, its.edits)
+        rest = apply_edits(rest, finding.edits)
     yield from map(_diagnostic_text, check_text(text, kit).diagnostics)
 
 
@@ -77,7 +77,7 @@ def _step_text(step: Step) -> str:
 
 
 def _diagnostic_text(diagnostic: Diagnostic) -> str:
-    values = {name: its for name, its in diagnostic.values.items() if its}
+    values = {name: value for name, value in diagnostic.values.items() if value}
     how = "" if diagnostic.repair is None else "made" if diagnostic.repair.is_sure else "offered"
     return f"{diagnostic.code.number} {values} {how}".rstrip()
 
@@ -86,7 +86,7 @@ def main(arguments: Iterable[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description="Say who reads a wrong program.")
     parser.add_argument("text", nargs="?", help="a program; without one it is read from stdin")
     text = parser.parse_args(None if arguments is None else [*arguments]).text
-    print(*told(sys.stdin.read() if text is None else text), sep="\n")
+    print(*trace(sys.stdin.read() if text is None else text), sep="\n")
 
 
 if __name__ == "__main__":

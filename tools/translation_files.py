@@ -15,12 +15,12 @@ from tiniscript.base.catalogue_source import UNKNOWN, Catalogue, Entry, Forms, P
 from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SEEN
 from tiniscript.base.translations import (
     Own,
-    joined,
+    merge_translations,
     pair,
     read_language,
     read_own,
     read_seen,
-    untold,
+    without_translation,
 )
 
 WIDTH = 100  # of a list in one row
@@ -45,9 +45,11 @@ class Translation:
     def path(self, name: str) -> Path:
         return self.folder / f"{name}.toml"
 
-    def joined(self, name: str) -> Catalogue:
+    def merge(self, name: str) -> Catalogue:
         """Return the English texts of a file with those of the language."""
-        return joined(self.english[name], name, self.own[name], self.seen, self.language)
+        return merge_translations(
+            self.english[name], name, self.own[name], self.seen, self.language
+        )
 
     def follow(self) -> Iterator[str]:
         """Put translations where their English texts are now; yield the keys of those that go."""
@@ -74,22 +76,22 @@ class Translation:
             yield f"{name}.toml: {row.key}"
             return
         row.key = new[0]
-        row.text = written(row.key, texts, len(texts) > 1)
+        row.text = format_rows(row.key, texts, len(texts) > 1)
         own.texts[row.key], own.lines[row.key] = texts, row.line
         self.seen[f"{name} {row.key}"] = hashes
 
     def _follow_places(self, name: str, own: Own, row: Row) -> None:
-        group, texts = self.paired(name, row.key), own.texts[row.key]
+        group, texts = self.pair_texts(name, row.key), own.texts[row.key]
         if group and (len(group) > 1 or len(texts) > 1):
             if (now := _without_end([entry.said for entry in group])) != texts:
                 own.texts[row.key] = now
-                row.text = written(row.key, now, len(group) > 1)
+                row.text = format_rows(row.key, now, len(group) > 1)
                 self._note(name, row.key, [entry.seen for entry in group])
 
-    def paired(self, name: str, key: str) -> list[Entry]:
+    def pair_texts(self, name: str, key: str) -> list[Entry]:
         """Return the texts of a key with their translations, none where that is not possible."""
         texts = self.own[name].texts.get(key, [])
-        group = [untold(entry) for entry in self.groups[name].get(key, [])]
+        group = [without_translation(entry) for entry in self.groups[name].get(key, [])]
         unknown = [UNKNOWN] * len(texts)
         hashes = [*self.seen.get(f"{name} {key}", []), *unknown][: len(texts)]
         return [] if pair(group, texts, hashes) else group
@@ -112,7 +114,7 @@ class Translation:
             for key in own.texts:
                 fitting = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
                 unused -= fitting
-                if group := self.paired(name, key):
+                if group := self.pair_texts(name, key):
                     new = (UNKNOWN, *[entry.seen for entry in group if fitting and entry.seen])
                     self._note(name, key, [entry.hash if entry.seen in new else entry.seen
                                            for entry in group])  # fmt: skip
@@ -128,7 +130,7 @@ class Translation:
         if own.texts.get(key) != texts and texts:
             if row is None:
                 own.rows.append(row := Row(key, None, 0, ""))
-            row.text = written(key, texts, len(group) > 1)
+            row.text = format_rows(key, texts, len(group) > 1)
             own.texts[key], own.lines[key] = texts, row.line
         if name != NAMES:
             self._note(name, key, [entry.seen for entry in group])
@@ -160,7 +162,7 @@ class Translation:
         yield self.folder / ITSELF, self.language.problems
         yield self.folder / SEEN, self.seen_problems
         for name in self.english:
-            yield self.path(name), self.joined(name).problems
+            yield self.path(name), self.merge(name).problems
 
 
 def tell(path: Path, problems: list[Problem]) -> int:
@@ -181,20 +183,20 @@ def _without_end(texts: list[Forms]) -> list[Forms]:
     return texts[: max((k for k, each in enumerate(texts, 1) if each), default=0)]
 
 
-def written(key: str, texts: list[Forms], is_list: bool) -> str:
+def format_rows(key: str, texts: list[Forms], is_list: bool) -> str:
     """Return the rows of a key."""
     head = key if _BARE.fullmatch(key) else _basic(key)
     if is_list:
-        parts = [quoted(text.get("", "")) for text in texts]
+        parts = [quote(text.get("", "")) for text in texts]
         row = f"{head} = [{', '.join(parts)}]\n"
         if len(row) <= WIDTH and row.count("\n") == 1:
             return row
         return f"{head} = [\n" + "".join(f"  {part},\n" for part in parts) + "]\n"
-    return "".join(f"{head}{'.' * bool(name)}{name} = {quoted(form)}\n"
+    return "".join(f"{head}{'.' * bool(name)}{name} = {quote(form)}\n"
                    for text in texts for name, form in text.items())  # fmt: skip
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     """Return a text as TOML has it, with as few signs as it can."""
     if "\n" in text:
         rows = ["".join(_SIGNS.get(item, item) if item != '"' else item for item in row)
@@ -218,8 +220,8 @@ def _control(text: str) -> str:
 def heading(name: str, english_name: str, forms: Iterable[str], rule: str) -> str:
     """Return what a new language says of itself."""
     return (
-        f"name = {quoted(name)}  # what it calls itself\n"
-        f"english_name = {quoted(english_name)}  # by which Windows may know it\n"
-        f"forms = [{', '.join(map(quoted, forms))}]  # of a text that counts\n"
-        f"which_form = {quoted(rule)}  # has the number n: the place in forms, from 0\n"
+        f"name = {quote(name)}  # what it calls itself\n"
+        f"english_name = {quote(english_name)}  # by which Windows may know it\n"
+        f"forms = [{', '.join(map(quote, forms))}]  # of a text that counts\n"
+        f"which_form = {quote(rule)}  # has the number n: the place in forms, from 0\n"
     )

@@ -53,7 +53,7 @@ def give(path: Path, own: Translation) -> int:
     plurals = f"nplurals={len(language.forms)}; plural=({language.rule});"
     catalog.mime_headers = [("Plural-Forms", plurals)]
     for name in own.english:
-        for entry in own.joined(name).entries.values():
+        for entry in own.merge(name).entries.values():
             if not entry.is_same:
                 _add(catalog, name, entry, language.forms)
     with path.open("wb") as file:
@@ -116,7 +116,7 @@ def _take_text(message: Message, forms: Forms, own: Translation) -> str:
     key = key if name != NAMES else english
     if key not in own.groups.get(name, {}):
         return f"there is no English text with the context {message.context or 'of nothing'}"
-    group = own.paired(name, key)
+    group = own.pair_texts(name, key)
     expected = (english, "".join(plural))
     entry = next((entry for entry in group if (entry.english, entry.plural) == expected), None)
     if entry is None:
@@ -130,7 +130,7 @@ def _take_text(message: Message, forms: Forms, own: Translation) -> str:
     return ""
 
 
-def itself(code: str) -> tuple[str, str, list[str], str]:
+def language_facts(code: str) -> tuple[str, str, list[str], str]:
     """Return what a language says of itself, as far as Unicode's CLDR knows it."""
     try:
         locale = Locale.parse(code)
@@ -138,7 +138,7 @@ def itself(code: str) -> tuple[str, str, list[str], str]:
         return code, code, *SIMPLE[0]
     name, english_name = (locale.get_display_name(item) or code for item in (code, "en"))
     count, rule = get_plural(code)
-    known = (*SIMPLE, (_names_of(count, rule, locale.plural_form), rule))
+    known = (*SIMPLE, (_cldr_categories(count, rule, locale.plural_form), rule))
     expected = [locale.plural_form(number) for number in range(NUMBERS)]
     fitting = (item for item in known if item[0] and _forms_by(*item) == expected)
     return name, english_name, *next(fitting, SIMPLE[0])
@@ -150,7 +150,7 @@ def _forms_by(names: list[str], rule: str) -> list[str]:
     return [names[form(number)] for number in range(NUMBERS)]
 
 
-def _names_of(count: int, rule: str, of_cldr: Callable[[int], str]) -> list[str]:
+def _cldr_categories(count: int, rule: str, of_cldr: Callable[[int], str]) -> list[str]:
     """Return how CLDR calls the forms of a rule of gettext, nothing if a form has no number."""
     form = c2py(rule)
     found = {form(number): of_cldr(number) for number in range(NUMBERS)}

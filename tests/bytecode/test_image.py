@@ -19,11 +19,11 @@ from tiniscript.bytecode.image import (
     ImageRefused,
     checksum,
     pack,
-    sealed,
     unpack,
+    with_checksum,
 )
 from tiniscript.bytecode.opcodes import FAULTS, ISA_MINOR
-from tiniscript.bytecode.verify import RULES, Refused, check, loaded
+from tiniscript.bytecode.verify import RULES, Refused, check, load_image
 
 KIT = robots.load("tinibot").kit
 CODE = bytes.fromhex("448c50")
@@ -44,7 +44,7 @@ def changed(offset: int, value: int, image: bytes = IMAGE) -> bytes:
     """Return an image with one byte changed and the checksum mended."""
     data = bytearray(image)
     data[offset] = value
-    return sealed(bytes(data))
+    return with_checksum(bytes(data))
 
 
 @pytest.mark.parametrize("start", ["SI", "SB", "PING"])
@@ -107,15 +107,15 @@ def test_an_image_of_version_1_says_which_it_is() -> None:
 
 def test_an_image_that_uses_no_device_runs_anywhere() -> None:
     image = compile_text("SI|F(5,80)", KIT).image
-    assert loaded(image, Kit((), ())).devices == 0
+    assert load_image(image, Kit((), ())).devices == 0
     used = compile_text("DISTANCE", KIT).image
-    assert loaded(used, KIT).devices == KIT.hashes[2]
+    assert load_image(used, KIT).devices == KIT.hashes[2]
     with pytest.raises(ImageRefused, match="OTHER_KIT"):  # there it is a key
-        loaded(used, Kit((), ()))
+        load_image(used, Kit((), ()))
     with pytest.raises(Refused, match="NO_SUCH_DEVICE"):
-        loaded(compile_text("PAD_Y", KIT).image, Kit(KIT.sensors * 3))
+        load_image(compile_text("PAD_Y", KIT).image, Kit(KIT.sensors * 3))
     with pytest.raises(ImageRefused, match="OTHER_KIT"):  # the code uses none, the header says so
-        loaded(pack("SI", 1, CODE), KIT)
+        load_image(pack("SI", 1, CODE), KIT)
 
 
 def test_a_kit_may_grow_after() -> None:
@@ -129,9 +129,9 @@ def test_a_kit_may_grow_after() -> None:
     for sensors in (more, others):
         kit = KIT._replace(sensors=sensors)
         assert kit.fingerprint != KIT.fingerprint
-        loaded(image, kit)
+        load_image(image, kit)
     grown = KIT._replace(actuators=(Device("LAMP", YES_NO, "", 0, 1),))
-    loaded(image, grown)
+    load_image(image, grown)
 
 
 @pytest.mark.parametrize(
@@ -145,14 +145,14 @@ def test_a_device_that_is_another_one_is_noticed(change: dict[str, object], uses
     sensors = (*KIT.sensors[:2], KIT.sensors[2]._replace(**change))  # type: ignore[arg-type]
     code = bytes.fromhex("3802") * uses
     image = pack("SI", KIT.hash_of_used([("sensor", 2)] * uses), code)
-    loaded(image, KIT)
+    load_image(image, KIT)
     with pytest.raises(ImageRefused, match="OTHER_KIT"):
-        loaded(image, Kit(sensors, ()))
+        load_image(image, Kit(sensors, ()))
 
 
 def test_the_code_is_verified_before_its_devices() -> None:
     with pytest.raises(Refused, match="UNKNOWN_OPCODE"):
-        loaded(pack("SI", 1, b"\xff"), KIT)
+        load_image(pack("SI", 1, b"\xff"), KIT)
     verdict = check(unpack(compile_text("SHOW(1 + TIME)", KIT).image), KIT)
     assert verdict.stack_values == 2 and verdict.uses == ()
     assert check(unpack(compile_text("S", KIT).image), KIT).stack_values == 0
@@ -237,7 +237,7 @@ def test_a_reader_made_from_the_specification_gives_the_same_reasons() -> None:
                 )
         image = bytes(data[: rng.choice((len(data), rng.randrange(len(data) + 1)))])
         if len(image) >= HEADER_BYTES and rng.randrange(2):
-            image = sealed(image)
+            image = with_checksum(image)
         expected = second_reader.refusal(image)
         met.add(expected)
         assert expected == (refusal(image) if expected else "")

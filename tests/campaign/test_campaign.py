@@ -125,7 +125,7 @@ def test_a_figure_is_old_when_what_it_tried_has_changed(
     second = committed("other", "2")
 
     def said(commit: str) -> str:
-        return results.measured(DONE, Result(25, 1, 7, 22, "", commit))
+        return results.figure_text(DONE, Result(25, 1, 7, 22, "", commit))
 
     assert said(first) == said(second) == "25"
     assert said("b" * 10) == said(f"{second}+") == "25, old"

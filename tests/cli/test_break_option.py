@@ -197,7 +197,7 @@ def test_a_key_that_is_pressed_while_the_program_runs_does_nothing(
     it.has_keys, it.is_halted, typed, asked = True, False, ["g", "", "s"], list[int]()
     monkeypatch.setattr(debugger.Debugger, "_resume", lambda self, how: asked.append(how))
     it.keys = Keys()
-    monkeypatch.setattr(it.keys, "pressed", lambda: typed.pop(0))
+    monkeypatch.setattr(it.keys, "read_pressed", lambda: typed.pop(0))
     it.look()
     it.is_halted = True
     it.look()

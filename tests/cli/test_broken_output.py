@@ -149,7 +149,7 @@ def test_only_robots_that_a_command_drives_are_stopped(
     monkeypatch.setattr(opening, "CONFIRM_S", 0.0)
     options = Namespace(verb=verb, detach=is_detached, json=True, ports=["/x", "/y"], all=False)
     with pytest.raises(BrokenPipeError):
-        fleet.together(options, robots.load("tinibot"), "en", lambda *_: pytest.fail("begun"))
+        fleet.run_together(options, robots.load("tinibot"), "en", lambda *_: pytest.fail("begun"))
     assert bool(stopped) == is_stopped
 
 
@@ -192,7 +192,7 @@ def test_a_port_that_vanishes_is_no_bug(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], which: int
 ) -> None:
     """The cable is pulled before the robot has said that it has kept what it was told."""
-    real = connect.Connection.do
+    real = connect.Connection.begin_request
     asked = []
 
     def do(self: connect.Connection, make: Any, limit_ms: int | None = None) -> Any:
@@ -202,7 +202,7 @@ def test_a_port_that_vanishes_is_no_bug(
             pty_robot.pull()
         return real(self, make, limit_ms)
 
-    monkeypatch.setattr(connect.Connection, "do", do)
+    monkeypatch.setattr(connect.Connection, "begin_request", do)
     done = inside(*words, "--port", pty_robot.port)
     assert len(asked) == which
     assert done.code == 3

@@ -263,7 +263,7 @@ def test_what_became_of_the_robots_is_the_exit_code(
         options=own, language="en", group="c", present=list, targets=lambda *_: own,
         broker=SimpleNamespace(stop=lambda _: True),
     ))  # fmt: skip
-    monkeypatch.setattr(classroom, "together", lambda *_: code)
+    monkeypatch.setattr(classroom, "run_together", lambda *_: code)
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
     monkeypatch.setattr("tiniscript.cli.inputs.program", lambda *_: SimpleNamespace(name="P"))
     monkeypatch.setattr("tiniscript.cli.inputs.robot_for", lambda *_: None)
@@ -302,7 +302,7 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
         asked.append(given)
         return 7
 
-    monkeypatch.setattr(classroom, "together", ask)
+    monkeypatch.setattr(classroom, "run_together", ask)
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
     if is_there:
         assert classroom.stop(cast(Classroom, room)) == 7 and len(asked) == 1
@@ -356,10 +356,10 @@ def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> N
 def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
     """Its firmware refuses the step: the sentence about a bad value would help nobody."""
     told = SimpleNamespace(
-        name="Tini", do=lambda make: None, failure=AssertionError, port="/dev/ttyUSB0",
+        name="Tini", begin_request=lambda make: None, failure=AssertionError, port="/dev/ttyUSB0",
         wait=lambda request: Reply(STATUSES["BAD_VALUE"]),
     )  # fmt: skip
-    told.ask = partial(Connection.ask, cast(Connection, told))
+    told.request = partial(Connection.request, cast(Connection, told))
     told.ask_or = partial(Connection.ask_or, cast(Connection, told))
     with pytest.raises(CommandError) as exception_info:
         robot_broker.use(cast(Connection, told), None, Namespace())

@@ -22,7 +22,7 @@ from tests.support.simulated_ends import Firmware
 from tiniscript.doctor import report
 from tiniscript.doctor.computer import ON, Adapter, Computer
 from tiniscript.doctor.findings import sure
-from tiniscript.link.ports import ListedPort, opened
+from tiniscript.link.ports import ListedPort, open_port
 from tiniscript.link.sharing import registry
 
 
@@ -118,7 +118,7 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
 
 def test_a_port_that_another_program_has_locked() -> None:
     with PtyEnd(Firmware()) as end:
-        holder = opened(end.port, 9600)
+        holder = open_port(end.port, 9600)
         done = inside("doctor", "--port", end.port)
         holder.close()
         assert done.code == 3

@@ -215,7 +215,7 @@ def test_a_long_way_stays_in_view_and_in_memory(monkeypatch: pytest.MonkeyPatch)
     for k in range(3000):
         way.set_motors(k * 500, 60 + k % 30, 90 - k % 41)
         if k % 10 == 0:
-            drawn = "\n".join(line.plain for line in way.drawn(30, 12, k * 500))
+            drawn = "\n".join(line.plain for line in way.draw(30, 12, k * 500))
             assert any(arrow in drawn for arrow in sketch.ARROWS)
             assert len(way.way.corners) <= 100
 

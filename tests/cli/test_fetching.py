@@ -38,7 +38,7 @@ import json, os, sys, time
 from importlib import metadata
 from pathlib import Path
 from tiniscript.studio import building
-assert Path.cwd() == building.CLONE and building.found_tools(), "no node"
+assert Path.cwd() == building.CLONE and building.find_tools(), "no node"
 for step in {building.STEPS!r}:
     print("build_studio:", step, file=sys.stderr, flush=True)
     {{work}}
@@ -282,11 +282,11 @@ def test_an_old_node_and_one_without_npm_are_none(
         (tmp_path / name).chmod(0o755)
 
     has("node", "24.0.0")
-    assert building.found_tools() is None
+    assert building.find_tools() is None
     has("npm", "9.2.0")
-    assert building.found_tools() is not None
+    assert building.find_tools() is not None
     has("node", "20.20.2")
-    assert building.found_tools() is None
+    assert building.find_tools() is None
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -294,7 +294,7 @@ def test_where_pip_may_install_nothing_it_says_what_to_install(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, language: str
 ) -> None:
     monkeypatch.setattr(serving, "PAGE", tmp_path)
-    monkeypatch.setattr(building, "found_tools", lambda: None)
+    monkeypatch.setattr(building, "find_tools", lambda: None)
     monkeypatch.setattr(install_advice, "is_managed", lambda: True)
     done = tsc("studio", "--no-browser", "--yes", "--lang", language)
     assert done.code == 2

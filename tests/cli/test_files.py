@@ -242,11 +242,11 @@ def names() -> set[str]:
 
 
 def test_a_lock_goes_with_its_command() -> None:
-    lock = registry.claimed("socket://127.0.0.1:1")
+    lock = registry.claim("socket://127.0.0.1:1")
     assert lock is not None
-    assert registry.claimed("socket://127.0.0.1:1") is None
+    assert registry.claim("socket://127.0.0.1:1") is None
     registry.tidy()
-    assert registry.claimed("socket://127.0.0.1:1") is None, "it is held"
+    assert registry.claim("socket://127.0.0.1:1") is None, "it is held"
     assert len(names()) == 1
     lock.close()
     lock.close()
@@ -258,13 +258,13 @@ def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
     with socket.create_server(("127.0.0.1", 0)) as gone:
         number = gone.getsockname()[1]
     code = (
-        "from tiniscript.link.sharing import registry; lock = registry.claimed('socket://x:1');"
+        "from tiniscript.link.sharing import registry; lock = registry.claim('socket://x:1');"
         f"registry.write(registry.Registration('socket://x:1', {number}, 't', 'a', 'link', 1, 2));"
         "print('held', flush=True); input()"
     )
     command = Command(code=code)
     command.until("held")
-    assert registry.claimed("socket://x:1") is None
+    assert registry.claim("socket://x:1") is None
     command.kill()
     assert len(names()) == 2
     assert json.loads(inside("doctor", "--ports", "--json").out) is not None
@@ -273,7 +273,7 @@ def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
 
 def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever had it left between our opening and our locking its file; another one came."""
-    first = registry.claimed("socket://x:1")
+    first = registry.claim("socket://x:1")
     assert first is not None
     real = registry._lock
     others: list[IO[bytes] | None] = []
@@ -282,11 +282,11 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
         if not others:
             others.append(None)
             first.close()
-            others.append(registry.claimed("socket://x:1"))
+            others.append(registry.claim("socket://x:1"))
         return real(file)
 
     monkeypatch.setattr(registry, "_lock", lock)
-    assert registry.claimed("socket://x:1") is None
+    assert registry.claim("socket://x:1") is None
     assert others[1] is not None, "one has it"
     others[1].close()
 

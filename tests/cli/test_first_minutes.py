@@ -16,18 +16,18 @@ from tests.support.link_events import event
 from tests.support.rows import each_row
 from tests.support.virtual_robot import Talk, robot_in
 from tiniscript import compile_text, robots
-from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, requested
+from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, requested_command
 from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.live_state import Known
-from tiniscript.library.other_robots import named_among
+from tiniscript.cli.robot.live_state import LiveState
+from tiniscript.library.other_robots import hints_among
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import LOOK_S, Event, MissedEvent, ShownEvent
 from tiniscript.link.payloads import DoneEvent
 from tiniscript.robots import given
 from tiniscript.virtual import directory
-from tiniscript.virtual.directory import Running
+from tiniscript.virtual.directory import RunningRobot
 from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import Transports
 
@@ -154,7 +154,7 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     upload.command.ended().gives(3, out="The robot was stopped from a computer.")
     done = inside("stop", *options)
     assert done.code == 3  # there is none any more
-    assert directory.running() == []
+    assert directory.running_robots() == []
 
 
 def test_stop_stops_all_that_are_in_use() -> None:
@@ -176,8 +176,8 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
 
     usb = tmp_path / "usb"
     known_ports.remember(str(usb), "TINI")
-    here = [Running("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
-    monkeypatch.setattr(directory, "running", lambda: here)
+    here = [RunningRobot("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
+    monkeypatch.setattr(directory, "running_robots", lambda: here)
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
     usb.touch()
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5", str(usb)]
@@ -185,7 +185,7 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
 
 
 def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ports, "listed", list)
+    monkeypatch.setattr(ports, "list_ports", list)
     with robot("--name", "KAT") as found:
         assert inside("doctor", "--ports", "--ask").code == 0
         assert inside("doctor", "--identify", "--all").code == 0
@@ -285,7 +285,7 @@ def test_up_to_three_robots_are_named() -> None:
     own = robots.load("tinibot").kit
     found = compile_text("LED(TRUE)", own)
     others = {f"R{k}": kit for k in range(5)}
-    (named,) = named_among(others, found.diagnostics, "LED(TRUE)", "tinibot", own)
+    (named,) = hints_among(others, found.diagnostics, "LED(TRUE)", "tinibot", own)
     assert named.values == {
         "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
     }  # fmt: skip
@@ -331,20 +331,20 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
 
 
 def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
-    known = Known(robots.load("tinibot").kit)
+    known = LiveState(robots.load("tinibot").kit)
     for line in ("exit", "QUIT", " Salir ", "exit;", "exit()", "quit ( ) ;"):
-        assert requested(line, known) == LEAVE, line
+        assert requested_command(line, known) == LEAVE, line
     for line in ("help", "ayuda", "?", "HELP;"):
-        assert requested(line, known) == HELP_ME, line
+        assert requested_command(line, known) == HELP_ME, line
     for line in ("", "S", "EXIT = 5", "SHOW(EXIT)", "exit 5", "QUIT; S"):
-        assert requested(line, known) == "", line
+        assert requested_command(line, known) == "", line
     known.defs["EXIT"] = "DEF EXIT; S; END_DEF"
-    assert requested("exit", known) == ""  # it is the person's own
+    assert requested_command("exit", known) == ""  # it is the person's own
 
 
 def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture[str]) -> None:
     """It is the smallest number: `Y = -2147483.647 - 0.001` gives it."""
-    known = Known(robots.load("tinibot").kit)
+    known = LiveState(robots.load("tinibot").kit)
     for before in (0, 1, 2):  # of the program's own, by chance
         catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
         for value in (*[MARK] * before, MARK, MARK, 7):
@@ -359,7 +359,7 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     def show(value: int) -> ShownEvent:
         return ShownEvent(value, 0)
 
-    known = Known(robots.load("tinibot").kit)
+    known = LiveState(robots.load("tinibot").kit)
     for end in ("STOPPED", "DONE"):
         catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
         assert not catch.hold(show(7))

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.text import Text
 
 from tiniscript.cli.commands import wiring
-from tiniscript.cli.terminal.canvas import Canvas, layered, put
+from tiniscript.cli.terminal.canvas import Canvas, merge_layers, put
 from tiniscript.cli.terminal.plot import ROWS, Plot, scale
 from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.cli.terminal.screen import BEGIN, END, Frame
@@ -179,7 +179,7 @@ def test_columns_of_values_only_grow() -> None:
 
 
 def plain(canvas: Canvas) -> list[str]:
-    return [line.plain for line in layered([(canvas, "")])]
+    return [line.plain for line in merge_layers([(canvas, "")])]
 
 
 @pytest.mark.parametrize(("dot", "seen"), [
@@ -225,7 +225,7 @@ def test_a_character_has_the_dots_of_all_layers_and_the_style_of_the_topmost() -
     top, below = Canvas(3, 1), Canvas(3, 1)
     top.lines([(0, 0), (0, 0)])
     below.lines([(0, 3), (3, 3)])
-    [line] = layered([(top, "red"), (below, "blue")])
+    [line] = merge_layers([(top, "red"), (below, "blue")])
     assert line.plain == "⣁⣀ "
     assert [(span.start, span.end, span.style) for span in line.spans] == [
         (0, 1, "red"), (1, 2, "blue"),

@@ -18,11 +18,11 @@ from tests.support.texts import said as all_said
 from tests.support.verbs import parsers, words_of
 from tiniscript import robots
 from tiniscript.cli import help, main
-from tiniscript.cli.texts.options import OPTIONS, Option, of_verb, shown_of
+from tiniscript.cli.texts.options import OPTIONS, Option, options_of, shown_of
 from tiniscript.cli.texts.options import PROGRAM as A_PROGRAM
-from tiniscript.cli.texts.verbs import COMMANDS, FIRST, NOTES, VERBS, steps_of, typed
+from tiniscript.cli.texts.verbs import COMMANDS, FIRST, NOTES, VERBS, command_words, steps_of
 from tiniscript.cli.texts.verbs import of_verb as of_verb_text
-from tiniscript.cli.texts.verbs import said as said_in
+from tiniscript.cli.texts.verbs import verb_text as said_in
 from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.robots.ports import AVRS
 from tiniscript.virtual import worlds
@@ -44,7 +44,7 @@ def rows_of(said: str) -> list[str]:
 def flags_in_help(verb: str) -> list[str]:
     """Return the flags that a verb takes, without those that it takes in silence."""
     taken = {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
-    silent = [option for option in of_verb(verb) if option not in shown_of(verb)]
+    silent = [option for option in options_of(verb) if option not in shown_of(verb)]
     unsaid = {flag for option in silent if not option.is_argument for flag in option.flags.split()}
     assert unsaid <= taken
     return sorted(taken - unsaid)
@@ -56,7 +56,7 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
     tsc: Tsc, verb: str, language: str
 ) -> None:
     """And whether it takes a value."""
-    words = typed(verb).split()
+    words = command_words(verb).split()
     valued = [] if words[-1] in words_of(verb) else ["x"]
     done = tsc(*words, *valued, "--help", "--lang", language).gives(0)
     rows = [row for row in rows_of(done.out) if not row.startswith("tsc ")]
@@ -85,8 +85,8 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
 def test_help_fits_a_terminal(language: str, columns: int) -> None:
     for said in (
         help.overview(language, columns),
-        help.everything(language, columns),
-        *(help.of(command, language, columns) for command in COMMANDS),
+        help.full_help(language, columns),
+        *(help.help_of(command, language, columns) for command in COMMANDS),
     ):
         too_long = [line for line in said.splitlines() if len(line) > columns]
         # a word is not broken: a name of a file, or of many fields
@@ -99,9 +99,9 @@ def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
     def words(text: str) -> str:
         return " ".join(text.replace("`", "").split())
 
-    everything = help.everything(language)
+    everything = help.full_help(language)
     for command in COMMANDS:
-        said = help.of(command, language)
+        said = help.help_of(command, language)
         assert "`" not in said
         assert all(
             words(of_verb_text(command, each, language)) in words(said) for each in ("says", "ends")
@@ -113,7 +113,7 @@ def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
         if command != "set":
             assert words(of_verb_text(command, "summary", language)) in words(everything)
     for note in NOTES:
-        assert words(said_in(note, language)) in words(help.everything(language))
+        assert words(said_in(note, language)) in words(help.full_help(language))
 
 
 @in_both
@@ -142,11 +142,11 @@ def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> 
 
 def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
     tsc("help", "bake", "a", "cake").gives(2, "no command matches “bake a cake”")
-    assert tsc("help", "todo", "--lang", "es").out == help.everything("es")
+    assert tsc("help", "todo", "--lang", "es").out == help.full_help("es")
 
 
 def test_an_option_that_help_does_not_show_works(tsc: Tsc) -> None:
-    assert "--baud" not in help.of("name", "en")
+    assert "--baud" not in help.help_of("name", "en")
     done = tsc(
         "set", "name", "ANA", "--port", "no_port_here", "--baud", "9600", "--robot", "tinibot"
     )
@@ -158,7 +158,9 @@ def test_an_option_that_help_does_not_show_works(tsc: Tsc) -> None:
 def test_every_command_is_a_module_and_every_module_a_command() -> None:
     folder = Path(help.__file__ or "").parent / "commands"
     assert {path.stem for path in folder.glob("*.py")} - {"__init__"} == set(COMMANDS)
-    assert len(VERBS) == 18 and len({typed(command) for command in COMMANDS}) == len(COMMANDS)
+    assert len(VERBS) == 18 and len({command_words(command) for command in COMMANDS}) == len(
+        COMMANDS
+    )
 
 
 @each_row("option", OPTIONS)
@@ -203,7 +205,7 @@ WRITTEN = [name for name in robots.names() if robots.load(name).board.chip in AV
 def test_names_that_help_lists_are_those_that_there_are(
     verb: str, flag: str, names: list[str], language: str
 ) -> None:
-    (option,) = (option for option in of_verb(verb) if option.flags == flag)
+    (option,) = (option for option in options_of(verb) if option.flags == flag)
     listed = re.split(r"[^a-z0-9-]+", option.help(language))
     assert set(names) <= set(listed)
 
@@ -212,7 +214,7 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
     tsc: Tsc, tmp_path: Path
 ) -> None:
     """`upload`, which takes one too, needs a robot, `class` some, `lesson` a task: see theirs."""
-    takes = [verb for verb in VERBS if any(option.kind is A_PROGRAM for option in of_verb(verb))]
+    takes = [verb for verb in VERBS if any(option.kind is A_PROGRAM for option in options_of(verb))]
     assert takes == ["lesson", "check", "run", "compile", "show", "fmt", "upload", "class"]
     for verb in takes:
         assert "-e" in {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
@@ -227,7 +229,9 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
 def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
     common, *sections = page(language, "a test", table).split("\n## ")
     sections = [each for part in sections for each in part.split("\n### ")]
-    (section,) = (section for section in sections if section.startswith(f"`tsc {typed(verb)}`\n"))
+    (section,) = (
+        section for section in sections if section.startswith(f"`tsc {command_words(verb)}`\n")
+    )
     found = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)
     said = [flag for each in found for flag in re.findall(FLAG, each)]
     assert sorted(said) == flags_in_help(verb)
@@ -283,7 +287,7 @@ def test_help_is_printed_where_there_is_no_pager(
     for stream in (sys.stdin, sys.stdout):
         monkeypatch.setattr(stream, "isatty", lambda: True)
     assert main(["help", "upload", "--lang", "en"]) == 0
-    assert capfd.readouterr().out == help.of("upload", "en", 80)
+    assert capfd.readouterr().out == help.help_of("upload", "en", 80)
 
 
 def test_help_that_goes_elsewhere_is_never_paged(
@@ -292,13 +296,13 @@ def test_help_that_goes_elsewhere_is_never_paged(
     marker = tmp_path / "begun"
     monkeypatch.setenv("PAGER", f"touch {marker}")
     done = inside("help", "upload", "--lang", "en")
-    assert (done.code, done.out, marker.exists()) == (0, help.of("upload", "en"), False)
+    assert (done.code, done.out, marker.exists()) == (0, help.help_of("upload", "en"), False)
 
 
 def test_help_is_narrow_on_a_narrow_terminal(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "60")
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
-    assert tsc("stop", "--help", "--lang", "en").out == help.of("stop", "en", 60)
+    assert tsc("stop", "--help", "--lang", "en").out == help.help_of("stop", "en", 60)
 
 
 PAGER = """

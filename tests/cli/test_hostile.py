@@ -192,10 +192,10 @@ def test_files_of_the_cache_may_be_anything(kind: str) -> None:
                 file.truncate(1 << 40)
         else:
             path.symlink_to("/dev/zero" if kind == "device" else path)
-    assert known_ports.known() == known_ports.Known(None, {})
-    assert directory.running() == []
+    assert known_ports.remembered_ports() == known_ports.KnownPorts(None, {})
+    assert directory.running_robots() == []
     assert registry.find_registration(port) is None
-    assert registry.all_found() == []
+    assert registry.find_all() == []
     assert source_map.recall(5) is None
 
 

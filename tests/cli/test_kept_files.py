@@ -85,18 +85,18 @@ def found_output() -> list[int]:
 KEPT = {
     "ports": Kept(
         lambda number: known_ports.remember(f"/dev/ttyUSB{number}", LONG),
-        lambda: [int(name[-1]) for name in known_ports.known().names],
+        lambda: [int(name[-1]) for name in known_ports.remembered_ports().names],
         known_ports,
     ),
     "keys": Kept(add_key, lambda: [key.id for key in key_file().all()], keys),
     "robots that were met": Kept(
         lambda number: met_robots.meet(met_file(), f"{number}{LONG}", number),
-        lambda: [*met_robots.met(met_file()).places.values()],
+        lambda: [*met_robots.read_met_robots(met_file()).places.values()],
         met_robots,
     ),
     "robots that may answer": Kept(
         lambda number: met_robots.accept(met_file(), number),
-        lambda: met_robots.met(met_file()).accepted,
+        lambda: met_robots.read_met_robots(met_file()).accepted,
         met_robots,
     ),
     "profiles": Kept(
@@ -291,7 +291,7 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
     monkeypatch.setattr(files, "sleep", passes)
     with ExitStack() as stack:
         for lock in [*tmp_path.rglob(f"*{files.LOCK}")]:
-            stack.enter_context(files.alone(lock.with_name(lock.name[: -len(files.LOCK)])))
+            stack.enter_context(files.lock_file(lock.with_name(lock.name[: -len(files.LOCK)])))
         for _ in range(2):  # and the second time
             now_s = 0.0
             with suppress(BadKeys, OSError):

@@ -36,7 +36,7 @@ def has_one(secrets: list[bytes], data: bytes) -> bool:
 def test_a_key_is_in_its_file_alone(
     pty_robot: PtyRobot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tiniscript.link.ports.listed", list)
+    monkeypatch.setattr("tiniscript.link.ports.list_ports", list)
     assert claimed(pty_robot).code == 0
     assert claimed(pty_robot, "--teacher").code == 0
     secrets = [form for key in KeyFile().all() for form in forms(key.key)]

@@ -16,7 +16,7 @@ from tests.support.command import Tsc
 from tiniscript.base import files
 from tiniscript.link import met_robots
 from tiniscript.link.authority import RobotKey
-from tiniscript.link.keys import MOST, BadKeys, KeyFile, written
+from tiniscript.link.keys import MOST, BadKeys, KeyFile, encode_keys
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 
 ONE = RobotKey(0x12345678, KEY_OWNER, bytes(range(16)), "TINI")
@@ -29,11 +29,11 @@ def key_file(tmp_path: Path) -> KeyFile:
 
 
 def test_only_this_person_reads_the_file(key_file: KeyFile) -> None:
-    key_file.made(1, KEY_OWNER, "A")
+    key_file.create_pending_key(1, KEY_OWNER, "A")
     assert stat.S_IMODE(key_file.path.stat().st_mode) == 0o600
     assert stat.S_IMODE(key_file.path.parent.stat().st_mode) == 0o700
     key_file.path.chmod(0o644)
-    key_file.made(2, KEY_OWNER, "B")
+    key_file.create_pending_key(2, KEY_OWNER, "B")
     assert stat.S_IMODE(key_file.path.stat().st_mode) == 0o600
 
 
@@ -41,10 +41,11 @@ def test_only_this_person_reads_the_file(key_file: KeyFile) -> None:
     "data",
     [b"", b"{", b"[]", b"null", b'{"tiniscript_keys": 2, "keys": []}', b"\xff\xfe",
      b'{"tiniscript_keys": 1, "keys": [{}]}', b'{"tiniscript_keys": 1, "keys": 3}',
-     written([ONE]).replace(b"owner", b"boss"), written([ONE]).replace(SECRET[:2].encode(), b"zz"),
-     written([ONE._replace(key=bytes(16))]), written([ONE._replace(key=bytes(3))]),
-     written([ONE]).replace(b"12345678", b"1234567"), b"[" * 100_000,
-     written([ONE]).replace(b"12345678", b"-1234567"), written([ONE] * (MOST + 1))],
+     encode_keys([ONE]).replace(b"owner", b"boss"),
+     encode_keys([ONE]).replace(SECRET[:2].encode(), b"zz"),
+     encode_keys([ONE._replace(key=bytes(16))]), encode_keys([ONE._replace(key=bytes(3))]),
+     encode_keys([ONE]).replace(b"12345678", b"1234567"), b"[" * 100_000,
+     encode_keys([ONE]).replace(b"12345678", b"-1234567"), encode_keys([ONE] * (MOST + 1))],
 )  # fmt: skip
 def test_a_file_that_is_none_is_left_as_it_is(key_file: KeyFile, data: bytes) -> None:
     key_file.path.parent.mkdir()
@@ -53,7 +54,7 @@ def test_a_file_that_is_none_is_left_as_it_is(key_file: KeyFile, data: bytes) ->
         key_file.all()
     assert SECRET not in repr(exception_info.value)
     assert key_file.of_robot(1) == []
-    assert key_file.made(1, KEY_OWNER, "A") is None
+    assert key_file.create_pending_key(1, KEY_OWNER, "A") is None
     key_file.settle(ONE)
     key_file.drop(ONE)
     assert key_file.path.read_bytes() == data
@@ -95,7 +96,7 @@ from tiniscript.link.keys import KeyFile
 files.LOCK_S = 600.0  # others claim without a pause, which people do not
 ring, first = KeyFile(Path(sys.argv[1])), int(sys.argv[2])
 for robot in range(first, first + 25):
-    key = ring.made(robot, 0, "R")
+    key = ring.create_pending_key(robot, 0, "R")
     assert key
     ring.settle(key)
     ring.refuse(key) if robot % 5 == 0 else None
@@ -121,7 +122,7 @@ def test_a_key_that_its_robot_may_have_taken_stays_until_that_is_known(
 ) -> None:
     """Whatever else comes into the file, or goes out of it: a robot keeps no second copy."""
     key_file.add([ONE, ONE._replace(id=7)])
-    claim = key_file.made(ONE.id, ONE.which, ONE.name)
+    claim = key_file.create_pending_key(ONE.id, ONE.which, ONE.name)
     assert claim is not None
     other = ONE._replace(key=bytes(range(1, 17)))
     changes: list[Callable[[], object]] = [
@@ -130,7 +131,7 @@ def test_a_key_that_its_robot_may_have_taken_stays_until_that_is_known(
         lambda: key_file.refuse(ONE), lambda: key_file.drop(ONE), lambda: key_file.drop(other),
         lambda: key_file.settle(ONE._replace(id=7)),
         lambda: key_file.settle(ONE._replace(which=KEY_TEACHER)),
-        lambda: key_file.made(ONE.id, KEY_TEACHER, ONE.name),
+        lambda: key_file.create_pending_key(ONE.id, KEY_TEACHER, ONE.name),
     ]  # fmt: skip
     chance = random.Random(seed)
     for change in chance.choices(changes, k=6):
@@ -147,13 +148,13 @@ def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(
 ) -> None:
     key_file.add([ONE])
     monkeypatch.setattr(files, "LOCK_S", 0.1)
-    with files.alone(key_file.path):
-        assert key_file.made(1, KEY_OWNER, "A") is None
+    with files.lock_file(key_file.path):
+        assert key_file.create_pending_key(1, KEY_OWNER, "A") is None
         with pytest.raises(BadKeys):
             key_file.add([ONE._replace(id=2)])
         key_file.drop(ONE)
         assert key_file.all() == [ONE]
-    assert key_file.made(1, KEY_OWNER, "A")
+    assert key_file.create_pending_key(1, KEY_OWNER, "A")
 
 
 def test_no_text_of_a_key_has_its_bytes() -> None:
@@ -178,7 +179,7 @@ def test_a_class_list_goes_out_and_in(
 ) -> None:
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "one"))
     KeyFile().add([ONE])
-    KeyFile().made(7, KEY_OWNER, "not confirmed")
+    KeyFile().create_pending_key(7, KEY_OWNER, "not confirmed")
     listed = tmp_path / "class.json"
     said = tsc("set", "owner", "--export", str(listed)).out
     assert "class.json: 1." in said and f"tsc set owner --import {listed}" in said
@@ -203,12 +204,14 @@ def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Pat
     key_file, many = KeyFile(), tmp_path / "many.json"
     key_file.add([ONE])
     others = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST)]
-    many.write_bytes(written(others))
+    many.write_bytes(encode_keys(others))
     for language, words in (("en", "2000 keys"), ("es", "2000 llaves")):
         tsc("set", "owner", "--import", str(many), "--lang", language).gives(2, words, out="")
     assert key_file.all() == [ONE]
     assert key_file.add(others[1:]) == MOST - 1
-    assert key_file.made(5_000, KEY_OWNER, "A") is None, "no key is dropped for a new one"
+    assert key_file.create_pending_key(5_000, KEY_OWNER, "A") is None, (
+        "no key is dropped for a new one"
+    )
     assert ONE in key_file.all() and len(key_file.all()) == MOST
 
 
@@ -226,9 +229,9 @@ def test_claims_that_were_left_leave_few_keys() -> None:
     """Each key that is shown takes time: of pending ones the last two are kept, of each kind."""
     key_file = KeyFile()
     for _ in range(6):
-        key_file.made(ONE.id, ONE.which, "TINI")
-        last = key_file.made(ONE.id, 1 - ONE.which, "TINI")
-    other = key_file.made(7, 0, "")
+        key_file.create_pending_key(ONE.id, ONE.which, "TINI")
+        last = key_file.create_pending_key(ONE.id, 1 - ONE.which, "TINI")
+    other = key_file.create_pending_key(7, 0, "")
     assert last and other
     key_file.refuse(last)
     robot_keys = key_file.of_robot(ONE.id)

@@ -10,7 +10,7 @@ from tests.support.command import Done
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 from tiniscript import robots
-from tiniscript.cli.robot.live_state import Known, Value, open_ends
+from tiniscript.cli.robot.live_state import LiveState, Value, open_ends
 
 KIT = robots.load("tinibot").kit
 
@@ -114,7 +114,7 @@ def test_which_ends_are_missing(text: str, ends: str) -> None:
 
 
 def test_what_a_line_needs_goes_with_it_and_nothing_else() -> None:
-    known = Known(KIT)
+    known = LiveState(KIT)
     known.values = {"X": Value(5000, False), "Y": Value(1, True), "Z": Value(-1500, False)}
     known.defs = {"HOP": "DEF HOP; F(1, Z); SKIP; END_DEF", "SKIP": "DEF SKIP; W(X); END_DEF"}
     known.defs = dict(sorted(known.defs.items(), reverse=True))  # what is called stands first
@@ -130,7 +130,7 @@ def test_what_a_line_needs_goes_with_it_and_nothing_else() -> None:
 
 
 def test_mistakes_and_warnings_are_those_of_the_line() -> None:
-    known = Known(KIT)
+    known = LiveState(KIT)
     known.values = {"X": Value(5000, False)}
     line = known.line("X = X + 1; F(X 2)", 55)
     (diagnostic,) = line.compiled.diagnostics

@@ -21,7 +21,7 @@ from tiniscript.cli.robot.member import Member, Result, Target
 from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.library import opening
 from tiniscript.link import known_ports, ports
-from tiniscript.link.frames import decoded
+from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME
 
 TINIBOT, LINER = robots.load("tinibot").kit, robots.load("liner").kit
@@ -107,7 +107,7 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
     """Another program has its port, as avrdude does: its stop is refused, the others are not."""
     *others, last = class_.pupils
     assert inside("upload", "-e", FOREVER, "--all", "--detach").code == 0
-    holder = ports.opened(last.port, 115_200)
+    holder = ports.open_port(last.port, 115_200)
     with monkeypatch.context() as short, closing(holder):
         short.setattr(opening, "STOP_BUSY_S", 0.5)
         for options in (("--all",), tuple(f"--port={pupil.port}" for pupil in class_.pupils)):
@@ -195,7 +195,7 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
 
 
 def pings(heard: bytes) -> int:
-    frames = [decoded(packet) for packet in heard.split(b"\0") if packet]
+    frames = [decode_frame(packet) for packet in heard.split(b"\0") if packet]
     return sum(frame is not None and frame.number == BY_NAME["PING"].number for frame in frames)
 
 
@@ -224,12 +224,12 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
 
     ends = [end for _ in range(2) for end in pty.openpty()]
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
-    monkeypatch.setattr(ports, "listed", lambda: [ports.ListedPort(port, "")])
+    monkeypatch.setattr(ports, "list_ports", lambda: [ports.ListedPort(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_S", 1.0)
     done = inside("doctor", "--identify", "--all").gives(0)
     assert len(done.out.splitlines()) == 4
     assert done.err == f"Done: 4 of 4.\nNo robot answers on {port}.\n"
-    monkeypatch.setattr(ports, "listed", list)
+    monkeypatch.setattr(ports, "list_ports", list)
     monkeypatch.setattr(opening, "ANSWER_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
     inside("doctor", "--identify", "--all").gives(
@@ -240,7 +240,7 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
 
 
 def test_nobody_and_wrong_use(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ports, "listed", list)
+    monkeypatch.setattr(ports, "list_ports", list)
     for language, words in (("en", "no robot answers"), ("es", "ningún robot responde")):
         inside("stop", "--all", "--lang", language).gives(3, words)
         assert inside("stop", "--all", "--port", "x", "--lang", language).code == 2

@@ -14,10 +14,10 @@ from tests.support.pty_end import PtyEnd
 from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hc06New, Hm10
 from tests.support.simulated_modules import SimulatedModule as Simulated
 from tests.support.waiting import until
-from tiniscript.cli.texts.causes import said as said_of
+from tiniscript.cli.texts.causes import sentences_of as said_of
 from tiniscript.doctor.findings import CAUSES, WRONG, sure
 from tiniscript.link.modules import set_up, talk
-from tiniscript.link.ports import opened
+from tiniscript.link.ports import open_port
 
 ENDS = {
     set_up.DONE: ("module_done", "module_done_baud", "module_done_later"),
@@ -143,7 +143,7 @@ def test_a_port_that_does_not_open_is_what_the_doctor_says_of_it(
     tsc: Tsc, module: Simulated, is_locked: bool
 ) -> None:
     port = port_of(module) if is_locked else "/dev/not-there"
-    with closing(opened(port, 9600)) if is_locked else nullcontext():
+    with closing(open_port(port, 9600)) if is_locked else nullcontext():
         (finding,) = json.loads(tsc("doctor", "--port", port, "--json").out)["findings"]
         out = tsc("doctor", "--module", "--port", port, "--name", "ANA").gives(3, "").out
     assert out.splitlines() == [

@@ -34,7 +34,7 @@ def liner(tmp_path: Path) -> Path:
 
 
 def test_all_verbs_are_here() -> None:
-    takes = {verb for verb in VERBS for option in OPTIONS if option.taken_by(verb)
+    takes = {verb for verb in VERBS for option in OPTIONS if option.is_taken_by(verb)
              and option.kind is not None and option.kind.name == "program"}  # fmt: skip
     assert takes == set(CALLS)
 

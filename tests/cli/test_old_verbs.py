@@ -16,8 +16,8 @@ from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript.base.languages import FOLDER
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.options import choosers_of, chosen, of_verb
-from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, typed
+from tiniscript.cli.texts.options import choosers_of, chosen, options_of
+from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, command_words
 from tiniscript.cli.verbless import is_help
 
 OLD = "|".join(WAS)
@@ -57,7 +57,7 @@ def test_what_is_searched_for_is_found() -> None:
                       '"-m tiniscript", "--lang", "es", "{}"'):  # fmt: skip
             assert NAMED.search(words.format(name)), words
     for command in COMMANDS:
-        assert not NAMED.search(f"tsc {typed(command)}"), command
+        assert not NAMED.search(f"tsc {command_words(command)}"), command
 
 
 # -- what texts say that can be typed -------------------------------------------------------------
@@ -82,7 +82,7 @@ def wrong_in(command: str) -> str | None:
         return words[0]
     name, _ = chosen(words[0] if words[0] in VERBS else "help", words[1:])
     known = {
-        flag for option in [*of_verb(name), *choosers_of(name)] for flag in option.flags.split()
+        flag for option in [*options_of(name), *choosers_of(name)] for flag in option.flags.split()
     }
     flags = [re.match("-[-a-z0-9]+", word) for word in words[1:]]
     given = [flag[0] for flag in flags if flag is not None and flag[0].startswith("--")]
@@ -186,10 +186,10 @@ def test_the_word_after_set_may_come_after_options(tsc: Tsc) -> None:
 
 def test_each_command_is_chosen_by_what_is_typed_for_it() -> None:
     for command in COMMANDS:
-        verb, *words = typed(command).split()
+        verb, *words = command_words(command).split()
         assert chosen(verb, words)[0] == command
         for flag in STEPS[command].choosers if command in STEPS else ():
             head = STEPS[command].head.split()[1:]
             assert chosen(verb, [*head, f"{flag}=x"])[0] == command
             assert chosen(verb, [*head, "--", flag])[0] != command
-        assert Options(command, "en").verb == typed(command)
+        assert Options(command, "en").verb == command_words(command)

@@ -13,7 +13,7 @@ from tests.support.command import PROGRAM, TSC, Done, Tsc
 from tests.support.verbs import parsers, values_of, words_of
 from tests.support.waiting import HANGS_S
 from tiniscript.cli import paths
-from tiniscript.cli.texts.options import of_verb
+from tiniscript.cli.texts.options import options_of
 from tiniscript.robots import DEFAULT
 
 HERE = Path(sys.modules["tiniscript"].__file__ or "").parent
@@ -55,7 +55,7 @@ def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> Non
     kept = {("compile", "map", "program"), ("compile", "output", "program")}
     assert kept | {("fetch", "output", "robot")} <= set(PAIRS)
     for verb, parser in PARSERS.items():
-        kinds = {option.name: option.kind for option in of_verb(verb)}
+        kinds = {option.name: option.kind for option in options_of(verb)}
         for dest in values_of(parser):
             kind = kinds[dest]
             assert kind is not None, f"{verb}: {dest}"

@@ -20,13 +20,13 @@ from tests.support.verbs import parsers, values_of, words_of
 from tiniscript.base.source import printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.spreadsheet import no_formula
-from tiniscript.cli.texts import LONGEST, Said, text
+from tiniscript.cli.spreadsheet import escape_formula
+from tiniscript.cli.texts import LONGEST, Sentence, text
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import TextEvent
 from tiniscript.link.payloads import HelloReply
-from tiniscript.link.requests import described
-from tiniscript.link.sharing.protocol import filled
+from tiniscript.link.requests import device_info_of
+from tiniscript.link.sharing.protocol import make_payload
 
 # ESC and a colour, a C1 control, a line of its own, backspaces, and marks that turn the direction
 EVIL = "\x1b[31mx\x9b2J\r\ntsc: done\x08\x7f\u202e\u2066\u200f\u2028"
@@ -153,11 +153,11 @@ def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, 
 
 
 def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:
-    said = Said("{a}|{b}").format(a="x\ny", b=Said("x\ny"))
+    said = Sentence("{a}|{b}").format(a="x\ny", b=Sentence("x\ny"))
     assert said == "x?y|x\ny"
-    assert Said("{a}").format(a="x" * 10_000) == "x" * LONGEST + "…"
-    assert Said("{a:>3}").format(a=1) == "  1"
-    assert isinstance(text("no_verb", "en"), Said)
+    assert Sentence("{a}").format(a="x" * 10_000) == "x" * LONGEST + "…"
+    assert Sentence("{a:>3}").format(a=1) == "  1"
+    assert isinstance(text("no_verb", "en"), Sentence)
     assert CommandError(2, "no_verb", found=EVIL, near=EVIL).sentence("es").isprintable()
 
 
@@ -191,11 +191,11 @@ def is_harmless(text: str) -> bool:
 @each_row("sign", ACTING)
 def test_a_name_has_no_signs_that_act(sign: str) -> None:
     name = f"AB{sign}C".encode("utf-8", "surrogateescape")[:16]
-    values = filled(HelloReply, {**DESCRIPTION, "name": name})
-    found = described(values).name
+    values = make_payload(HelloReply, {**DESCRIPTION, "name": name})
+    found = device_info_of(values).name
     assert is_harmless(found) and found.startswith("AB") and found.endswith("C")
     known_ports.remember("/dev/x", f"AB{sign}C".encode("utf-8", "replace").decode())
-    assert is_harmless(known_ports.known().names["/dev/x"])
+    assert is_harmless(known_ports.remembered_ports().names["/dev/x"])
 
 
 @each_row("sign", ACTING)
@@ -204,7 +204,7 @@ def test_a_device_describes_itself_without_them(sign: str, monkeypatch: pytest.M
         device, description = "/dev/x", f"Arduino{sign}Uno"
 
     monkeypatch.setattr("serial.tools.list_ports.comports", lambda: [Port()])
-    [found] = ports.listed()
+    [found] = ports.list_ports()
     assert is_harmless(found.description) and found.description.startswith("Arduino")
 
 
@@ -261,4 +261,4 @@ def test_no_cell_of_a_row_is_a_formula(text: str, separator: str) -> None:
 
 def test_numbers_and_words_stay() -> None:
     for said in ("F(1, -2) = 3", "F(2, -X)", "M(-X, +Y)", "a-b", "1 + 1", "x@y", "hello"):
-        assert no_formula(said) == said
+        assert escape_formula(said) == said

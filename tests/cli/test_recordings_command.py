@@ -19,7 +19,7 @@ from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.robot.simulator import CommandSimulator
 from tiniscript.studio import recordings
 from tiniscript.studio.playing import play, ready
-from tiniscript.studio.recordings import REAL, Row, head, read, written
+from tiniscript.studio.recordings import REAL, Row, decode, encode, head
 
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
 CHECKSUM = compile(TEXT).checksum
@@ -29,7 +29,7 @@ AGAIN = "The virtual robot did exactly the same again. Rows: "
 
 def real(*events: tuple[int, str]) -> bytes:
     rows = [Row(*event) for event in events]
-    return written(HEAD, rows, rows[-1].ms if rows else 0).encode()
+    return encode(HEAD, rows, rows[-1].ms if rows else 0).encode()
 
 
 def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_path: Path) -> None:
@@ -41,7 +41,7 @@ def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_p
     done = tsc("run", program, *words).gives(0)
     assert done.out.startswith("0 START\n0 READ DISTANCE ") and "SHOW TRUE" in done.out
     assert done.out.endswith("DONE\n") and not is_foreign(file)
-    recording = read(file.read_bytes())
+    recording = decode(file.read_bytes())
     assert (recording.seed, recording.world and recording.world.name) == (7, "line")
     again = tsc("run", file)
     assert (again.code, again.out) == (0, done.out)
@@ -58,7 +58,7 @@ def test_a_run_is_as_long_as_it_may_be(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "run.tsr"
     tsc("run", "-e", "SB|LOOP(FOREVER);W(0.4);SHOW(1);END_LOOP", "--max-time", "1.5",
         "--record", file).gives(0)  # fmt: skip
-    rows = read(file.read_bytes()).rows
+    rows = decode(file.read_bytes()).rows
     assert [row.event for row in rows] == ["BUTTON DOWN", "BUTTON UP", "START", *["SHOW 1"] * 3]
     assert tsc("run", file).gives(0).err.startswith(AGAIN)
 
@@ -84,7 +84,7 @@ def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
     program.write_text(TEXT)
     inside("upload", program, "--virtual", "--record", file).gives(1, "3")
-    recording = read(file.read_bytes())
+    recording = decode(file.read_bytes())
     assert (recording.program, recording.text, recording.of) == (CHECKSUM, TEXT, REAL)
     assert [row.event for row in recording.rows] == ["SHOW 5", "FAULT DIVIDE_BY_ZERO"]
     assert 0 < recording.rows[0].ms <= recording.rows[1].ms < 2000
@@ -104,7 +104,7 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
     program.write_text("X = 0; LOOP(6); W(2); X = X + 1; SHOW(X); END_LOOP; W(3)")
     inside("upload", program, "--virtual", "--hurry", hurry, "--record", file).gives(0)
-    events = read(file.read_bytes()).rows
+    events = decode(file.read_bytes()).rows
     assert [event.event for event in events] == [*(f"SHOW {k}" for k in range(1, 7)), "DONE"]
     for each, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
         assert wanted_ms <= each.ms <= wanted_ms + 100, events
@@ -116,7 +116,7 @@ def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> 
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
     program.write_text("SHOW(TRUE); W(FOREVER) UNTIL(FALSE)")
     inside("upload", program, "--virtual", "--hurry", "max", "--for", "30", "--record", file)
-    first, last = read(file.read_bytes()).rows
+    first, last = decode(file.read_bytes()).rows
     assert (first.event, last.event) == ("SHOW TRUE", "STOPPED")
     assert first.ms <= 100 and last.ms >= 29_900
 
@@ -243,7 +243,7 @@ def recorded(
     if end:
         made.end(end)
     made.close()
-    return read(file.read_bytes()).rows
+    return decode(file.read_bytes()).rows
 
 
 def test_a_recording_has_an_end_and_no_more(
@@ -278,7 +278,7 @@ def test_a_recording_ends_when_the_run_does(
     monkeypatch.setattr(recorder, "monotonic", lambda: next(clock))
     events = recorded(file, ("SHOW", "5"), began_s=10.0, end=event)
     assert events == (Row(200, "SHOW 5"), Row(60_000, wanted))
-    compared = play(ready(read(file.read_bytes()))).parting
+    compared = play(ready(decode(file.read_bytes()))).parting
     assert compared is not None and compared.what == ("same" if event else "virtual_more")
 
 
@@ -304,9 +304,9 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(upload, "follow_run", ctrl_c)
     monkeypatch.setattr(Saving, "wait", saves)
-    monkeypatch.setattr(CommandSimulator, "told_ms", None)  # as a real robot, it has no clock
+    monkeypatch.setattr(CommandSimulator, "event_ms", None)  # as a real robot, it has no clock
     tsc("upload", "-e", "SI|F(9, 60)", "--virtual", "--record", file).gives(2, "confirmed")
-    assert read(file.read_bytes()).rows == (Row(5000, "STOPPED"),)
+    assert decode(file.read_bytes()).rows == (Row(5000, "STOPPED"),)
 
 
 def test_a_place_without_room_says_so(tmp_path: Path) -> None:

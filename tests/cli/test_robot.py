@@ -96,7 +96,7 @@ def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot
 def test_the_level_of_text_is_that_of_two_bits(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    described = requests.described
+    described = requests.device_info_of
     for features, level, said in (
         (0, None, "no lee texto"),
         (1, "uno", "lee texto, nivel uno"),
@@ -107,7 +107,7 @@ def test_the_level_of_text_is_that_of_two_bits(
         def with_features(values: HelloReply, features: int = features) -> DeviceInfo:
             return described(values._replace(features=features))
 
-        monkeypatch.setattr("tiniscript.cli.commands.doctor.described", with_features)
+        monkeypatch.setattr("tiniscript.cli.commands.doctor.device_info_of", with_features)
         assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["text_level"] == level
         assert said in on(pty_robot, "doctor", "--lang", "es").out
 
@@ -149,7 +149,7 @@ def test_a_person_without_a_port_is_asked_for_one(
         ports.ListedPort("/dev/ttyS77", "a modem"),
         ports.ListedPort(pty_robot.port, "a robot"),
     ]
-    monkeypatch.setattr(ports, "listed", lambda: found)
+    monkeypatch.setattr(ports, "list_ports", lambda: found)
     answers = iter(["7\n", "what?\n", "2\n"])
     monkeypatch.setattr("sys.stdin.isatty", lambda: True)
     monkeypatch.setattr("sys.stdin.readline", lambda: next(answers))
@@ -223,6 +223,6 @@ def test_a_port_that_never_opens_is_given_up(
     hangs = threading.Event()
     monkeypatch.setattr(serial_transport, "_make_serial", lambda *_: hangs.wait(30))
     with pytest.raises(errors.PortError) as failure:
-        ports.opened("COM5", 9600, limit_s=0.1)
+        ports.open_port("COM5", 9600, limit_s=0.1)
     assert failure.value.reason == errors.SLOW
     hangs.set()

@@ -34,7 +34,7 @@ from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.doctor import report
 from tiniscript.library.simulated import Simulated
 from tiniscript.link.messages import RESETS
-from tiniscript.link.ports import opened
+from tiniscript.link.ports import open_port
 
 LIGHT, DISTANCE = 500_000, 42_000  # thousandths
 GOOD = (LIGHT, LIGHT, DISTANCE)
@@ -156,7 +156,7 @@ def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str)
             end = stack.enter_context(PtyEnd(Firmware(57_600 if kind == "other speed" else 9600)))
             port = end.port
         if kind == "locked":
-            stack.callback(opened(port, 9600).close)
+            stack.callback(open_port(port, 9600).close)
         told = json.loads(inside("doctor", "--port", port, "--json").out)["findings"]
         done = inside("doctor", "--selftest", "--port", port, "--json").gives(3)
         text = inside("doctor", "--selftest", "--port", port, "--lang", "en").gives(3).out
@@ -325,7 +325,7 @@ def test_each_cause_of_a_line_that_the_robot_ends(
     def does(test: SelfTest, line: str) -> list[int]:
         raise CommandError(3, "plain", said="stopped")
 
-    monkeypatch.setattr(SelfTest, "does", does)
+    monkeypatch.setattr(SelfTest, "run_line", does)
     _, out, _ = asked(pty_robot, person(pty_robot), "--json")
     found = [(each["what"], each["cause"]) for each in json.loads(out)["found"]]
     sensors = [("sensor", "no_reading")] * len(pty_robot.kit.sensors)
@@ -430,14 +430,14 @@ def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
     """Nothing turns for somebody who is not there, whatever it was that nobody has answered."""
     did: list[str] = []
     typed = iter(["1\n"] * answers)
-    monkeypatch.setattr(Conversation, "does", lambda _, line: did.append(line))
+    monkeypatch.setattr(Conversation, "run_line", lambda _, line: did.append(line))
     monkeypatch.setattr("tiniscript.cli.terminal.asking.answer", lambda _: next(typed, ""))
     ways: list[Callable[[Conversation], object]] = [
         lambda talk: talk.lift(),
         lambda talk: talk.answer("ask_free", name="X", values=""),
         lambda talk: talk.choice("ask_learn", 2),
-        lambda talk: talk.turned("left"),
-        lambda talk: talk.saw("BEEP(1, 440)", "ask_buzzer", AGAIN),
+        lambda talk: talk.turn_motor("left"),
+        lambda talk: talk.ask_what_was_seen("BEEP(1, 440)", "ask_buzzer", AGAIN),
     ]
     for last in ways:
         typed = iter(["1\n"] * answers)

@@ -120,10 +120,10 @@ def test_two_on_one_line_are_told_apart_in_a_table() -> None:
 def test_the_library_names_values() -> None:
     found = compiled("SHOW(DISTANCE)")
     reader = Reader()
-    robot_event = reader.told(0, event("SHOW(DISTANCE)", 0, program=5))
+    robot_event = reader.to_robot_event(0, event("SHOW(DISTANCE)", 0, program=5))
     assert robot_event and dict(robot_event.values) == {"value": 2}
     reader.maps[checksum(found.image)] = mapped(found)
-    robot_event = reader.told(0, event("SHOW(DISTANCE)", 0))
+    robot_event = reader.to_robot_event(0, event("SHOW(DISTANCE)", 0))
     assert robot_event and dict(robot_event.values) == {
         "value": 2,
         "name": "DISTANCE",

@@ -90,7 +90,7 @@ def test_a_stop_waits_for_a_port_longer_than_others(
             raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
         return line
 
-    monkeypatch.setattr(opening, "_opened_line", open_line)
+    monkeypatch.setattr(opening, "_open_line", open_line)
     if is_patient:
         assert opening.connection_to("/dev/ttyUSB7", verb, 9600, 1) is line
     else:
@@ -240,7 +240,7 @@ def test_who_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.Monkey
     def busy(*_: object, **__: object) -> PortConnection:
         raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
 
-    monkeypatch.setattr(opening, "_opened_line", busy)
+    monkeypatch.setattr(opening, "_open_line", busy)
     with pytest.raises(RobotError) as failed:
         opening.connection_to("/dev/ttyUSB7", "stop", 9600, 1)
     said = str(failed.value)

@@ -26,7 +26,7 @@ from tiniscript.link.names import fault_name
 from tiniscript.link.payloads import TrimReply
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-from tiniscript.link.trim import Pace, Trim, told
+from tiniscript.link.trim import Pace, Trim, trim_from_reply
 
 KIT = robots.load("tinibot").kit
 
@@ -91,7 +91,7 @@ def test_a_trim_that_makes_no_sense_is_refused() -> None:
     for data in (b"\x08\0\0", b"\0\x29\0", b"\0\xd7\0", b"\0\x80\0", b"\0\0\x29", b"\0\0", b"\0"):
         expected = "BAD_VALUE" if len(data) == 3 else "BAD_LENGTH"
         assert robot.until(session, session.trim(data)) == STATUSES[expected], data
-    assert told(robot.done(session, session.trim())) == Trim(balance=3, pace=Pace())
+    assert trim_from_reply(robot.done(session, session.trim())) == Trim(balance=3, pace=Pace())
 
 
 # -- the command ----------------------------------------------------------------------------------
@@ -144,7 +144,7 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
 def of_the_table(cause: str, part: str, **values: str) -> str:
     """What the doctor's table says of a cause, as this verb prints it."""
     finding = Finding(cause, True, values, part)
-    found = causes.said(finding, "en")
+    found = causes.sentences_of(finding, "en")
     return (
         f"tsc: {causes.label(finding, 'en')}: {found.what}. The robot keeps its old trim. "
         f"Try:  {found.then}"
@@ -177,7 +177,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
             given.append(data)
 
     class Connected:
-        def ask(self, make: Callable[[Asked], None], taken: object) -> None:
+        def request(self, make: Callable[[Asked], None], taken: object) -> None:
             if stops:
                 raise CommandError(3, stops.pop())
             make(Asked())
@@ -190,7 +190,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
     for key in ("stopped_elsewhere", "plain"):
         stops[:] = ["stopped_elsewhere", "plain"]  # it goes on: what is asked meanwhile is stale
         with pytest.raises(CommandError, match=key):
-            trim_wizard.guided(cast("Connection", Connected()), Trim(balance=7))
+            trim_wizard.guide(cast("Connection", Connected()), Trim(balance=7))
         assert given.pop() == Trim(balance=7).data() and not given
 
 
@@ -248,7 +248,7 @@ def test_a_robot_refuses_a_pace_that_does_not_rise_whole() -> None:
     for pace in (Pace(20, 20), Pace(20, 10), Pace(1, 0), Pace(0, 0, 9, 8)):
         refused = robot.until(session, session.trim(Trim(balance=9, pace=pace).data()))
         assert refused == STATUSES["BAD_VALUE"], pace
-        assert told(robot.done(session, session.trim())) == Trim(balance=3, pace=PACE)
+        assert trim_from_reply(robot.done(session, session.trim())) == Trim(balance=3, pace=PACE)
 
 
 def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
@@ -271,13 +271,13 @@ def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
 
 def pace_of(memory: bytes) -> Pace | None:
     robot, session = switched_on(memory), computer(2)
-    return told(robot.done(session, session.trim())).pace
+    return trim_from_reply(robot.done(session, session.trim())).pace
 
 
 def test_older_firmware_keeps_none() -> None:
     older = TrimReply(0, 0, 0, b"")
-    assert told(older).pace is None
-    assert "centimetres" not in trim_in_words(told(older), "en")
+    assert trim_from_reply(older).pace is None
+    assert "centimetres" not in trim_in_words(trim_from_reply(older), "en")
 
 
 def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None:

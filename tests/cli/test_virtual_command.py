@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 from tests.support.command import OBSTACLE, Command, Done, Tsc, inside
-from tiniscript.cli.terminal.signals import ended_by_signal
+from tiniscript.cli.terminal.signals import handle_signals
 from tiniscript.library import install_advice
 from tiniscript.link import ports
 from tiniscript.virtual import directory
@@ -95,7 +95,7 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
             assert inside("stop", "--virtual").code == 0
         found.end().gives(0, "The virtual robot drove 9 cm")
     assert picture.read_bytes().startswith(b"\x89PNG")
-    assert directory.running() == []
+    assert directory.running_robots() == []
     inside("start").gives(3, "which port?")
 
 
@@ -118,7 +118,7 @@ def test_ctrl_c_counts_wherever_it_comes(monkeypatch: pytest.MonkeyPatch) -> Non
 
     inside = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
 
-    with ended_by_signal() as ended:
+    with handle_signals() as ended:
         inside()
     assert not dropped and ended.is_set  # who ends a robot reads no lines of Python's
     sys.unraisablehook(None)  # type: ignore[arg-type]
@@ -190,19 +190,19 @@ def test_a_pseudo_terminal_is_a_port_too() -> None:
 
 def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
     found = Robot()
-    assert len(directory.running()) == 1
+    assert len(directory.running_robots()) == 1
     found.kill()
     [note] = directory._folder().glob("*.json")
-    assert directory.running() == []
+    assert directory.running_robots() == []
     assert not note.exists()
     for text in ("", "[]", "{}", '{"address": 5}', "[" * 10_000):
         note.write_text(text, encoding="utf-8")
-        assert directory.running() == []
+        assert directory.running_robots() == []
     assert inside("stop", "--virtual").code == 3
 
 
 def test_of_several_robots_one_is_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ports, "listed", list)
+    monkeypatch.setattr(ports, "list_ports", list)
     with robot() as first, robot("--world", "line") as second:
         done = tsc("doctor", "--identify", "--virtual").gives(3, second.port)
         asked = tsc("doctor", "--identify")  # without --virtual and without a terminal
@@ -255,7 +255,7 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
     assert before["way"] < 20 < 4000 < after["way"]
     assert before["robot"] > 200
     assert before["box"] > 10_000
-    assert directory.running() == []
+    assert directory.running_robots() == []
 
 
 def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:

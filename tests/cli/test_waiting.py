@@ -66,14 +66,14 @@ def test_who_waits_for_a_board_is_told_until_it_is_written(
     looks_on(monkeypatch)
     said = ""
 
-    def write(*given: object) -> avrdude.Ended:
+    def write(*given: object) -> avrdude.WriteResult:
         def is_said() -> bool:
             nonlocal said
             said += capsys.readouterr().err
             return "Waiting for the board on /dev/x …\n" in said
 
         until(is_said, "the sentence")
-        return avrdude.Ended(avrdude.DONE)
+        return avrdude.WriteResult(avrdude.DONE)
 
     monkeypatch.setattr(avrdude, "write", write)
     made = Ready("tinibot", "uno", "1", Path("x"))
@@ -223,7 +223,7 @@ def test_a_live_line_that_runs_for_long_says_so_and_its_warnings_once(
     assert said[2].count("This takes 100 seconds") == 1
 
 
-@pytest.mark.parametrize("moment", ["ended_by_signal", "say_aside"])
+@pytest.mark.parametrize("moment", ["handle_signals", "say_aside"])
 def test_the_end_of_a_studio_says_what_it_waits_for(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, moment: str
 ) -> None:

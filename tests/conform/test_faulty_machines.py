@@ -24,7 +24,7 @@ def test_the_case_notices_the_fault(fault: Fault) -> None:
     right = answer_of(run)
     assert right is not None
     with machine_with(fault) as module:
-        parts = {name: module[name] for name in ("loaded", "machine_of") if name in module}
+        parts = {name: module[name] for name in ("load_image", "machine_of") if name in module}
         try:
             found = answer_of(run, **parts)
         except (LookupError, AssertionError):  # it has crashed

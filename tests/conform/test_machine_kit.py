@@ -27,11 +27,11 @@ from tiniscript.base.kit import Device, Kit
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.opcodes import OPS
-from tiniscript.bytecode.verify import loaded
+from tiniscript.bytecode.verify import load_image
 from tiniscript.conformance import kit as kit_files
 from tiniscript.conformance import machine_process
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, verdicts
-from tiniscript.conformance.kit import MachineCase, link_kit, machine_cases
+from tiniscript.conformance.kit import MachineCase, link_test_suite, machine_cases
 from tiniscript.conformance.machine_process import MachineProcess, Problem
 from tiniscript.conformance.port_checks import all_checks
 from tiniscript.vm.state import DONE, FAULT
@@ -213,7 +213,7 @@ def test_each_instruction_runs() -> None:
         if case.answer[-1].startswith("REFUSED"):
             continue
         kit = kit_of(case)
-        code = loaded(case.image, kit).code
+        code = load_image(case.image, kit).code
         robot = TracedRobot(kit, Lists(kit, case.readings))
         runs = machine_of(code, robot, len(kit.readings), case.seed)
         for _ in range(10_000):
@@ -426,6 +426,6 @@ def test_the_page_says_how_many(tsc: Tsc) -> None:
     needing = sum(bool(case.needs) for case in machine_cases())
     text = PAGE.read_text(encoding="utf-8")
     assert f"about {round(count, -1)} runs" in text
-    assert f"about {round(len(all_checks(link_kit())), -1)} checks" in text
+    assert f"about {round(len(all_checks(link_test_suite())), -1)} checks" in text
     assert f"{needing} cases with TASK, WHEN, CM or DEG" in text
     assert f"{count - needing - 1} of {count - needing} cases pass." in text

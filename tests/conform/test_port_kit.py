@@ -18,11 +18,11 @@ from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_port import simulated
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.conformance.comparing import AGREES
-from tiniscript.conformance.kit import link_kit
-from tiniscript.conformance.port_checks import all_checks, met, verdicts
+from tiniscript.conformance.kit import link_test_suite
+from tiniscript.conformance.port_checks import all_checks, greet, verdicts
 from tiniscript.conformance.wire_robot import WireRobot
 from tiniscript.link import ports
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR
 from tiniscript.link.wire import Wire
 from tools.uno import Uno
@@ -35,15 +35,15 @@ class ChangedWire(Wire):
     """A wire on which the robot's frames are other ones, or get lost."""
 
     def __init__(self, port: str, change: Change) -> None:
-        super().__init__(ports.opened(port, 9600))
+        super().__init__(ports.open_port(port, 9600))
         self.change = change
         self.left = b""
 
-    def heard(self, wait_ms: int, quiet_ms: int = 60) -> bytes:
-        *packets, self.left = (self.left + super().heard(wait_ms, quiet_ms)).split(b"\0")
-        frames = (decoded(packet) for packet in packets if packet)
+    def receive(self, wait_ms: int, quiet_ms: int = 60) -> bytes:
+        *packets, self.left = (self.left + super().receive(wait_ms, quiet_ms)).split(b"\0")
+        frames = (decode_frame(packet) for packet in packets if packet)
         changed = [self.change(frame) for frame in frames if frame]
-        return b"".join(encoded(frame) for frame in changed if frame)
+        return b"".join(encode_frame(frame) for frame in changed if frame)
 
 
 @contextmanager
@@ -62,7 +62,7 @@ def of(name: str) -> int:
 
 def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
     done = tsc("doctor", "--conform", "--port", pty_robot.port).gives(0)
-    count = len(all_checks(link_kit()))
+    count = len(all_checks(link_test_suite()))
     assert count > 200
     assert done.out == f"{count} of {count} checks pass. Kit 1, link {LINK}, bytecode {ISA}.\n"
     assert not any("MOTORS" in row and row != "MOTORS 0 0" for row in pty_robot.did)
@@ -134,24 +134,24 @@ CHANGES: dict[str, tuple[Change, str]] = {
 @pytest.mark.parametrize("what", CHANGES)
 def test_what_is_changed_on_its_way_is_named(what: str, pty_robot: PtyRobot) -> None:
     change, named = CHANGES[what]
-    checks = [check for check in all_checks(link_kit()) if check.name.startswith(named)][:3]
+    checks = [check for check in all_checks(link_test_suite()) if check.name.startswith(named)][:3]
     assert checks
     with asked(pty_robot, lambda frame: frame) as robot:
-        met(robot)
+        greet(robot)
         assert {verdict.what for verdict in verdicts(robot, checks)} == {AGREES}
     with asked(pty_robot, change) as robot:
-        met(robot)
+        greet(robot)
         found = list(verdicts(robot, checks))
     assert any(verdict.what != AGREES for verdict in found), found
 
 
 def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
     with asked(pty_robot, lambda frame: frame) as robot:
-        met(robot)
+        greet(robot)
         robot.answer_ms = 10
         assert isinstance(robot.wire, ChangedWire)
         robot.wire.change = lambda frame: None
-        found = list(verdicts(robot, all_checks(link_kit())))
+        found = list(verdicts(robot, all_checks(link_test_suite())))
     assert [(verdict.what, verdict.detail) for verdict in found] == [("silent", "PING")] * 3
 
 
@@ -226,7 +226,7 @@ def test_a_robot_with_an_owner_is_not_tried(pty_robot: PtyRobot, tsc: Tsc,
     from tiniscript.conformance.wire_robot import Answer
     from tiniscript.link.messages import OWNED
 
-    monkeypatch.setattr(port_checks, "met", lambda robot: Answer(0, 0, {"features": OWNED}, b""))
+    monkeypatch.setattr(port_checks, "greet", lambda robot: Answer(0, 0, {"features": OWNED}, b""))
     tsc("doctor", "--conform", "--port", pty_robot.port).gives(3, "tsc set owner --give-up")
 
 

@@ -8,7 +8,7 @@ from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES
 from tiniscript import check, robots
 from tiniscript.base.source import Source
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library.compiling import compile_source
 from tiniscript.library.named_robot import robot_of
@@ -47,7 +47,9 @@ def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: 
 )
 def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted: str) -> None:
     robot = robot_of(program.encode(), TINIBOT)
-    made = fixed(program, lambda to: compile_source(to.encode(), robot, "", True).diagnostics)
+    made = repair_program(
+        program, lambda to: compile_source(to.encode(), robot, "", True).diagnostics
+    )
     assert made.text == wanted and not made.left
 
 
@@ -120,7 +122,7 @@ def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> 
     ],
 )
 def test_what_is_done_beside_is_a_task(program: str, wanted: str) -> None:
-    made = fixed(
+    made = repair_program(
         program, lambda to: list(compile_source(to.encode(), TINIBOT, "", True).diagnostics)
     )
     assert (made.text, made.left) == (wanted, [])

@@ -11,7 +11,7 @@ from tests.support.fake_computer import FakeComputer
 from tests.support.simulated_ends import Firmware, Nobody
 from tests.support.simulated_wire import SimulatedWire
 from tiniscript.doctor import computer, diagnosis
-from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.examination import Expectations
 from tiniscript.doctor.findings import CAUSES
 from tiniscript.doctor.line import Line, diagnose_line
 from tiniscript.link.modules.talk import find_module
@@ -70,7 +70,7 @@ def test_anything_at_the_other_end(kind: type[Chance | Damaged], seed: int) -> N
     for is_radio in (False, True):
         wire = SimulatedWire(kind(seed))
         findings = diagnose_line(
-            wire, Line(9600, is_radio, 1), Expected(None, "", lambda kit: None)
+            wire, Line(9600, is_radio, 1), Expectations(None, "", lambda kit: None)
         )
         assert findings and {finding.cause for finding in findings} <= set(CAUSES)
         assert wire.now_ms < LONGEST_MS

@@ -16,9 +16,9 @@ from tests.support.fake_computer import FakeComputer
 from tests.support.foreign_boards import FIRMATA
 from tests.support.simulated_ends import KIT, Firmware, Nobody
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
-from tiniscript.cli.texts.causes import said
+from tiniscript.cli.texts.causes import sentences_of
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
-from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.examination import Expectations
 from tiniscript.doctor.findings import CAUSES
 from tiniscript.doctor.robot import SILENT
 from tiniscript.link import errors
@@ -54,7 +54,7 @@ class Shared:
         self.replies = list(replies)
         self.is_closed = False
 
-    def do(self, make: Callable[[Any], object]) -> object:
+    def begin(self, make: Callable[[Any], object]) -> object:
         class Session:
             def __getattr__(self, name: str) -> Callable[[], Namespace]:
                 return lambda: Namespace(name=name)
@@ -91,7 +91,7 @@ class Case:
         self.watched = Shared(Reply(LOST))
         self.watch_ms = 0
         self.virtual: tuple[str, ...] = ()
-        self.expected = Expected(None, "tinibot", {KIT: "tinibot"}.get)
+        self.expected = Expectations(None, "tinibot", {KIT: "tinibot"}.get)
 
     def with_bluetooth(self, *paired: str, is_off: bool = False) -> Case:
         self.system.write("/sys/class/bluetooth/hci0/address", "0")
@@ -264,7 +264,7 @@ def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
     assert finding.cause == "charging_cable"
     assert finding.values == {"ports": f"/dev/ttyS0, {', '.join(case.virtual)}"}
     for language in ("en", "es"):
-        _, seen, then = said(finding, language)
+        _, seen, then = sentences_of(finding, language)
         assert finding.values["ports"] in seen
         assert "tsc doctor --port" in then
 

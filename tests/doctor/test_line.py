@@ -19,11 +19,11 @@ from tests.support.simulated_ends import (
 )
 from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hm10
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
-from tiniscript.doctor.examination import Expected, examine
+from tiniscript.doctor.examination import Expectations, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.line import Line, diagnose_line
 from tiniscript.doctor.robot import WireRobot
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     LINK_FAULTS,
     OWNED,
@@ -54,7 +54,7 @@ def found(
 ) -> list[Finding]:
     """Return what is found; `its_key` is the id of the robot whose key the computer has."""
     wire = SimulatedWire(end, baud)
-    expected = Expected(kit, "tinibot", NAMES.get, lambda robot: robot == its_key)
+    expected = Expectations(kit, "tinibot", NAMES.get, lambda robot: robot == its_key)
     findings = diagnose_line(wire, Line(baud, is_radio, 4711), expected)
     if is_radio:
         assert {speed for speed, _ in wire.sent} == {baud}
@@ -75,7 +75,7 @@ def watched(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
     robot = WireRobot(SimulatedWire(end), 4711, KIT)
     reply = robot.hello()
     assert reply is not None
-    expected = Expected(KIT, "tinibot", NAMES.get)
+    expected = Expectations(KIT, "tinibot", NAMES.get)
     return {finding.cause: finding for finding in examine(robot, reply, expected, watch_ms)}
 
 
@@ -154,7 +154,7 @@ def test_a_report_tells_what_a_robot_can_do(features: int, said: str) -> None:
     robot = WireRobot(SimulatedWire(Firmware(features=features)), 4711, KIT)
     reply, noted = robot.hello(), dict[str, str]()
     assert reply is not None
-    list(examine(robot, reply, Expected(KIT, "tinibot", NAMES.get, note=noted.update), 0))
+    list(examine(robot, reply, Expectations(KIT, "tinibot", NAMES.get, note=noted.update), 0))
     assert noted["features"] == said
 
 
@@ -351,7 +351,7 @@ def test_a_robot_that_sends_and_hears_nothing() -> None:
             return self.said if self.now_ms % 300 == 0 else b""
 
     end = OneWay()
-    for said in (end.said, b"\0" + encoded(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
+    for said in (end.said, b"\0" + encode_frame(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
         end.said = said
         for is_radio in (False, True):
             assert only(end, is_radio=is_radio) == ("one_way", False)
@@ -388,4 +388,4 @@ def test_a_wire_that_is_gone_is_an_os_error() -> None:
     wire = SimulatedWire(Firmware())
     wire.close()
     with pytest.raises(OSError):
-        diagnose_line(wire, Line(9600, False, 1), Expected(None, "", NAMES.get))
+        diagnose_line(wire, Line(9600, False, 1), Expectations(None, "", NAMES.get))

@@ -9,7 +9,7 @@ from tests.support.rows import each_row
 from tests.support.texts import in_all
 from tests.support.texts import said as all_said
 from tiniscript.cli.robot.self_test import PARTS, SIDES
-from tiniscript.cli.texts.causes import label, said
+from tiniscript.cli.texts.causes import label, sentences_of
 from tiniscript.doctor.findings import CAUSES, OK, Finding
 from tiniscript.link import foreign
 
@@ -57,7 +57,7 @@ def test_what_came_of_a_part_says_what_to_do_if_it_is_not_right(cause: str) -> N
     values = dict.fromkeys(VALUES.get(cause, ()), "7")
     assert [*sentences(cause, "found")]
     for language in ("en", "es", "pt"):
-        found = said(Finding(cause, True, values), language)
+        found = sentences_of(Finding(cause, True, values), language)
         assert found.what and not found.seen
         assert bool(found.then) == (CAUSES[cause].verdict != OK)
 
@@ -66,10 +66,10 @@ def test_what_came_of_a_part_says_what_to_do_if_it_is_not_right(cause: str) -> N
 def test_a_board_that_is_not_ours_says_what_it_is_what_was_seen_and_what_to_do(cause: str) -> None:
     for language in ("en", "es", "pt"):
         for heard in ("Distance: 34", ""):
-            sentences = said(Finding(cause, True, {"said": heard}), language)
+            sentences = sentences_of(Finding(cause, True, {"said": heard}), language)
             assert all(sentences) and "{" not in "".join(sentences)
             assert heard in sentences.seen or cause == foreign.ECHO
-        link = foreign.told(foreign.Foreign(cause, "a\x1bb", True), language)
+        link = foreign.explain(foreign.Foreign(cause, "a\x1bb", True), language)
         assert "a?b" in link.said and link.advice == sentences.then
 
 
@@ -120,4 +120,4 @@ def test_one_restart_is_said_as_one() -> None:
             values = {"count": count, "reset": "BROWN_OUT"}
             finding = Finding(cause, True, values)
             for language, word in zip(("en", "es"), words, strict=True):
-                assert said(finding, language).seen.startswith(word)
+                assert sentences_of(finding, language).seen.startswith(word)

@@ -17,7 +17,7 @@ from tests.support.owners import (
     state_of,
 )
 from tiniscript.link.authority import OF_ANOTHER
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -107,7 +107,7 @@ def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
     table.claimed(keys)
     owner = table.session(keys, nonce=4)
     recorded, _ = table.frames(owner, owner.hello())
-    (shown,) = (frame for frame in map(decoded, recorded) if frame and len(frame.payload) == 9)
+    (shown,) = (frame for frame in map(decode_frame, recorded) if frame and len(frame.payload) == 9)
     assert table.outcome(owner, owner.trim()) == "OK"
 
     def answers(thief: Session, tag: bytes) -> int:
@@ -228,7 +228,7 @@ def forged(frames: int, seed: int) -> int:
                 payload = bytes([chance.randrange(2)]) + chance.randbytes(chance.choice((0, 16)))
             thief._seq = (thief._seq + 1) & 0xFF
             seq = thief._seq if how == 1 else chance.randrange(256)
-            data = encoded(Frame(message.number, seq, thief._epoch, payload))
+            data = encode_frame(Frame(message.number, seq, thief._epoch, payload))
         sent = table.robot.step(b"\0" + data)
         accepted += sum(is_accepted(answer) for answer in sent.split(b"\0"))
         if chance.randrange(50) == 0:
@@ -244,7 +244,7 @@ def forged(frames: int, seed: int) -> int:
 
 def is_accepted(sent: bytes) -> bool:
     """Return whether an answer says that something was done for which it takes a key."""
-    frame = decoded(sent)
+    frame = decode_frame(sent)
     if frame is None or frame.number not in BY_NUMBER or not frame.payload:
         return False
     message = BY_NUMBER[frame.number]

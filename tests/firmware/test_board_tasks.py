@@ -92,7 +92,7 @@ def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
 def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
     robot.sonar("trigger", "echo", None)
     wired = computer(robot)
-    heard = len(robot.received)
+    heard = len(robot.received_bytes)
     send(wired, "LOOP(4);F(0.2, 60);B(0.2, 60);END_LOOP;WHEN(DISTANCE < 15);S;END_WHEN",
          is_detached=True)  # fmt: skip
     wired.run(2000)
@@ -137,7 +137,7 @@ def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
     robot.send(STOP)
     robot.run_ms(20)
     stopped = max(robot.pins[name].cycle for name in ("left", "right"))
-    last = robot.received[STOP_RUN - 1 - len(STOP)].cycle
+    last = robot.received_bytes[STOP_RUN - 1 - len(STOP)].cycle
     assert states(robot) == OFF
     assert 0 < stopped - last < STOP_US * CYCLES_PER_MS // 1000
     wired.run(300)

@@ -18,7 +18,7 @@ from tests.support.platformio import copied, pio
 from tiniscript import robots
 from tiniscript.flash import building
 from tiniscript.link.messages import TEXT_LEVEL, TEXT_LEVELS
-from tools.generate.packed_texts import packed
+from tools.generate.packed_texts import pack
 from tools.generate.remark_tables import rows
 from tools.uno import CYCLES_PER_MS, Uno
 
@@ -35,16 +35,16 @@ OBSTACLE = (
 
 def typed(uno: Uno, text: str, milliseconds: float) -> list[str]:
     """Type a text; return what the robot has answered after so many milliseconds."""
-    before = len(uno.sent)
+    before = len(uno.sent_bytes)
     uno.send(text.encode())
     uno.run_ms(milliseconds)
-    return bytes(byte.value for byte in uno.sent[before:]).decode().splitlines()
+    return bytes(byte.value for byte in uno.sent_bytes[before:]).decode().splitlines()
 
 
 def since_the_line_end_ms(uno: Uno) -> float:
     """Return the time from the end of the last line that came to the last change of a motor."""
     pins = [uno.pins[name].cycle for name in ("left", "right")]
-    return (max(pins) - uno.received[-1].cycle) / CYCLES_PER_MS
+    return (max(pins) - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
 
 
 @pytest.mark.parametrize("sketch_name", ["uno", "nano"])
@@ -121,7 +121,7 @@ def test_a_stop_is_as_quick_while_text_is_read(uno: Uno, text: str) -> None:
     assert states(uno) == FORWARD
     uno.send(text.encode() + bytes(4))
     uno.run_ms((len(text) + 4) * BYTE_MS + 20)
-    stop = uno.received[len(uno.received) - 1]
+    stop = uno.received_bytes[len(uno.received_bytes) - 1]
     assert stop.value == 0
     pins = max(uno.pins[name].cycle for name in ("left", "right"))
     assert states(uno) == OFF
@@ -151,8 +151,8 @@ def test_a_wrong_line_leaves_what_runs_where_there_is_room_for_two(robot: Uno) -
 def test_an_uno_has_the_texts_that_it_can_say(sketch: Path) -> None:
     """The reasons of a DEF, other levels and discs take no flash."""
     firmware = sketch.read_bytes()
-    assert packed(rows("en", is_small=True)).texts in firmware
-    assert packed(rows("en")).texts not in firmware
+    assert pack(rows("en", is_small=True)).texts in firmware
+    assert pack(rows("en")).texts not in firmware
 
 
 @pytest.mark.sampled(of="long ways of a chip")
@@ -161,12 +161,12 @@ def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Pa
     needed()
     project = copied(tmp_path)
     for language, answer, other in (("es", "500: 0 a 100", "en"), ("en", "500: 0 to 100", "es")):
-        robot = robots.load("tinibot", "mega").speaking(language)
+        robot = robots.load("tinibot", "mega").with_language(language)
         (project / building.HEADER).write_text(building.header(robot), encoding="utf-8")
         pio(project, "run", "-e", "mega").gives(0)
         elf = project / ".pio" / "build" / "mega" / "firmware.elf"
         for each in (language, other):
-            assert (packed(rows(each)).texts in elf.read_bytes()) == (each == language)
+            assert (pack(rows(each)).texts in elf.read_bytes()) == (each == language)
         with Uno(elf, names=NAMES, board="mega", baud=BAUD, resets_on_open=False) as mega:
             mega.run_ms(300)
             assert typed(mega, "SI|R(1, 500)\n", 100) == [f"// {answer}"]

@@ -10,8 +10,8 @@ from tests.support.debugging import Debugged, Halt, debugged
 from tests.support.images import image_of
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import Image
-from tiniscript.bytecode.statements import begins
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.bytecode.statements import statement_starts
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     BREAKPOINTS,
     BY_NAME,
@@ -83,7 +83,7 @@ def test_a_step_is_a_statement() -> None:
 )
 def test_what_begins_no_statement_is_no_place(text: str) -> None:
     it = Debugged(text)
-    begun = begins(it.image.code)
+    begun = statement_starts(it.image.code)
     for at in range(len(it.image.code) + 3):
         assert it.places(at) == (OK if at in begun else BAD_VALUE), at
     assert it.places(*begun[:4]) == OK
@@ -98,7 +98,7 @@ def test_places_are_even_bytes_of_a_program_that_is_there() -> None:
         it.session._seq += 1
         sent = it.robot.step(
             b"\0"
-            + encoded(
+            + encode_frame(
                 Frame(BY_NAME["BREAK"].number, it.session._seq & 255, it.session._epoch, payload)
             )
         )
@@ -288,7 +288,7 @@ def test_max_run_goes_on_while_it_is_halted() -> None:
 def test_motors_stand_while_it_is_halted_and_a_move_has_the_rest_of_its_time() -> None:
     """Another task halts while a move of one second has 600 ms left."""
     it = Debugged("SI|TASK;F(1, 80);END_TASK;W(0.4);SHOW(1);W(2);SHOW(TIME)")
-    show = begins(it.image.code)[4]
+    show = statement_starts(it.image.code)[4]
     assert it.places(show) == OK
     it.start()
     halted = it.halt()
@@ -314,7 +314,7 @@ def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
         robot = switched_on()
         robot.discs(cm=100_000, degrees=20_000)
         it = Debugged("SI|TASK;F(30 CM, 80);END_TASK;W(0.2);SHOW(1)", robot)
-        show = begins(it.image.code)[4]
+        show = statement_starts(it.image.code)[4]
         assert it.places(*[show] * is_halted) == OK
         it.start()
         if is_halted:
@@ -333,7 +333,7 @@ def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
 def test_a_check_that_is_repeated_halts_once() -> None:
     it = Debugged("SI|LOOP(2);F(0.3, 40) UNTIL(DISTANCE < 10);END_LOOP;SHOW(1)")
     code = it.image.code
-    _, check = begins(code)[1:3]
+    _, check = statement_starts(code)[1:3]
     it.robot.sense(*[30_000] * len(KIT.sensors))
     assert it.places(check) == OK
     it.start()
@@ -346,7 +346,7 @@ def test_a_check_that_is_repeated_halts_once() -> None:
 
 def test_a_when_halts_once_until_it_has_gone_through() -> None:
     it = Debugged("SI|WHEN(LIGHT_R > 5);SHOW(1);END_WHEN;W(3)")
-    check = begins(it.image.code)[1]
+    check = statement_starts(it.image.code)[1]
     quiet, loud = ([0] * len(KIT.sensors) for _ in range(2))
     loud[KIT.names.index("LIGHT_R")] = 9000
     it.robot.sense(*quiet)
@@ -383,7 +383,7 @@ def test_a_loop_around_one_statement_halts_each_time() -> None:
         "SI|N = 0;WHILE(N < 3);N = N + 1;IF(N = 2);BREAK;ENDIF;END_WHILE;W(0.1)",
     ):
         it = Debugged(text)
-        for at in begins(it.image.code):
+        for at in statement_starts(it.image.code):
             session = it.session
             assert it.robot.until(session, session.break_at((at,))) == OK
             it.start()
@@ -399,7 +399,7 @@ def test_a_show_without_room_halts_once() -> None:
     robot = switched_on()
     robot.pace(40)
     it = debugged("SI|LOOP(6);SHOW(1);END_LOOP", SECOND, robot=robot)
-    show = begins(it.image.code)[1]
+    show = statement_starts(it.image.code)[1]
     assert it.places(show) == OK
     count = 0
     while it.halt(3000) is not None:
@@ -427,7 +427,7 @@ def test_a_halt_is_told_again_and_a_session_tells_it_once() -> None:
 def test_places_may_change_while_it_runs_and_while_it_is_halted() -> None:
     it = debugged("SI|N = 0;LOOP(FOREVER);W(0.1);N = N + 1;SHOW(N);END_LOOP")
     assert it.halt(300) is None
-    _, _, _, add, show, _ = begins(it.image.code)
+    _, _, _, add, show, _ = statement_starts(it.image.code)
     assert it.places(add) == OK
     assert it.halt() == Halt(add, MAIN)
     assert it.places(show) == OK
@@ -443,7 +443,7 @@ def test_places_may_change_while_it_runs_and_while_it_is_halted() -> None:
 def test_a_step_stays_in_its_task_and_a_place_of_another_one_ends_it() -> None:
     text = "SI|TASK;W(0.1);SHOW(1);W(0.1);SHOW(2);END_TASK;W(0.15);SHOW(8);W(1);SHOW(9)"
     it = Debugged(text)
-    places = begins(it.image.code)
+    places = statement_starts(it.image.code)
     main = places.index(next(at for at in places if at >= places[6]))
     assert it.places(places[1]) == OK
     it.start()

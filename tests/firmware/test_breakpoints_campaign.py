@@ -18,7 +18,7 @@ from tests.support.images import image_of
 from tests.support.kits import KITS
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import Image
-from tiniscript.bytecode.statements import begins
+from tiniscript.bytecode.statements import statement_starts
 from tiniscript.link.messages import RESUME_GO, RESUME_STEP
 from tiniscript.link.payloads import HaltedEvent
 from tiniscript.link.requests import OK
@@ -41,7 +41,7 @@ def run(image: Image, kit: Kit, seed: int, how: str) -> list[str]:
     without what halts did to the motors, up to the first event after LIMIT_MS of its own time."""
     rng = random.Random(seed)
     it = Debugged(image, switched_on(kit, seed), kit.fingerprint)
-    statements = begins(image.code)
+    statements = statement_starts(image.code)
     if how != "alone":
         some = statements[:1] if how == "steps" else rng.sample(statements, min(4, len(statements)))
         assert it.places(*some) == OK
@@ -87,7 +87,7 @@ def compare(seed: int) -> bool:
     oracle_kit, kit = KITS[seed % len(KITS)]
     text = programs.program(rng, oracle_kit)
     image = image_of(text, kit)
-    if image.start != "SI" or not begins(image.code) or "TIME" in text or image.needs & 1:
+    if image.start != "SI" or not statement_starts(image.code) or "TIME" in text or image.needs & 1:
         return False
     alone = run(image, kit, seed, "alone")
     for how in ("steps", "places"):
@@ -122,7 +122,7 @@ STOPS: dict[str, Callable[[Debugged], object]] = {
 def halts_before(it: Debugged, rng: random.Random) -> None:
     """Start the program, step it, let it go on and leave it halted, and end it anyhow."""
     for _ in range(rng.randint(1, 3)):
-        statements = begins(it.image.code)
+        statements = statement_starts(it.image.code)
         it.places(*rng.sample(statements, rng.randint(0, 4)))
         it.start()
         for _ in range(rng.randint(0, 5)):
@@ -166,7 +166,7 @@ def test_a_run_after_any_halts_is_as_on_a_fresh_robot(seed: int) -> None:
     rng = random.Random(seed)
     it, fresh = Debugged(NEXT), Debugged(NEXT)
     halts_before(it, rng)
-    places = rng.sample(begins(it.image.code), rng.choice((0, 0, 1, 2)))
+    places = rng.sample(statement_starts(it.image.code), rng.choice((0, 0, 1, 2)))
     seen = []
     for each in (fresh, it):
         each.robot.talk(each.session, -each.robot.now_ms % 100)

@@ -18,7 +18,7 @@ def cycles(work: Work, *flags: str) -> tuple[list[str], int]:
     code = code_of(work)
     readings = work.thousandths
     request = pack(f"<BB{len(readings)}iH", BUDGET, len(readings), *readings, len(code)) + code
-    program = avr_bench.built("cycles", avr_bench.SOURCES, *flags, chip="atmega2560")
+    program = avr_bench.build("cycles", avr_bench.SOURCES, *flags, chip="atmega2560")
     *shown, count, _ = avr_bench.run(program, request, "atmega2560")
     return shown, int(count.split()[1])
 

@@ -20,7 +20,7 @@ from tests.support.images import image_of
 from tests.support.owners import FOREVER, Keys, Owned
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     KEY_OWNER,
@@ -32,8 +32,8 @@ from tiniscript.link.messages import (
     STATE_RUNNING,
     STATE_STOPPED,
     STATUSES,
-    read,
-    written,
+    decode_payload,
+    encode_payload,
 )
 from tiniscript.link.outcomes import LOST, OTHER_ROBOT, UNPROVEN
 from tiniscript.link.session import Session
@@ -100,7 +100,7 @@ class Between:
             if self.zeros_ms is None:
                 self.zeros_ms = now_ms
         for packet in filter(None, data.split(b"\0")):
-            frame = decoded(packet)
+            frame = decode_frame(packet)
             assert frame
             if self.passes_on(frame):
                 said += self.changed(self.end.passes(20, b"\0" + packet + b"\0"))
@@ -109,20 +109,20 @@ class Between:
                 said += self.done(frame)
         if self.zeros_ms is not None and now_ms >= self.zeros_ms + self.waits_ms:
             epoch = (self.epoch + self.draw.randrange(2)) & 0xFF
-            said += encoded(Frame(STOPPED, self.draw.randrange(256), epoch, b"\1", True))
+            said += encode_frame(Frame(STOPPED, self.draw.randrange(256), epoch, b"\1", True))
         return b"\0" * bool(said) + said
 
     def changed(self, said: bytes) -> bytes:
         """Return the answers of the robot with bits of HELLO cleared, or another id."""
         found = b""
         for packet in filter(None, said.split(b"\0")):
-            frame = decoded(packet)
+            frame = decode_frame(packet)
             if frame and frame.number == HELLO and frame.payload[0] == 0:
-                values = read(BY_NAME["HELLO"].reply, frame.payload[1:])
+                values = decode_payload(BY_NAME["HELLO"].reply, frame.payload[1:])
                 values["features"] = int(values["features"]) & ~self.cleared
                 values["id"] = self.other_id or values["id"]
-                payload = b"\0" + written(BY_NAME["HELLO"].reply, values)
-                found += encoded(frame._replace(payload=payload))
+                payload = b"\0" + encode_payload(BY_NAME["HELLO"].reply, values)
+                found += encode_frame(frame._replace(payload=payload))
             else:
                 found += packet + b"\0"
         return found
@@ -138,9 +138,9 @@ class Between:
             payload[:4] = image_of(FOREVER).checksum.to_bytes(4, "little")
         if frame.number == AUTHENTICATE and self.draw.random() < 0.5:
             wrong = bytes([self.draw.choice((STATUSES["WRONG_KEY"], STATUSES["NOT_OWNER"])), 4, 0])
-            return encoded(frame._replace(payload=wrong, is_reply=True, is_sealed=False))
+            return encode_frame(frame._replace(payload=wrong, is_reply=True, is_sealed=False))
         frame = frame._replace(payload=b"\0" + bytes(payload), is_reply=True)
-        return encoded(frame._replace(is_sealed=False))
+        return encode_frame(frame._replace(is_sealed=False))
 
 
 def talk(between: Between, session: Session, request: PendingRequest[Any] | None) -> list[str]:
@@ -161,9 +161,9 @@ def talk(between: Between, session: Session, request: PendingRequest[Any] | None
 
 def state_of(end: End) -> int:
     """Return what the robot does; anybody may ask."""
-    end.passes(20, b"\0" + encoded(Frame(HELLO, 1, 0, bytes([MAJOR, *bytes(5), 1, 2, 3, 4]))))
-    said = end.passes(20, b"\0" + encoded(Frame(STATUS, 2, 0)))
-    frames = [decoded(packet) for packet in said.split(b"\0") if packet]
+    end.passes(20, b"\0" + encode_frame(Frame(HELLO, 1, 0, bytes([MAJOR, *bytes(5), 1, 2, 3, 4]))))
+    said = end.passes(20, b"\0" + encode_frame(Frame(STATUS, 2, 0)))
+    frames = [decode_frame(packet) for packet in said.split(b"\0") if packet]
     return next(frame.payload[1] for frame in frames if frame and frame.number == STATUS)
 
 

@@ -20,7 +20,7 @@ from tests.support.waiting import HANGS_S
 from tests.support.waiting import until as in_time
 from tiniscript.link import errors, wifi
 from tiniscript.link.errors import PortError
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session
 from tiniscript.link.transports.broker import ROOT, Access, Broker, Present
@@ -268,7 +268,7 @@ def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto) -> None:
         b"SI",
         b"// S\n",
         b"\0\3S.\n",
-        encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1Z\nS\n")),
+        encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1Z\nS\n")),
     ):
         stranger.publish(topic, none)
         talk(robot, ends, 100)

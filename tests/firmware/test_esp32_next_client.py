@@ -24,7 +24,7 @@ from tests.support.esp32_radio import (
 )
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session
 from tiniscript.link.typed_stop import is_typed_stop, stops_at_once
@@ -166,7 +166,7 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
     """Over a network that takes a few bytes at a time, whenever the one before leaves."""
     robot, end, _ = far_owner(Keys())
     end.leave()
-    frames = b"".join(encoded(Frame(STATUS, seq, 0)) for seq in range(requests))
+    frames = b"".join(encode_frame(Frame(STATUS, seq, 0)) for seq in range(requests))
     rests = 0
     for moment_ms in (1, 2, 3, 5, 9, 100):
         takes(robot, most)
@@ -175,11 +175,11 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
         end.leave()
         talk(robot, [], 3)
         takes(robot, 1000)
-        other = Bytes(b"\0" + encoded(Frame(BY_NAME["PING"].number, ASKED_PING, 0)))
+        other = Bytes(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, ASKED_PING, 0)))
         talk(robot, [(end := Network(robot), other)], 60)
         end.leave()
         talk(robot, [], 3)
-        answers = [decoded(data) for data in other.heard.split(b"\0") if data]
+        answers = [decode_frame(data) for data in other.heard.split(b"\0") if data]
         assert [answer and answer.seq for answer in answers] == [ASKED_PING], moment_ms
         rests += len(first.heard) < len(other.heard)
     assert rests or most == 1000

@@ -12,7 +12,7 @@ from tests.machines.esp32 import BROWN_OUT, EMPTY, EXTERNAL, TASK_WATCHDOG, Esp3
 from tests.robots.test_robots import TEXTS
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.robots.reader import read
@@ -159,7 +159,7 @@ def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:
     session = Session(1, 115200, robot.robot.kit.fingerprint)
     robot.until(session, session.hello())
     assert session.robot
-    frame = encoded(Frame(2, 9, 0, bytes(242)))  # a PING that is too long does nothing
+    frame = encode_frame(Frame(2, 9, 0, bytes(242)))  # a PING that is too long does nothing
     window = session.robot.values.window
     robot.step(b"\0" + frame * window)
     robot.wait(50)

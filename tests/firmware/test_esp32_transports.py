@@ -24,7 +24,7 @@ from tests.support.images import image_of
 from tests.support.owners import Keys
 from tiniscript import robots
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, DEAD_MAN_MS, STATUS_NAMES, STOP_BYTES
 from tiniscript.link.session import Session
 
@@ -135,7 +135,7 @@ ENDS: dict[str, tuple[str, str]] = {  # its program, and what all are told
 SAID = {
     "its client's zeros": bytes(4),
     "another one's zeros": bytes(4),
-    "a message of another one": b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0)),
+    "a message of another one": b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0)),
     "a line of another one": b"\0S\n",
 }
 
@@ -289,7 +289,7 @@ def test_slow_notifications_delay_nobody_else() -> None:
 
 def test_what_a_congested_stack_does_not_take_comes_later() -> None:
     robot = booted()
-    once = Bytes(b"\0" + encoded(Frame(BY_NAME["STATUS"].number, 1, 0, b"")))
+    once = Bytes(b"\0" + encode_frame(Frame(BY_NAME["STATUS"].number, 1, 0, b"")))
     end = LowEnergy(robot)
     ends: Ends = [(end, once)]
     robot.radio("k", b"\1")
@@ -298,7 +298,7 @@ def test_what_a_congested_stack_does_not_take_comes_later() -> None:
     for is_congested in (b"\0", b"\1") * 20:
         robot.radio("k", is_congested)
         talk(robot, ends, 3)
-    frame = decoded(once.heard.strip(b"\0"))
+    frame = decode_frame(once.heard.strip(b"\0"))
     assert frame and len(end.lengths) == 2, "whole, and never asked for again"
     robot.radio("k", b"\1")
     talk(robot, [(end, session(1, robot))], 40)
@@ -317,7 +317,9 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
     ends: Ends = [(None, driver), (end, deaf)]
     assert uploaded(robot, ends, driver) == "OK"
     end.subscribe(False)
-    talk(robot, [(None, driver), (end, Bytes(b"\0" + encoded(Frame(3, 1, 0, b"")) * 40))], 3000)
+    talk(
+        robot, [(None, driver), (end, Bytes(b"\0" + encode_frame(Frame(3, 1, 0, b"")) * 40))], 3000
+    )
     assert happened(robot) == ["MOTORS 80 80"]
     end.send(bytes(STOP_BYTES))
     talk(robot, ends[:1], 20)
@@ -389,7 +391,7 @@ def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
 
 
 @pytest.mark.parametrize(
-    "stop", [bytes(STOP_BYTES), b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))]
+    "stop", [bytes(STOP_BYTES), b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))]
 )
 def test_a_stop_of_a_robot_that_stands_ends_what_is_typed_elsewhere(stop: bytes) -> None:
     robot = booted()

@@ -16,14 +16,14 @@ from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, End, Network, session, talk
 from tests.support.images import image_of
 from tests.support.owners import Keys
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.session import Session
 from tiniscript.virtual.protocol_sniffer import is_for_robot
 
 ROOM = 1022  # bytes; one place is for who leaves
 LATE_MS = 3  # a turn of the radio's task, and what a network of this computer takes
-WHOLE = encoded(Frame(BY_NAME["STATUS"].number, 9, 0))
+WHOLE = encode_frame(Frame(BY_NAME["STATUS"].number, 9, 0))
 
 
 def drives(robot: Esp32Robot, driver: Session, end: End | None = None) -> Ends:
@@ -165,7 +165,7 @@ def test_what_is_lost_stops_nobody(make: Make) -> None:
     for before in (b"F(1,80)\n" * 400, WHOLE * 400, b"FT\nS T\n\0\0FT" * 400):
         end.send(before)
         talk(robot, [*ends, (end, Bytes())], 2500)  # until the lines that wait are answered
-        frame = encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1" + code))
+        frame = encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1" + code))
         assert b"\nS\n" in frame
         end.send(b"\0" + frame)
         talk(robot, ends, HELD_MS + 20)
@@ -222,7 +222,7 @@ def test_a_stop_in_an_open_block_that_waits_is_a_line_of_it(make: Make) -> None:
 def test_a_frame_before_a_stop_that_waits_does_nothing(make: Make) -> None:
     robot = booted()
     end = make(robot)
-    live = b"\0" + encoded(Frame(BY_NAME["LIVE"].number, 9, 0, image_of("F(60, 80)").code))
+    live = b"\0" + encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, image_of("F(60, 80)").code))
     end.send(LINES[:0] + b"// " + b"x" * 500 + b"\n" + live * 6 + b"\nS\n")
     robot.wait(300)
     assert moves(robot) == []

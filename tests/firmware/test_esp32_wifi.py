@@ -25,8 +25,8 @@ from tests.support.owners import Keys
 from tiniscript.link import wifi
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, MAJOR, MINOR, WIFI_RESTS, written
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, MAJOR, MINOR, WIFI_RESTS, encode_payload
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.session import Session
 
@@ -246,16 +246,16 @@ def test_no_two_transports_have_the_same_challenge() -> None:
     robot, _ = owned(Keys())
     again = Esp32Robot(kept=robot.kept())  # no challenge before
     again.wait(300)
-    hello = written(BY_NAME["HELLO"].request, {
+    hello = encode_payload(BY_NAME["HELLO"].request, {
         "major": MAJOR, "minor": MINOR, "isa_major": 2, "isa_minor": 0, "kit": 0, "nonce": 5,
     })  # fmt: skip
-    asks = b"\0" + encoded(Frame(1, 1, 0, hello))
+    asks = b"\0" + encode_frame(Frame(1, 1, 0, hello))
     first, second = Bytes(asks), Bytes(asks)
     ends: Ends = [(None, first), (LowEnergy(again), second)]
     talk(again, ends, 60)
-    frames = [decoded(each.heard.strip(b"\0")) for each in (first, second)]
+    frames = [decode_frame(each.heard.strip(b"\0")) for each in (first, second)]
     [epoch] = {frame.epoch for frame in frames if frame}
-    first.said = second.said = encoded(Frame(17, 2, epoch, b"\0"))
+    first.said = second.said = encode_frame(Frame(17, 2, epoch, b"\0"))
     first.heard = second.heard = b""
     talk(again, ends, 60)
     assert len(first.heard) == 20 and first.heard != second.heard

@@ -27,7 +27,7 @@ from tests.support.owners import Keys, Owned
 from tests.text.test_bytes_around import PIECES
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, KEY_OWNER, KEY_TEACHER
 from tiniscript.link.outcomes import TextEvent
 from tiniscript.link.requests import OK
@@ -118,7 +118,7 @@ HARMLESS = (b" ", b"\t", b";", b"\xef\xbb\xbf", b"AT", b"AT+NAMEx", b"OK+CONN", 
             b"END_LOOP", b"HELP", b"SI|X = 3", b"SI|X = 1;SHOW(1.5)", b"PING|CHECK_CONNECTION",
             b"SI|X = TRUE", b"SI|CM = 1", b"SB|BEEP(0.001, 97)", b"SI|F(1 80)")  # fmt: skip
 WITH_SETUP = tuple(line for line in LINES if "|" in line)
-STOPS = (bytes(4), b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0)), b"\0S\n", b"S\n")
+STOPS = (bytes(4), b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0)), b"\0S\n", b"S\n")
 TYPED_STOP = b"\nSI|W(9)\nS\n"  # it ends an open block, in which S would be an instruction
 
 
@@ -265,7 +265,7 @@ def pieces(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
 def noise(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     data = b"".join(rng.choices(PIECES, k=rng.randint(1, 4)))
     if rng.random() < 0.3:
-        frame = encoded(Frame(rng.randrange(1, 25), rng.randrange(256), 0, rng.randbytes(9)))
+        frame = encode_frame(Frame(rng.randrange(1, 25), rng.randrange(256), 0, rng.randbytes(9)))
         data = b"\0" + frame[: rng.randrange(len(frame) + 1)]
     scene.say(data, rng.choice((0, 5, 300, 1100)))
 

@@ -14,7 +14,7 @@ from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME, RUN, SAVED_STORED
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.session import Session
@@ -286,7 +286,7 @@ def test_a_damaged_line_changes_nothing_of_the_one_that_runs(at: int) -> None:
     session.events()
     payload = bytes([RUN]) + image_of("SI|F(0.2, 90); F(0.2, 90); SHOW(9)").code
     frame = Frame(BY_NAME["LIVE"].number, (session._seq + 1) & 0xFF, session._epoch, payload)
-    wire = bytearray(encoded(frame))
+    wire = bytearray(encode_frame(frame))
     if at < -1:
         wire[at] ^= 0x11
     for byte in wire if at < -1 else wire[:-1]:  # or it is cut before its end

@@ -14,7 +14,7 @@ import pytest
 from tests.firmware.test_host_firmware import KIT, switched_on
 from tests.support.campaign import each_seed, wanted
 from tiniscript.bytecode.image import HEADER_BYTES, pack
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -70,7 +70,7 @@ class Client:
     def receive(self, sent: bytes) -> None:
         *packets, self.heard = (self.heard + sent).split(b"\0")
         for packet in packets:
-            frame = decoded(packet)
+            frame = decode_frame(packet)
             if frame is not None:  # else it is text
                 self.epoch = frame.epoch
                 self.replies += [frame] if frame.number not in EVENTS else []
@@ -80,7 +80,7 @@ class Client:
         self.seq = (self.seq + 1) % 256
         self.replies.clear()
         sent = self.epoch if epoch is None else epoch
-        self.put(self.zero() + encoded(Frame(number, self.seq, sent, payload)))
+        self.put(self.zero() + encode_frame(Frame(number, self.seq, sent, payload)))
         [reply] = [frame for frame in self.replies if frame.seq == self.seq]
         assert reply.number == number and reply.is_reply
         assert reply.payload[0] == OK or len(reply.payload) == 3, reply
@@ -133,7 +133,7 @@ class Client:
         first = self.named(name, mode)
         self.replies.clear()
         epoch = self.epoch
-        self.put(b"\0" + encoded(Frame(BY_NAME[name].number, self.seq, epoch, mode)))
+        self.put(b"\0" + encode_frame(Frame(BY_NAME[name].number, self.seq, epoch, mode)))
         if self.epoch == epoch and first[0] != STALE:
             assert [reply.payload for reply in self.replies] == [first]
 

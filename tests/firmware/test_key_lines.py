@@ -17,12 +17,12 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tests.support.owners import Keys, Owned
 from tiniscript.link.messages import HOLD_MS
-from tiniscript.link.remote import Pressed, pressed
+from tiniscript.link.remote import Pressed, pressed_of
 from tiniscript.link.requests import OK
 
 TOLD = "// No program reads keys"
 DRIVES = "SI|F(9,50)"
-UP, A = pressed(["UP"]), pressed(["A"])
+UP, A = pressed_of(["UP"]), pressed_of(["A"])
 
 
 def booted(kind: type[HostFirmware] = HostFirmware) -> HostFirmware:
@@ -32,8 +32,8 @@ def booted(kind: type[HostFirmware] = HostFirmware) -> HostFirmware:
 
 
 WORDS = (
-    ("KEY_UP", UP), ("KEY_DOWN", pressed(["DOWN"])), ("KEY_LEFT", pressed(["LEFT"])),
-    ("KEY_RIGHT", pressed(["RIGHT"])), ("KEY_A", A), ("KEY_B", pressed(["B"])),
+    ("KEY_UP", UP), ("KEY_DOWN", pressed_of(["DOWN"])), ("KEY_LEFT", pressed_of(["LEFT"])),
+    ("KEY_RIGHT", pressed_of(["RIGHT"])), ("KEY_A", A), ("KEY_B", pressed_of(["B"])),
     ("key_a", A), ("  Key_A ;", A), ("KEY", Pressed()), ("PAD 30 -20", Pressed(0, 30, -20)),
     ("pad  -100   100", Pressed(0, -100, 100)), ("PAD 0 0", Pressed()),
 )  # fmt: skip

@@ -12,7 +12,7 @@ from tests.firmware.test_host_firmware import computer, happened, send, switched
 from tests.firmware.test_persistence import EACH, FIRST, SECOND, bytes_of, saved
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.images import image_of
-from tiniscript.bytecode.image import REFUSALS, pack, sealed, unpack
+from tiniscript.bytecode.image import REFUSALS, pack, unpack, with_checksum
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -24,7 +24,7 @@ VERSION_1 = bytes.fromhex("54530100000000000300101604fa443250")
 def version_3(code: bytes, start: str = "SI") -> bytes:
     """Return an image of a later version, 3.0."""
     image = pack(start, 0, code)
-    return sealed(image[:2] + b"\3\0" + image[4:])
+    return with_checksum(image[:2] + b"\3\0" + image[4:])
 
 
 VERSION_3 = version_3(b"\x44\x32\x50")
@@ -86,7 +86,7 @@ def test_one_of_this_version_before_it_counts() -> None:
     mine = bytes_of("SB|F(0.1, 60)")
     robot, session = met(kept((FIRST, 3, mine), (SECOND, 4, VERSION_3)))
     assert saved(robot, session) == "STORED"
-    later = sealed(mine[:3] + b"\2" + mine[4:])  # of a later minor version
+    later = with_checksum(mine[:3] + b"\2" + mine[4:])  # of a later minor version
     robot, session = met(kept((FIRST, 3, later), (SECOND, 2, VERSION_3)))
     assert saved(robot, session) == "OTHER_VERSION"
 

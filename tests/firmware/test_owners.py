@@ -23,7 +23,7 @@ from tests.support.owners import (
 )
 from tiniscript.link.authority import FREE, OF_ANOTHER, YOUR_OWN, RobotKey
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     KEY_OWNER,
@@ -425,7 +425,7 @@ def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds:
             robot.did.clear()
             its_seq = (session._seq + 1 + 2 * seq + again) % 256
             frame = Frame(BY_NAME["IDENTIFY"].number, its_seq, session._epoch)
-            robot.step(b"\0" + encoded(frame))
+            robot.step(b"\0" + encode_frame(frame))
             begun_ms = robot.now_ms
             seen = [robot.is_lit]
             for _ in range((before_ms if not again else STEPS * STEP_MS + 500) - 1):
@@ -447,7 +447,7 @@ def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
     table.robot.did.clear()
     number, epoch = BY_NAME["IDENTIFY"].number, session._epoch
     for seq in range(300):
-        table.robot.step(b"\0" + encoded(Frame(number, seq % 256, epoch)))
+        table.robot.step(b"\0" + encode_frame(Frame(number, seq % 256, epoch)))
         table.pass_time(session, 9)
     assert state_of(table, session) == STATE_RUNNING
     assert not [line for line in table.robot.did if "MOTORS" in line or "BEEP" in line]

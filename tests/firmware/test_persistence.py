@@ -22,9 +22,9 @@ from tests.support.images import image_of
 from tiniscript.bytecode.image import pack
 from tiniscript.link.messages import SAVED, STATUSES
 from tiniscript.link.payloads import EmptyReply, FetchReply
-from tiniscript.link.requests import OK, Request, single
+from tiniscript.link.requests import OK, Request, send_single
 from tiniscript.link.session import Session
-from tiniscript.link.trim import Pace, Trim, told
+from tiniscript.link.trim import Pace, Trim, trim_from_reply
 
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
 DRIVES = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
@@ -165,7 +165,7 @@ def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
 
 def trim_after_power_off(robot: HostFirmware) -> Trim:
     again, other = switched_on(robot.memory()), computer(2)
-    return told(again.done(other, other.trim()))
+    return trim_from_reply(again.done(other, other.trim()))
 
 
 def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
@@ -296,9 +296,9 @@ def test_a_robot_that_writes_says_busy_to_fetch() -> None:
     other = computer(3)
     assert robot.until(other, other.hello()) == OK
 
-    naming = other._add(single(Request("NAME", {"name": b"NEW"}), EmptyReply))
+    naming = other._add(send_single(Request("NAME", {"name": b"NEW"}), EmptyReply))
     assert robot.until(other, naming) == STATUSES["SAVING"]
-    request = other._add(single(Request("FETCH", {"offset": 0}), FetchReply))
+    request = other._add(send_single(Request("FETCH", {"offset": 0}), FetchReply))
     assert robot.until(other, request) == STATUSES["BUSY"]
 
 

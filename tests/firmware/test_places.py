@@ -13,8 +13,8 @@ from tests.support.owners import Keys, Owned, owner_of
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import Image
 from tiniscript.link.authority import YOUR_OWN
-from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import BY_NAME, PLACES, STATE_RUNNING, read
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
+from tiniscript.link.messages import BY_NAME, PLACES, STATE_RUNNING, decode_payload
 from tiniscript.link.outcomes import Event, PlaceEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -31,11 +31,11 @@ DRIVE = PROGRAMS[0]
 
 def asked(robot: HostFirmware, seq: int, epoch: int) -> tuple[int, int, bytes]:
     """Ask for the place in one frame; return state, run and place of the reply."""
-    data = b"\0" + encoded(Frame(BY_NAME["PING"].number, seq & 0xFF, epoch, b"\1"))
-    frames = [decoded(part) for part in robot.step(data).split(b"\0") if part]
+    data = b"\0" + encode_frame(Frame(BY_NAME["PING"].number, seq & 0xFF, epoch, b"\1"))
+    frames = [decode_frame(part) for part in robot.step(data).split(b"\0") if part]
     frame = next(frame for frame in frames if frame and frame.number == BY_NAME["PING"].number)
     assert frame.payload[0] == OK
-    values = read(BY_NAME["PING"].reply, frame.payload[1:])
+    values = decode_payload(BY_NAME["PING"].reply, frame.payload[1:])
     state, run, place = values["state"], values["run"], values["place"]
     assert isinstance(state, int) and isinstance(run, int) and isinstance(place, bytes)
     return state, run, place
@@ -139,6 +139,6 @@ def test_a_sealed_session_hears_places_sealed() -> None:
         there += data
         session.receive(table.robot.step(data), table.robot.now_ms)
         found += session.events()
-    frames = [decoded(part) for part in there.split(b"\0") if part]
+    frames = [decode_frame(part) for part in there.split(b"\0") if part]
     assert frames and all(frame and frame.is_sealed for frame in frames)
     assert {place_event.program for place_event in place_events_of(found)} == {image.checksum}

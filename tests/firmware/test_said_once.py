@@ -26,7 +26,7 @@ from tests.firmware.test_second_time import SmallRobot
 from tests.machines.host_firmware import TICKS, HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_of
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     AGAIN_MS,
     BY_NAME,
@@ -182,7 +182,7 @@ class Client:
     def receive(self, sent: bytes) -> None:
         *packets, self.heard = (self.heard + sent).split(b"\0")
         for packet in packets:
-            frame = decoded(packet) if packet else None
+            frame = decode_frame(packet) if packet else None
             assert frame or not packet, f"no frame: {packet!r}"
             if frame is not None:
                 self.log.append((self.robot.now_ms, frame))
@@ -289,7 +289,7 @@ class Client:
         self.sent_ms = self.asked_ms = now_ms
         if number == STOP:
             self.note_stop(MESSAGE)
-        self.passes(1, zero + encoded(frame) + after, 0, cause)
+        self.passes(1, zero + encode_frame(frame) + after, 0, cause)
 
     def turn(self) -> None:
         """Ask for something, or let time pass; mostly something stops the robot at any moment."""

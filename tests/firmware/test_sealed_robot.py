@@ -16,8 +16,8 @@ from tests.support.campaign import wanted
 from tests.support.images import image_of
 from tests.support.owners import FOREVER, PRESSED, Keys, Owned, owner_of, state_of
 from tests.support.thief import Thief, wire_of
-from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, ownership_of
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     FIRST_EVENT,
@@ -61,8 +61,8 @@ def test_a_firmware_without_seals_does_as_before() -> None:
     table, session, _ = opened("tiniscript_without_seals")
     assert session.robot and session.robot.values.features & (SEALS | OWNERS) == OWNERS
     there, _ = recorded(table, session, SHORT)
-    assert not any(frame.is_sealed for frame in map(decoded, there) if frame)
-    sealed = Seal(bytes(16)).closed(Frame(BY_NAME["START"].number, 1, 0, b"\0"))
+    assert not any(frame.is_sealed for frame in map(decode_frame, there) if frame)
+    sealed = Seal(bytes(16)).seal_frame(Frame(BY_NAME["START"].number, 1, 0, b"\0"))
     said = table.answer(sealed)
     assert said and said.payload[0] == STATUSES["NOT_SEALED"]
 
@@ -106,9 +106,9 @@ def test_a_stranger_keeps_no_program_running() -> None:
         begun_ms = table.robot.now_ms
         if is_greeting:
             payload = bytes([MAJOR, *bytes(5), *b"abcd"])
-            table.robot.wait(5, b"\0" + encoded(Frame(hello, 1, 0, payload)))
+            table.robot.wait(5, b"\0" + encode_frame(Frame(hello, 1, 0, payload)))
         while table.robot.now_ms < begun_ms + 1010:
-            table.robot.wait(50, b"\0" + encoded(Frame(ping, 1, 0)))
+            table.robot.wait(50, b"\0" + encode_frame(Frame(ping, 1, 0)))
         assert "MOTORS 0 0" in table.robot.did[-2] + table.robot.did[-1]
         frame = table.answer(Frame(ping, 1, 0))
         assert frame and frame.payload[1] == STATE_FAULTED
@@ -124,7 +124,7 @@ def test_a_relay_cannot_say_that_it_worked() -> None:
     for _ in range(25_000):
         data = session.poll(table.robot.now_ms)
         table.robot.now_ms += 1
-        frame = decoded(data.strip(b"\0")) if data else None
+        frame = decode_frame(data.strip(b"\0")) if data else None
         if frame is None:
             continue
         receipt = bytes(8)
@@ -134,12 +134,12 @@ def test_a_relay_cannot_say_that_it_worked() -> None:
             Frame(frame.number, frame.seq, frame.epoch, bytes(22), True, True),
             frame._replace(is_reply=True),
         ]
-        for each in [*map(encoded, forged), *(each + b"\0" for each in back + there), data]:
+        for each in [*map(encode_frame, forged), *(each + b"\0" for each in back + there), data]:
             session.receive(each, table.robot.now_ms)
             assert request.outcome is None
         if chance.random() < 0.2:
             lost = bytes([STATUSES["NOT_OWNER"], 0, 0])
-            session.receive(encoded(forged[0]._replace(payload=lost)), table.robot.now_ms)
+            session.receive(encode_frame(forged[0]._replace(payload=lost)), table.robot.now_ms)
         if request.outcome is not None:
             break
     assert request.outcome and request.outcome.status in (LOST, STATUSES["NOT_OWNER"])
@@ -152,11 +152,11 @@ def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply
     request = session.hello()
     while request.outcome is None:
         data = session.poll(table.robot.now_ms)
-        frame = decoded(data.strip(b"\0")) if data else None
+        frame = decode_frame(data.strip(b"\0")) if data else None
         if frame and frame.number == BY_NAME["AUTHENTICATE"].number and len(frame.payload) > 1:
             for name in ("WRONG_KEY", "STALE", "NOT_OWNER"):
                 said = frame._replace(payload=bytes([STATUSES[name], 4, 0]), is_reply=True)
-                session.receive(b"\0" + encoded(said), table.robot.now_ms)
+                session.receive(b"\0" + encode_frame(said), table.robot.now_ms)
             data = b"" if is_cut else data
         session.receive(table.robot.step(data), table.robot.now_ms)
     return request.outcome
@@ -171,7 +171,7 @@ def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) ->
     keys.found = [robot_key._replace(is_pending=is_pending) for robot_key in keys.found]
     session = table.session(keys, nonce=8)
     assert refused_by_a_stranger(table, session, is_cut).status == 0
-    assert session.robot and whose(session.robot) == (OF_ANOTHER if is_cut else YOUR_OWN)
+    assert session.robot and ownership_of(session.robot) == (OF_ANOTHER if is_cut else YOUR_OWN)
     assert [key.is_stale for key in keys.found] == [is_cut]
     assert is_cut or not keys.found[0].is_pending
     assert table.tries(table.session(keys, nonce=9) if is_cut else session) == "OK"
@@ -184,7 +184,7 @@ def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
     session.events()
     session.stop(table.robot.now_ms)
     stopped = Frame(BY_NAME["STOPPED"].number, 9, session._epoch + 1, b"\1", is_reply=True)
-    forged = b"\0" + encoded(stopped)
+    forged = b"\0" + encode_frame(stopped)
     for _ in range(500):  # the zeros do not arrive
         session.poll(table.robot.now_ms)
         session.receive(forged, table.robot.now_ms)
@@ -371,7 +371,7 @@ def attacked(frames: int, seed: int) -> Counter[str]:
 
 
 def _is_sealed(wire: bytes) -> bool:
-    frame = decoded(wire)
+    frame = decode_frame(wire)
     return frame is not None and frame.is_sealed
 
 

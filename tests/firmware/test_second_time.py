@@ -31,7 +31,7 @@ from tiniscript import robots
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.codegen.text.line import line_of
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
 
@@ -41,7 +41,7 @@ MARK = "BEEP(0.001, 31);"  # tells when a program begins
 MARKED = ("BEEP 31 1", "TONE 31")
 CLOCKS_MS = (0, 2**16 - 900, 2**31 - 900, 2**32 - 900)  # what a robot's clock says at first
 RUNS_MS = 600  # of the second program that are looked at
-STOP_MESSAGE = b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))
+STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 
 
 class SmallRobot(HostFirmware):

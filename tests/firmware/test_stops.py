@@ -16,7 +16,7 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tests.support.pty_robot import drives_now
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -44,7 +44,7 @@ def left(robot: HostFirmware, session: Session) -> None:
     robot.step(flags=8)
 
 
-STOP_MESSAGE = b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))
+STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 BETWEENS: dict[str, Callable[[HostFirmware, Session], object]] = {
     "stopped by zeros": lambda robot, session: robot.step(bytes(4)),
     "stopped by a message": lambda robot, session: robot.wait(20, STOP_MESSAGE),
@@ -104,7 +104,7 @@ def test_a_stop_works_every_time(how: str) -> None:
     """Stop, button, stop, button: whoever stops goes on sending, as where nothing comes back."""
     robot, session = switched_on(), computer()
     waiting(robot, session)
-    stop = bytes(8) if how == "zeros" else b"\0" + encoded(Frame(BY_NAME["STOP"].number, 7, 0))
+    stop = bytes(8) if how == "zeros" else b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 7, 0))
     for _ in range(300):  # more often than a number of 8 bits can tell
         robot.push(2)
         assert happened(robot)[-1] == "MOTORS 80 80"
@@ -125,7 +125,7 @@ def test_who_stops_with_zeros_is_answered_with_a_frame_whatever_was_typed_before
     robot.wait(1500, line)
     sent = robot.wait(60, bytes(8))
     assert b"//" not in sent
-    frames = [decoded(part) for part in sent.split(b"\0") if part]
+    frames = [decode_frame(part) for part in sent.split(b"\0") if part]
     assert [frame and frame.number for frame in frames] == [BY_NAME["STOPPED"].number]
 
 

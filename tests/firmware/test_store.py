@@ -127,7 +127,7 @@ def test_on_a_chip(size: int, ticks: int) -> None:
     request = struct_pack("<H", ticks)
     for image in (first, second):
         request += struct_pack("<H", len(image)) + image
-    *said, start, save = avr_bench.run(avr_bench.built("store"), request)
+    *said, start, save = avr_bench.run(avr_bench.build("store"), request)
     saved, saving = f"STATE {SAVED}", f"STATE {SAVING}"
     assert said == [
         *expected_lines(b""),

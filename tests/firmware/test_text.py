@@ -28,7 +28,7 @@ from tests.support.command import OBSTACLE
 from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.base.kit import NUMBER, REMOTE, Device, Kit
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME, SAVED_STORED, STATE_RUNNING, STATUSES
 from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import OK
@@ -37,7 +37,7 @@ from tiniscript.link.session import Session
 SAVED_BACK = ["MOTORS -60 -60", "MOTORS 0 0", "FINISHED"]  # what `holding` holds
 LINE = ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
 SAVED_MEMORY = 1
-STOP_MESSAGE = b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))
+STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 
 
 def typed(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> list[str]:

@@ -28,7 +28,7 @@ from tests.support.images import image_of
 from tests.support.platformio import firmware, shared
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-from tools.bench.link import built
+from tools.bench.link import build
 from tools.uno import CYCLES_PER_MS, Uno
 
 BAUDS = (9600, 115_200)
@@ -98,7 +98,7 @@ def sketch(
     folder, run = tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory)
     if baud == BAUDS[0]:
         return firmware("uno", folder, run), baud
-    return once(run / f"uno_{baud}.elf", lambda path: shutil.copy(built(baud, folder), path)), baud
+    return once(run / f"uno_{baud}.elf", lambda path: shutil.copy(build(baud, folder), path)), baud
 
 
 @pytest.fixture
@@ -122,7 +122,7 @@ def switched_on(sketch: Path, baud: int) -> Uno:
 
 
 def said(uno: Uno, since: int) -> str:
-    return bytes(byte.value for byte in uno.sent[since:]).decode("latin-1")
+    return bytes(byte.value for byte in uno.sent_bytes[since:]).decode("latin-1")
 
 
 def drive(uno: Uno) -> None:
@@ -145,14 +145,16 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
     uno.send(prefix + spelling)
     uno.run_ms(len(prefix + spelling) * byte_ms + HELD_MS + 10)
     end = next(
-        k for k in reversed(range(len(uno.received))) if uno.received[k].value not in b"\r\n\0"
+        k
+        for k in reversed(range(len(uno.received_bytes)))
+        if uno.received_bytes[k].value not in b"\r\n\0"
     )
-    line_end = uno.received[end + 1]  # of CR LF the first one
+    line_end = uno.received_bytes[end + 1]  # of CR LF the first one
     off = max(uno.pins[name].cycle for name in ("left", "right"))
     what = f"{prefix!r} {spelling!r}"
     assert states(uno) == OFF, what
     late_ms = (off - line_end.cycle) / CYCLES_PER_MS
-    behind_ms = (off - uno.received[-1].cycle) / CYCLES_PER_MS
+    behind_ms = (off - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
     is_held = behind_ms < HELD_MS + (BUSY_TURN_MS if is_busy else TURN_MS)
     if not is_busy:
         is_held = is_held and behind_ms > HELD_MS - TURN_MS
@@ -172,7 +174,7 @@ def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> 
     uno, baud = driving_at
     spellings = spellings_after(name)[(list(ALL).index(name) + BAUDS.index(baud)) % 2 :: 2]
     for spelling in spellings:
-        with uno.aside():
+        with uno.try_out():
             stop_after(uno, baud, ALL[name], spelling)
             if spelling == spellings[-1]:
                 is_latched(uno)
@@ -195,7 +197,7 @@ def _is_printable(line: bytes) -> bool:
 @pytest.mark.parametrize("name", FRAMED)
 def test_a_loose_spelling_in_a_frame_is_none(driving_at: tuple[Uno, int], name: str) -> None:
     uno, _ = driving_at
-    with uno.aside():
+    with uno.try_out():
         uno.send(FRAMED[name] + b"stop!\nS()\nalto\n")
         uno.run_ms(HELD_MS + 50)
         assert states(uno) == FORWARD
@@ -210,7 +212,7 @@ def off_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
     uno.run_ms(len(data) * byte_ms + 10)
     assert states(uno) == OFF, data
     off = max(uno.pins[name].cycle for name in ("left", "right"))
-    return (off - uno.received[-1].cycle) / CYCLES_PER_MS
+    return (off - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
 
 
 @pytest.mark.parametrize(
@@ -220,13 +222,13 @@ def off_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
 def test_who_sends_no_line_end_stops(driving_at: tuple[Uno, int], data: bytes) -> None:
     """A held button's row of S, and a second STOP."""
     uno, baud = driving_at
-    with uno.aside():
+    with uno.try_out():
         assert off_ms(uno, data, 10_000 / baud) < MOST_MS
 
 
 def test_a_row_of_s_without_line_ends_stops_at_the_third(driving_at: tuple[Uno, int]) -> None:
     uno, _ = driving_at
-    with uno.aside():
+    with uno.try_out():
         for sent in range(1, 9):
             uno.send(b"S")
             uno.run_ms(400)
@@ -239,7 +241,7 @@ def test_one_without_a_line_end_stops_after_a_second(
     driving_at: tuple[Uno, int], data: bytes
 ) -> None:
     uno, baud = driving_at
-    with uno.aside():
+    with uno.try_out():
         uno.send(data)
         uno.run_ms(SILENCE_MS - 50)
         assert states(uno) == FORWARD
@@ -252,7 +254,7 @@ def test_one_without_a_line_end_stops_after_a_second(
 )  # fmt: skip
 def test_what_is_none_without_a_line_end(driving_at: tuple[Uno, int], data: bytes) -> None:
     uno, _ = driving_at
-    with uno.aside():
+    with uno.try_out():
         uno.send(data)
         uno.run_ms(200)
         assert states(uno) == FORWARD
@@ -264,12 +266,12 @@ def test_ctrl_c_alone_stops_after_silence(
     driving_at: tuple[Uno, int], prefix: bytes, data: bytes
 ) -> None:
     uno, baud = driving_at
-    with uno.aside():
+    with uno.try_out():
         late_ms = off_after_silence(uno, prefix + data, 10_000 / baud)
         assert HELD_MS - TURN_MS < late_ms < HELD_MS + BUSY_TURN_MS
         is_latched(uno)
     for other in (b"x" + data, b"\0" + data, data + b"x", b" " + data):
-        with uno.aside():
+        with uno.try_out():
             uno.send(other)
             uno.run_ms(3 * HELD_MS)
             assert states(uno) == FORWARD, other
@@ -280,7 +282,7 @@ def off_after_silence(uno: Uno, data: bytes, byte_ms: float) -> float:
     uno.run_ms(len(data) * byte_ms + HELD_MS + 2 * BUSY_TURN_MS)
     assert states(uno) == OFF, data
     off = max(uno.pins[name].cycle for name in ("left", "right"))
-    return (off - uno.received[-1].cycle) / CYCLES_PER_MS
+    return (off - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
 
 
 # -- when lines count again -----------------------------------------------------------------------
@@ -307,8 +309,8 @@ def test_a_remote_that_repeats_is_heard_again_after_a_second(
     driving_at: tuple[Uno, int], stop: bytes
 ) -> None:
     uno, _ = driving_at
-    with uno.aside():
-        before = len(uno.sent)
+    with uno.try_out():
+        before = len(uno.sent_bytes)
         uno.send(stop)
         uno.run_ms(50)
         assert states(uno) == OFF
@@ -321,8 +323,8 @@ def test_after_the_stop_sequence_a_second_of_silence_is_needed(
     driving_at: tuple[Uno, int],
 ) -> None:
     uno, _ = driving_at
-    with uno.aside():
-        before = len(uno.sent)
+    with uno.try_out():
+        before = len(uno.sent_bytes)
         uno.send(bytes(8))
         uno.run_ms(50)
         assert states(uno) == OFF
@@ -338,12 +340,12 @@ def test_in_an_open_block_a_spelling_belongs_to_the_program(
     """What runs ends; the robot is stopped for good only if the line is wrong there."""
     uno, _ = driving_at
     for line, is_stopped in ((b"S", False), (b"STOP;STOP", False), (b"STOP NOW", True)):
-        with uno.aside():
+        with uno.try_out():
             for each in (b"SI|LOOP(2)", line):
                 uno.send(each + b"\r\n")
                 uno.run_ms(100)
             assert states(uno) == OFF, line
-            before = len(uno.sent)
+            before = len(uno.sent_bytes)
             uno.send(b"F(0.1,80)\r\nEND_LOOP\r\n")
             uno.run_ms(200)
             assert ("// OK" in said(uno, before)) is not is_stopped, said(uno, before)
@@ -354,7 +356,7 @@ def test_in_an_open_block_a_spelling_belongs_to_the_program(
 
 def is_latched(uno: Uno) -> None:
     uno.run_ms(SILENCE_MS + 100)
-    before = len(uno.sent)
+    before = len(uno.sent_bytes)
     uno.send(b"F(1,80)\n")
     uno.run_ms(200)
     assert states(uno) == OFF and "// It was stopped." in said(uno, before), "it is latched"
@@ -369,7 +371,7 @@ def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> No
         uno.send(line.encode() + b"\r\n")
         uno.run_ms(60)
     assert states(uno) == OFF
-    before = len(uno.sent)
+    before = len(uno.sent_bytes)
     uno.send(OBSTACLE[-1].encode() + b"\r\n")
     uno.run_ms(60)
     assert states(uno) == FORWARD and said(uno, before) == "// OK\r\n"
@@ -381,7 +383,7 @@ def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
     """A stop after them is looked for before the wire is free; here it belongs to a block."""
     uno, _ = uno_at
     uno.run_ms(SILENCE_MS + 50)
-    before = len(uno.sent)
+    before = len(uno.sent_bytes)
     uno.send(b"FOO\nFOO\nIF(TRUE)\nS\n")
     uno.run_ms(SILENCE_MS + 500)
     first, *others = said(uno, before).splitlines()
@@ -399,7 +401,7 @@ def test_code_that_holds_a_typed_stop_runs(uno_at: tuple[Uno, int], way: str) ->
     wired = Wired(uno, Session(1, baud, KIT.fingerprint))
     request = wired.session.live(image.code) if way == "live" else wired.session.upload(image)
     assert wired.until(request) == OK
-    assert b"\nS\n" in bytes(byte.value for byte in uno.received)
+    assert b"\nS\n" in bytes(byte.value for byte in uno.received_bytes)
     begun_ms = wired.now_ms
     wired.run(SILENCE_MS + HELD_MS)
     assert states(uno) == FORWARD
@@ -428,7 +430,7 @@ def stop_after_random_bytes(sketch: Path, baud: int, draw: random.Random, count:
                 drive(uno)
             prefix, spelling = random_prefix(draw), draw.choice(STRICT)
             is_last = k % FROM_ONE_STATE == FROM_ONE_STATE - 1
-            with nullcontext() if is_last else uno.aside():
+            with nullcontext() if is_last else uno.try_out():
                 late_ms = stop_after(uno, baud, prefix, spelling, is_busy=True)
             slowest_ms = max(slowest_ms, late_ms)
     return slowest_ms
@@ -452,17 +454,17 @@ QUIET_MS = 700  # longer than a program of these lines
 def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
     """A robot that has heard nothing for a second: tests go aside from there."""
     needed()
-    with switched_on(built(BAUD, tmp_path_factory.mktemp("sketch")), BAUD) as uno:
+    with switched_on(build(BAUD, tmp_path_factory.mktemp("sketch")), BAUD) as uno:
         uno.run_ms(SILENCE_MS)
         yield uno
 
 
 def lines_said(uno: Uno, data: bytes) -> list[str]:
     """Return the lines that the robot says to this, until it is silent and no program runs."""
-    before, seen = len(uno.sent), -1
+    before, seen = len(uno.sent_bytes), -1
     uno.send(data)
-    while seen != len(uno.sent):
-        seen = len(uno.sent)
+    while seen != len(uno.sent_bytes):
+        seen = len(uno.sent_bytes)
         uno.run_ms(QUIET_MS)
     return said(uno, before).splitlines()
 
@@ -473,23 +475,23 @@ def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
     """An Uno keeps 62 bytes of text that waits. At 115200 baud lines come sooner than it has read
     them, and while it answers it reads none."""
     uno, data = quick_uno, line.encode() + b"\r\n"
-    with uno.aside():
+    with uno.try_out():
         one = [each for each in lines_said(uno, data) if each not in ("// DONE", "// 1", LOST)]
         for count in (TWENTY // 2, TWENTY):
-            with uno.aside():
+            with uno.try_out():
                 many = lines_said(uno, data * count)
                 answers = sum(each in one for each in many)
                 is_told = LOST in many or MUTE in many
                 assert is_told or answers == len(one) * count, many
                 assert is_told or count < TWENTY, "as twenty lines are, some are lost"
-                before = len(uno.sent)
+                before = len(uno.sent_bytes)
                 uno.send(b"SI|SHOW(7)\n")
                 uno.run_ms(100)
                 assert said(uno, before).endswith("// 7\r\n// DONE\r\n")
 
 
 def test_a_line_of_227_bytes_is_pasted_whole(quick_uno: Uno) -> None:
-    with quick_uno.aside():
+    with quick_uno.try_out():
         assert lines_said(quick_uno, b"SI|" + b"F(2,80);" * 28 + b"\n") == ["// OK"]
 
 
@@ -498,7 +500,7 @@ if __name__ == "__main__":
     drawn = random.Random(given.seed)
     with tempfile.TemporaryDirectory() as folder:
         for rate in BAUDS:
-            made = built(rate, Path(folder))
+            made = build(rate, Path(folder))
             for first in range(0, given.count // 2, 500):
                 some = min(500, given.count // 2 - first)
                 slowest = stop_after_random_bytes(made, rate, drawn, some)

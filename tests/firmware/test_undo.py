@@ -36,9 +36,9 @@ from tests.firmware.test_persistence import (
 )
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
-from tiniscript.bytecode.image import sealed
+from tiniscript.bytecode.image import with_checksum
 from tiniscript.bytecode.opcodes import ISA_MINOR
-from tiniscript.link.frames import decoded
+from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import SAVED_STORED, STATUSES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -69,12 +69,12 @@ def with_byte(text: str, at: int, value: int) -> bytes:
     return bytes(image)
 
 
-OF_ANOTHER_KIT = sealed(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))  # a byte of what it needs
-THAT_NO_VERIFIER_TAKES = sealed(with_byte(A, -1, 0xFE))
+OF_ANOTHER_KIT = with_checksum(with_byte("SI|SHOW(DISTANCE)", 6, 0x11))  # a byte of what it needs
+THAT_NO_VERIFIER_TAKES = with_checksum(with_byte(A, -1, 0xFE))
 CANNOT_RUN = {
     "version": VERSION_3,
     "kit": OF_ANOTHER_KIT,
-    "minor": sealed(with_byte(A, 3, ISA_MINOR + 1)),
+    "minor": with_checksum(with_byte(A, 3, ISA_MINOR + 1)),
     "verifier": THAT_NO_VERIFIER_TAKES,
     "damaged": with_byte(A, -1, bytes_of(A)[-1] ^ 1),
 }
@@ -254,7 +254,7 @@ def test_a_request_that_comes_twice_is_done_once() -> None:
     robot, session = with_two()
     request = session.undo()
     wire = session.poll(robot.now_ms)
-    answers = [decoded(robot.wait(wait_ms, wire).strip(b"\0")) for wait_ms in (50, 500, 2000)]
+    answers = [decode_frame(robot.wait(wait_ms, wire).strip(b"\0")) for wait_ms in (50, 500, 2000)]
     assert request.outcome is None
     programs = {answer.payload[:5] for answer in answers if answer}
     assert None not in answers

@@ -22,7 +22,7 @@ from tests.firmware.test_uno_robot import (
 )
 from tests.firmware.test_uno_watchdog import built
 from tests.machines.wired import Wired
-from tiniscript.link.frames import Frame, decoded
+from tiniscript.link.frames import Frame, decode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
@@ -64,7 +64,7 @@ def test_bytes_that_nobody_fetches_damage_a_message(tmp_path: Path) -> None:
         ping = wired.session.ping()
         uno.press("button", at=uno.cycle + 2 * CYCLES_PER_MS)
         assert wired.until(ping) == OK  # sent again
-        assert len(uno.lost) >= 3
+        assert len(uno.lost_bytes) >= 3
         assert counted(wired) == (1, 0, 0, 1)
 
 
@@ -79,8 +79,8 @@ def driving(uno: Uno) -> Wired:
 
 def frames_since(uno: Uno, since: int) -> list[Frame]:
     """Return the frames that the robot has sent since a cycle."""
-    sent = bytes(byte.value for byte in uno.sent if byte.cycle > since)
-    return [frame for part in sent.split(b"\0") if (frame := decoded(part)) is not None]
+    sent = bytes(byte.value for byte in uno.sent_bytes if byte.cycle > since)
+    return [frame for part in sent.split(b"\0") if (frame := decode_frame(part)) is not None]
 
 
 def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) -> None:
@@ -93,7 +93,7 @@ def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) 
     assert off - began < 10 * CYCLES_PER_MS
     # the chip has told it once, and so does the robot
     uno.run_ms(980)
-    assert [byte.cycle > began for byte in uno.received].count(True) == 1
+    assert [byte.cycle > began for byte in uno.received_bytes].count(True) == 1
     assert [frame.number for frame in frames_since(uno, began)] == [BY_NAME["STOPPED"].number]
     # a cable that was pulled out stays as it is, and the robot has its button
     uno.press("button", ms=100)

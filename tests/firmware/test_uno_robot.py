@@ -13,12 +13,12 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import checksum, unpack
 from tiniscript.library import source_map
 from tiniscript.library.shows import Finder
-from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
+from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, ownership_of
 from tiniscript.link.messages import KEY_OWNER, SAVED_STORED
 from tiniscript.link.outcomes import Event, ShownEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-from tiniscript.link.trim import Pace, Trim, told
+from tiniscript.link.trim import Pace, Trim, trim_from_reply
 from tools.uno import CYCLES_PER_MS, Uno
 
 KIT = robots.load("tinibot").kit
@@ -77,7 +77,7 @@ def test_a_program_drives(uno: Uno) -> None:
     wired.run(1100)
     assert states(uno) == OFF
     assert [event.name for event in wired.session.events()] == ["DONE"]
-    assert not uno.lost
+    assert not uno.lost_bytes
 
 
 def test_an_undo_writes_eight_bytes(uno: Uno) -> None:
@@ -110,7 +110,7 @@ def test_a_measured_robot_keeps_how_fast_it_is(sketch: Path, memory: Path) -> No
     uno.kill()
     with switched_on(sketch, memory) as again:
         wired = computer(again, 2)
-        assert told(wired.done(wired.session.trim())) == Trim(pace=pace)
+        assert trim_from_reply(wired.done(wired.session.trim())) == Trim(pace=pace)
         assert drive_ms(again, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
         assert drive_ms(again, "SI|R(90 DEG, 60)") == pytest.approx(417, abs=2)
 
@@ -159,7 +159,7 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
             )
             for name in ("left", "right")
         )
-        zero = max(byte.cycle for byte in uno.received if byte.cycle < on)
+        zero = max(byte.cycle for byte in uno.received_bytes if byte.cycle < on)
         taken.append(on - zero)
         wired.run(140)
     assert sorted(taken)[len(taken) * 3 // 4] <= LIVE_CYCLES
@@ -223,7 +223,7 @@ def test_a_radio_that_is_not_there_ends_nothing_and_a_second_of_silence_does(uno
     send(wired, AWAY)
     wired.run(300)
     assert states(uno) == FORWARD
-    last = max(byte.cycle for byte in uno.received)
+    last = max(byte.cycle for byte in uno.received_bytes)
     uno.run_ms(1500)
     assert states(uno) == OFF
     assert max(uno.pins[name].cycle for name in MOTORS) - last <= 1050 * CYCLES_PER_MS
@@ -257,7 +257,7 @@ def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None
         wired.session = Session(nonce, BAUD, KIT.fingerprint, keys=shown)
         assert wired.until(wired.session.hello()) == OK
         assert wired.session.robot
-        return whose(wired.session.robot)
+        return ownership_of(wired.session.robot)
 
     wired = Wired(uno, Session(1, BAUD, KIT.fingerprint, keys=keys))
     request = wired.session.claim(KEY_OWNER)
@@ -277,7 +277,7 @@ def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None
 def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
     """All of them wait for the wire, which takes 18 ms for each value."""
     found = compile_text(SHOWS, KIT)
-    places, wired = source_map.made(found), computer(uno)
+    places, wired = source_map.map_of_compiled(found), computer(uno)
     finder = Finder({checksum(found.image): places})
     assert wired.until(wired.session.upload(unpack(found.image))) == OK
     events: list[Event] = []
@@ -287,6 +287,6 @@ def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
     shown = [shown_event for shown_event in events if isinstance(shown_event, ShownEvent)]
     names = {1: "ONE", 2: "TWO", 3: "THREE"}
     for event in shown:
-        show = finder.of(event)
+        show = finder.show_of(event)
         assert show and show.text == names[event.value // 1000], event
     assert [sum(shown_event.value == 1000 * k for shown_event in shown) for k in names] == [8, 8, 8]

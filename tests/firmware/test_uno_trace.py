@@ -116,7 +116,7 @@ def check_pins(case: Case, uno: Uno) -> None:
         assert wired.until(wired.session.hello()) == OK
         assert seen(uno, 0) == []
         return
-    heard = len(uno.received)
+    heard = len(uno.received_bytes)
     assert wired.until(wired.session.upload(image, is_detached=True)) == OK
     began = last_zero(uno, heard)
     if image.start == "SB":
@@ -154,7 +154,7 @@ def check_pins(case: Case, uno: Uno) -> None:
 
 def last_zero(uno: Uno, since: int) -> int:
     """Return when the last frame was there from which something has begun to move."""
-    heard = uno.received[since:]
+    heard = uno.received_bytes[since:]
     moved = [change.cycle for name in MOTORS for change in uno.pins.history(name)
              if change.state in ("high", "pwm") and change.cycle > heard[0].cycle]  # fmt: skip
     end = min(moved, default=heard[-1].cycle + 1)
@@ -165,7 +165,7 @@ def last_zero(uno: Uno, since: int) -> int:
 def test_a_thousand_short_waits_take_a_minute(sketch: Path, tmp_path: Path) -> None:
     """A wait begins where the one before has ended, not when the machine comes to it."""
     with switched_on(sketch, tmp_path / "eeprom") as uno:
-        heard = len(uno.received)
+        heard = len(uno.received_bytes)
         send(computer(uno), "SI|LOOP(500); F(0.06, 50); W(0.06); END_LOOP; M(90, 90)",
              is_detached=True)  # fmt: skip
         began = last_zero(uno, heard)

@@ -20,7 +20,7 @@ from tests.support.campaign import wanted
 from tests.support.images import image_of
 from tiniscript import compile_text
 from tiniscript.bytecode.image import HEADER_BYTES
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, RUN, SAVE
 from tiniscript.link.requests import OK
 
@@ -76,7 +76,7 @@ class Trials:
 
     def frame(self, name: str, payload: bytes = b"") -> bytes:
         self.seq = (self.seq + 1) % 256
-        return encoded(Frame(BY_NAME[name].number, self.seq, self.epoch, payload))
+        return encode_frame(Frame(BY_NAME[name].number, self.seq, self.epoch, payload))
 
     def put(self, data: bytes, milliseconds: int) -> None:
         """Let bytes arrive in one burst, as where a turn was long; hear what the robot says."""
@@ -84,7 +84,7 @@ class Trials:
         if milliseconds:
             sent += self.robot.wait(milliseconds)
         *packets, self.heard = (self.heard + sent).split(b"\0")
-        for frame in map(decoded, packets):
+        for frame in map(decode_frame, packets):
             self.epoch = frame.epoch if frame else self.epoch
 
     def text(self, is_whole: bool = False) -> tuple[bytes, list[bytes]]:

@@ -91,9 +91,9 @@ def test_sources_robot_and_board_make_the_digest(clone: Path, own: Path) -> None
         for robot in (robots.load("tinibot"), robots.load("tinibot", "nano"), robots.load(str(own)))
     }
     assert len(digests) == 3
-    spanish = robots.load("tinibot").speaking("es")
+    spanish = robots.load("tinibot").with_language("es")
     assert sources.digest(spanish) not in digests and ready.title_of(spanish) == "tinibot_es"
-    assert ready.title_of(spanish.speaking("en")) == "tinibot_es"
+    assert ready.title_of(spanish.with_language("en")) == "tinibot_es"
     for name in sources.files:
         changed = building.Sources({**sources.files, name: sources.files[name] + b"\n"})
         digests.add(changed.digest(robots.load("tinibot")))
@@ -136,7 +136,7 @@ def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
     monkeypatch.setattr(building, "sources", lambda: None)
     monkeypatch.setattr(ready, "files", lambda: files)
     for language, wanted in (("es", spanish), ("en", english)):
-        robot = robots.load("liner", "nano").speaking(language)
+        robot = robots.load("liner", "nano").with_language(language)
         if wanted is None:
             with pytest.raises(CommandError):
                 firmware_build.firmware(robot, Namespace(yes=True), "en")
@@ -355,7 +355,7 @@ def test_without_platformio_it_says_how_to_get_it(
 ) -> None:
     """Where pip may install nothing; else `tests/cli/test_fetching.py`."""
     monkeypatch.setattr(building, "find_spec", lambda name: None)
-    monkeypatch.setattr(install_advice, "installing", lambda extra: None)
+    monkeypatch.setattr(install_advice, "install_command", lambda extra: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setenv("HOME", str(tmp_path))
     done = tsc("firmware", "--build").gives(2, out="")
@@ -394,7 +394,7 @@ def test_a_package_without_sources_says_how_to_get_them(tmp_path: Path) -> None:
     ("Compiling a\n" * 50, StepProgress(COMPILING, 99)),
 ])  # fmt: skip
 def test_how_far_it_is(said: str, seen: StepProgress | None) -> None:
-    assert building.seen(said, 10) == seen
+    assert building.parse_progress(said, 10) == seen
 
 
 def test_all_sources_are_not_yet_all_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

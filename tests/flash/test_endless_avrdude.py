@@ -16,14 +16,14 @@ import pytest
 from tests.support.texts import in_all
 from tests.support.waiting import has_ended, until
 from tiniscript.flash import avrdude, children
-from tiniscript.flash.avrdude import Ended, StepProgress
+from tiniscript.flash.avrdude import StepProgress, WriteResult
 from tiniscript.flash.bootloaders import UNO
 
 WRITES = "import sys\nwhile True: sys.stdout.write({said!r}); sys.stdout.flush()\n"
 HALF = "Reading | ### |\\nWriting | " + "#" * 25
 
 
-def ended(folder: Path, body: str) -> tuple[Ended, list[StepProgress | None]]:
+def ended(folder: Path, body: str) -> tuple[WriteResult, list[StepProgress | None]]:
     """Let this avrdude write a firmware; return how it ended and what was seen of it.
 
     There is a file `seen` as soon as anything was.

@@ -31,7 +31,7 @@ from tiniscript.flash import avrdude, ready
 from tiniscript.flash.avrdude import StepProgress
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tiniscript.flash.ready import Ready
-from tiniscript.robots.profile import answered
+from tiniscript.robots.profile import answer_languages
 from tools import CannotMake
 from tools.bench import firmware_size
 from tools.builds import firmware_files
@@ -322,7 +322,7 @@ def test_every_end_has_its_sentence() -> None:
     ("Writing 15630 bytes flash | #####", ("writing", 10)),
 ])  # fmt: skip
 def test_how_far_it_is(said: str, seen: object) -> None:
-    assert avrdude.seen(said) == seen
+    assert avrdude.parse_progress(said) == seen
 
 
 def test_what_cannot_be_run_is_no_crash(tmp_path: Path) -> None:
@@ -349,11 +349,12 @@ def test_every_board_of_the_option_is_one_that_is_built() -> None:
     built = {name.partition("_")[0] for name in firmware_size.environments()}
     assert {board for board, _ in BOARDS.values()} == built
     brought = {
-        (robot.name, robot.board.chip, robot.board.language) for robot in firmware_files.shipped()
+        (robot.name, robot.board.chip, robot.board.language)
+        for robot in firmware_files.shipped_robots()
     }
     assert brought == {
         (robot or robots.DEFAULT, board, language)
-        for language in answered()
+        for language in answer_languages()
         for board, _, robot in (name.partition("_") for name in firmware_size.environments())
     }
 

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from tiniscript.flash import avrdude
-from tiniscript.flash.avrdude import MARKS, NOBODY_S, SILENCE_S, WHOLE_S, Ended, StepProgress
+from tiniscript.flash.avrdude import MARKS, NOBODY_S, SILENCE_S, WHOLE_S, StepProgress, WriteResult
 
 LOOK_S = 0.1
 MEGA_S = 50.0  # writing its 256 KB and reading them back
@@ -43,7 +43,7 @@ def output(rng: random.Random, whole_s: float, longest_s: float) -> list[tuple[f
 
 def watched(
     clock: Clock, parts: list[tuple[float, str]], until_s: float
-) -> tuple[Ended | None, float]:
+) -> tuple[WriteResult | None, float]:
     """Return how the watch has ended it, or None, and when."""
     seen: list[StepProgress | None] = []
     watch = avrdude._Watch(seen.append)
@@ -83,4 +83,4 @@ def test_what_stands_still_ends(clock: Clock, seed: int) -> None:
 def test_what_only_says_something_ends(clock: Clock) -> None:
     parts = [(0.0, SIGNATURE + "Writing | #"), *((k * 1.0, ".") for k in range(1000))]
     how, at_s = watched(clock, parts, WHOLE_S + 10)
-    assert how == Ended(avrdude.ENDLESS) and at_s < WHOLE_S + 2 * LOOK_S
+    assert how == WriteResult(avrdude.ENDLESS) and at_s < WHOLE_S + 2 * LOOK_S

@@ -24,7 +24,7 @@ from tests.support.casefile import ROOT
 from tests.support.link_cases import link_cases
 from tests.support.random_codes import random_codes, random_images
 from tiniscript.bytecode.image import pack
-from tiniscript.link.frames import decoded
+from tiniscript.link.frames import decode_frame
 
 COMPILER = "clang++-22"
 FLAGS = ("-std=c++11", "-O2", "-g", "-fsanitize=fuzzer,address,undefined",
@@ -129,7 +129,7 @@ def link_seeds() -> Iterator[bytes]:
             if words is None:
                 continue
             data = bytes.fromhex(words[1])
-            frame = decoded(data.rstrip(b"\0"))
+            frame = decode_frame(data.rstrip(b"\0"))
             if frame is not None and frame.number < 0x40:
                 events += bytes([frame.number, len(frame.payload)]) + frame.payload
             else:

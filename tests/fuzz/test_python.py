@@ -25,12 +25,12 @@ from tiniscript.base.source import Source
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.verify import verify
 from tiniscript.diagnostics.rendering import as_text, message
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import MESSAGES, PAYLOAD_BYTES
 from tiniscript.link.session import Session
 from tiniscript.link.sharing import protocol
 from tiniscript.link.sharing.protocol import BadMessage, MessageReader
-from tiniscript.link.sharing.requests import ClientRequests, asked_for
+from tiniscript.link.sharing.requests import ClientRequests, request_maker
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.reader import read as read_profile
 from tiniscript.virtual.worlds import read as read_world
@@ -114,7 +114,7 @@ def check_answers(items: list[tuple[int, int, bytes, bool]]) -> None:
             if session.poll(now_ms):
                 seq = (seq + 1) & 0xFF
         frame = Frame(number, (seq + delta) & 0xFF, delta & 0xFF, payload, is_reply=True)
-        session.receive(b"\0" + encoded(frame) if is_frame else payload + b"\0", now_ms)
+        session.receive(b"\0" + encode_frame(frame) if is_frame else payload + b"\0", now_ms)
         session.events()
         now_ms += 10 * (delta & 0x1F)
     session.stop(now_ms)
@@ -128,7 +128,7 @@ def check_message(found: object) -> None:
     """A line of a shared port is a request that a session takes, or no message."""
     try:
         for each in MessageReader(1 << 20).put(json.dumps(found).encode() + b"\n"):
-            ask = asked_for(each, 1000)
+            ask = request_maker(each, 1000)
             session = Session(7, 9600, KIT.fingerprint)
             ask(session)
             for now_ms in range(0, 300, 50):

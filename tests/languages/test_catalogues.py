@@ -25,7 +25,7 @@ from tiniscript.base.languages import FOLDER, ITSELF, SOURCE
 from tiniscript.base.translations import read_language
 from tiniscript.base.words import WORDS
 from tiniscript.cli import main
-from tiniscript.cli.streams import wrapped
+from tiniscript.cli.streams import wrap
 from tiniscript.cli.texts import language_of
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.diagnostics import rendering
@@ -226,7 +226,7 @@ def test_a_terminal_has_sentences_in_its_width_and_a_pipe_each_in_one_row(
     ("one\n\nhttp://long.example/a/page", ["one", "", "http://long.example/a/page"]),
 ])  # fmt: skip
 def test_a_command_stays_in_one_row_where_there_is_room(said: str, rows: list[str]) -> None:
-    assert wrapped(said, 20) == "\n".join(rows)
+    assert wrap(said, 20) == "\n".join(rows)
 
 
 # What is laid out, on a terminal and elsewhere.

@@ -21,12 +21,18 @@ from tests.support.waiting import HANGS_S
 from tiniscript.base import catalogue_source, languages
 from tiniscript.base.catalogue_source import Catalogue, Entry
 from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SEEN, SOURCE
-from tiniscript.base.translations import NUMBERS, joined, read_language, read_own, read_seen
-from tiniscript.cli.texts import Said
+from tiniscript.base.translations import (
+    NUMBERS,
+    merge_translations,
+    read_language,
+    read_own,
+    read_seen,
+)
+from tiniscript.cli.texts import Sentence
 from tools import languages as tool
 from tools import translation_files, translators
 from tools.languages import check_lexicon, check_robot, pseudo
-from tools.translation_files import Translation, quoted, written
+from tools.translation_files import Translation, format_rows, quote
 
 ENGLISH = """
 [note]
@@ -208,7 +214,7 @@ def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
         assert len(language.form_of) == NUMBERS
         read_seen(folder / SEEN)
         english = catalogue_source.load(folder / "some.toml")
-        joined(english, "some", read_own(folder / "some.toml"), {}, language)
+        merge_translations(english, "some", read_own(folder / "some.toml"), {}, language)
 
 
 def test_what_cannot_be_read_is_wrong_and_costs_the_file(
@@ -243,10 +249,10 @@ def test_plurals_follow_the_rule_of_the_language(place: Path) -> None:
         assert problems(opened(place, rows)) == []
         languages.forget()
         for number, form in wanted.items():
-            assert languages.counted("some", "n", number, "xx") == f"{{n}} {form}"
+            assert languages.plural_text("some", "n", number, "xx") == f"{{n}} {form}"
     write(place / "xx" / "some.toml", OWN)
     languages.forget()
-    assert [languages.counted("some", "n", n, "xx") for n in (1, 5)] == ["{n} bytes"] * 2
+    assert [languages.plural_text("some", "n", n, "xx") for n in (1, 5)] == ["{n} bytes"] * 2
 
 
 def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
@@ -262,7 +268,7 @@ def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
     ("en", "{n} checks", "1 check"), ("es", "{n} pruebas", "1 prueba"),
 ])  # fmt: skip
 def test_a_sentence_has_the_form_of_its_number(language: str, many: str, one: str) -> None:
-    said = Said(many)
+    said = Sentence(many)
     said.language = language
     assert said.format(n="1") == one
     assert said.format(n=0) != f"0 {one[2:]}"
@@ -371,7 +377,7 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
         '[verb]\na = "Open"\nb = ["Shut", "Open"]\n[door]\ndoor.own = "Open"\n[menu]\nd = "Open"\n',
     )
     own = opened(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
-    entries = [entry for entry in own.joined("some").entries.values() if not entry.is_same]
+    entries = [entry for entry in own.merge("some").entries.values() if not entry.is_same]
     assert [(entry.key, entry.english, entry.notes, entry.said[""]) for entry in entries] == [
         ("a", "Open", ["verb", "menu"], "Abrir"), ("b", "Shut", ["verb"], "Cierra"),
         ("door", "Open", [], "Abierta"),
@@ -401,8 +407,8 @@ TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"))
 @given(TEXTS, st.lists(TEXTS, min_size=2))
 def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
     forms = [{"": text} if text else {} for text in texts]
-    rows = written(key, forms, True) + written(f"{key}.", [{"": texts[0] or "x"}], False)
-    plural = written(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
+    rows = format_rows(key, forms, True) + format_rows(f"{key}.", [{"": texts[0] or "x"}], False)
+    plural = format_rows(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
     read, _, wrong = catalogue_source.rows(rows + plural)
     assert wrong == []
     assert {row.key: row.value for row in read} == {
@@ -415,7 +421,7 @@ def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
     ("a\nb\\", '"""\na\nb\\\\"""'), ('a\n"b"', '"""\na\n"b\\""""'), ("\t\x07", '"\\t\\u0007"'),
 ])  # fmt: skip
 def test_a_text_is_written_as_a_person_would(said: str, row: str) -> None:
-    assert quoted(said) == row
+    assert quote(said) == row
 
 
 def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
@@ -507,7 +513,7 @@ def test_what_is_missing_is_named_with_the_line_that_it_goes_after() -> None:
     said = {"": "x"}
     rows = [Entry("a", "A"), Entry("b", "B", said=said, line=7), Entry("c", "C", line=99),
             Entry("d", "D", said=said, line=3), Entry("e", "E")]  # fmt: skip
-    found = [(line, what.partition(" ")[0]) for line, what in tool.missing(rows)]
+    found = [(line, what.partition(" ")[0]) for line, what in tool.missing_rows(rows)]
     assert found == [(1, "a"), (7, "c"), (3, "e")]
 
 
@@ -600,8 +606,8 @@ def test_a_package_has_no_sources_and_a_page_learns_what_it_needs(place: Path) -
         (place / name).write_bytes(data)
     languages.forget()
     assert languages.text("some", "b", "xx") == "Alto."
-    assert languages.found(NAMES, "First", "xx") == "Primero"
-    assert languages.found(NAMES, "First", SOURCE) is None
+    assert languages.find_text(NAMES, "First", "xx") == "Primero"
+    assert languages.find_text(NAMES, "First", SOURCE) is None
     assert languages.about("xx").name == "xx" and languages.about("zz").name == "English"
     for path in (place / "xx").iterdir():
         path.unlink()
@@ -717,7 +723,7 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
         """more = ["", "", '¡Fuera "x"!', "Ponlo."]\n"""
     )
     translation = opened(place)
-    assert problems(translation) == [] and translation.joined("some").entries["b", "Stop."].is_stale
+    assert problems(translation) == [] and translation.merge("some").entries["b", "Stop."].is_stale
     write(Path("xx.po"), said.replace("#, fuzzy", "#"))
     translators.exchange("xx.po", opened(place).english)
     languages.forget()
@@ -740,7 +746,7 @@ def test_a_language_goes_out_and_comes_back_with_every_text(
     assert translators.take(Path("out.po"), Translation(language, english)) == 0
     after = Translation(language, english)
     for name in english:
-        old, new = (translation.joined(name) for translation in (before, after))
+        old, new = (translation.merge(name) for translation in (before, after))
         assert new.problems == []
         for at, entry in old.entries.items():
             is_asked = not entry.is_same

@@ -13,7 +13,7 @@ from tiniscript import robots
 from tiniscript.lessons import catalogue, running
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.sentences import sentence as words_for
-from tiniscript.lessons.variation import point_of, pressed, varied
+from tiniscript.lessons.variation import point_of, presses_of, vary
 from tiniscript.library.compiling import compile_source, image_of
 
 HEAD = 'robot = "{robot}"\nseconds = 10\n{more}\n[title]\nen = "A"\nes = "B"\n'
@@ -214,7 +214,7 @@ def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: s
 
 def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) -> None:
     lesson = lesson_of(tmp_path, OBEYS.format(key="KEY_LEFT"), more="mirror = true\nworlds = 2")
-    assert [press.key for seed in (1, 2) for press in pressed(lesson, seed)] == [
+    assert [press.key for seed in (1, 2) for press in presses_of(lesson, seed)] == [
         "KEY_LEFT",
         "KEY_RIGHT",
     ]
@@ -326,10 +326,10 @@ def test_a_world_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
     more = "worlds = 3\nnoise_percent = 2\nmirror = true"
     varies = '[[criteria]]\nkind = "never_touches"\n[[varies]]\npart = "boxes[1]"\ny_cm = [5, 30]\n'
     lesson = lesson_of(tmp_path, varies, more=more)
-    assert varied(lesson, 3) == varied(lesson, 3) != varied(lesson, 5)
+    assert vary(lesson, 3) == vary(lesson, 3) != vary(lesson, 5)
     box = lesson.variations[0].place
-    assert 105 <= point_of(box, varied(lesson, 1), False).y <= 130
-    assert 70 <= point_of(box, varied(lesson, 2), True).y <= 95  # the other way round
+    assert 105 <= point_of(box, vary(lesson, 1), False).y <= 130
+    assert 70 <= point_of(box, vary(lesson, 2), True).y <= 95  # the other way round
     robot = robots.load("tinibot")
     image = image_of(compile_source(b"F(1, 80);L(1, 50)", robot, "p", True), robot)
     tracks = [running.run(image, robot, lesson, seed).track for seed in (1, 1, 3)]

@@ -17,7 +17,7 @@ from tiniscript.lessons.lesson import Answer, Lesson
 from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.sheet import sheet
-from tiniscript.library.compiling import compile_source, maker
+from tiniscript.library.compiling import compile_source, image_maker
 from tools.builds.page_texts import page_texts
 
 FOLDERS = catalogue.folders()
@@ -44,7 +44,7 @@ def findings_of(text: str, lesson: Lesson, seeds: range) -> list[Finding]:
     from tiniscript.lessons.marking import Marking
 
     robot = robots.load(lesson.robot)
-    return list(Marking(text, maker(robot), robot, lesson, seeds).whole().findings)
+    return list(Marking(text, image_maker(robot), robot, lesson, seeds).run_to_end().findings)
 
 
 def test_they_are_numbered_without_a_gap() -> None:

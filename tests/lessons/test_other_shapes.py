@@ -17,7 +17,7 @@ from tests.support.texts import LANGUAGES
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.catalogue import NAMED
 from tiniscript.lessons.lesson import Lesson
-from tiniscript.lessons.markdown import blocks, printed
+from tiniscript.lessons.markdown import blocks, printed_part
 from tiniscript.lessons.sentences import sentence
 
 FOLLOW = (
@@ -370,7 +370,7 @@ def test_a_program_by_heart_does_not(number: int, seed: int, program: str) -> No
 def test_a_task_says_the_numbers_that_are_measured(folder: Path, language: str) -> None:
     """Each has one home, the criterion: a page names it, and has no number of its own."""
     lesson = catalogue.load(folder)
-    written = printed((folder / f"pupil.{language}.md").read_text(encoding="utf-8"))
+    written = printed_part((folder / f"pupil.{language}.md").read_text(encoding="utf-8"))
     task = written.split("\n## ")[-2]
     assert "{seconds}" in task
     assert not re.search("[0-9]", re.sub(r"`[^`]*`", "", NAMED.sub("", task))), task

@@ -41,8 +41,8 @@ class Place:
         monkeypatch.setattr("tiniscript.library.opening.sleep", self.pass_s)
         monkeypatch.setattr(opening, "_resolve_address", self.resolved)
         monkeypatch.setattr(opening, "_join_shared", lambda *_: None)
-        monkeypatch.setattr(opening, "_claimed", lambda *_: None)
-        monkeypatch.setattr(opening, "_opened_line", self.opened)
+        monkeypatch.setattr(opening, "_claim", lambda *_: None)
+        monkeypatch.setattr(opening, "_open_line", self.opened)
 
     def pass_s(self, seconds: float) -> None:
         self.now_s += seconds
@@ -120,11 +120,11 @@ class Line:
 
 # The steps of a connection that may fail, each by its place.
 STEPS = (
-    "tiniscript.link.ports.opened",
+    "tiniscript.link.ports.open_port",
     "tiniscript.library.opening.directory.is_of_another",
     "tiniscript.link.keys.KeyFile",
     "tiniscript.link.session.Session",
-    "tiniscript.library.client.Client._shared",
+    "tiniscript.library.client.Client._share",
 )
 ADDRESS = "socket://127.0.0.1:9"
 
@@ -146,7 +146,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     monkeypatch.setattr(Device, "opened", [])
-    monkeypatch.setattr("tiniscript.link.ports.opened", Device)
+    monkeypatch.setattr("tiniscript.link.ports.open_port", Device)
     monkeypatch.setattr("tiniscript.link.port_connection.PortConnection", Line)
     profile = robots.load("tinibot")
 
@@ -165,12 +165,12 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
             with pytest.raises(BaseException):  # noqa: B017 - whichever it is
                 tried()
         assert not any(each.is_open for each in Device.opened), why
-        lock = registry.claimed(ADDRESS)
+        lock = registry.claim(ADDRESS)
         assert lock is not None, f"{why!r} leaves its lock"
         lock.close()
         if sys.platform == "linux":
             assert len(list(Path("/proc/self/fd").iterdir())) == before, why
-    monkeypatch.setattr(Client, "_shared", lambda *_: None)
+    monkeypatch.setattr(Client, "_share", lambda *_: None)
     line = tried().line
     assert Device.opened[-1].is_open
     line.close()

@@ -77,7 +77,7 @@ def test_nothing_known_is_no_crash(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("word", ["plain", "a b", 'a"b', "a$HOME[x]", "a`b`", "a\\b", "x>=1", "!"])
 def test_a_shell_reads_the_word_that_was_meant(word: str) -> None:
-    assert shlex.split(install_advice.quoted(word)) == [word]
+    assert shlex.split(install_advice.quote(word)) == [word]
 
 
 def test_the_extras_are_those_of_the_package() -> None:

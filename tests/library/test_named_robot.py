@@ -6,8 +6,8 @@ import pytest
 
 from tests.support.rows import each_row
 from tiniscript.base.source import Source
-from tiniscript.library.named_robot import named_robot, renamed
-from tiniscript.syntax.formatter import formatted
+from tiniscript.library.named_robot import named_robot, rename_robot
+from tiniscript.syntax.formatter import format_source
 
 NAMING = [
     "// robot: liner\nSI|F(1, 80)",
@@ -34,20 +34,20 @@ def test_a_comment_before_the_first_instruction_names_it(text: str) -> None:
 @each_row("text", NAMELESS)
 def test_any_other_comment_tells_people_something(text: str) -> None:
     assert named_robot(text) is None
-    assert renamed(text, "grabber") == text
+    assert rename_robot(text, "grabber") == text
 
 
 @each_row("text", [each for each in NAMING if "\nS" in each or "\nF" in each])
 def test_the_formatter_keeps_it(text: str) -> None:
-    laid_out = formatted(Source(text.removeprefix("\ufeff")))
+    laid_out = format_source(Source(text.removeprefix("\ufeff")))
     found = named_robot(laid_out)
     assert found is not None and found.name.lower() == "liner"
-    assert laid_out == formatted(Source(laid_out))
+    assert laid_out == format_source(Source(laid_out))
 
 
 @pytest.mark.parametrize("text", NAMING)
 def test_another_one_takes_its_place(text: str) -> None:
-    changed = renamed(text, "grabber")
+    changed = rename_robot(text, "grabber")
     found = named_robot(changed)
     assert found is not None and found.name == "grabber"
     assert changed[: found.span.start] + changed[found.span.end :] == text.replace(

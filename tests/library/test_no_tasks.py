@@ -122,6 +122,6 @@ def test_a_recording_of_it_is_not_played() -> None:
     """No robot has run it."""
     checksum = tiniscript.compile(TEXT, ROBOT).checksum
     head = recordings.head(recordings.REAL, TEXT, robots.load(ROBOT), checksum)
-    recording = recordings.read(recordings.written(head, (), 1).encode())
+    recording = recordings.decode(recordings.encode(head, (), 1).encode())
     with pytest.raises(recordings.BadRecording, match="other_program"):
         playing.ready(recording)

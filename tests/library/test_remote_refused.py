@@ -11,7 +11,7 @@ from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.library.refusing import lacks_remote, reads_remote, refusal
 from tiniscript.link.messages import PLACES, REMOTE, STATUSES
 from tiniscript.link.payloads import HelloReply
-from tiniscript.link.requests import DeviceInfo, described
+from tiniscript.link.requests import DeviceInfo, device_info_of
 from tiniscript.link.statuses import sentence
 
 ROBOT = robots.load("tinibot")
@@ -21,7 +21,7 @@ READ, PUSH_SENSOR, PUSH_READ = (BY_NAME[name].code for name in ("READ", "PUSH_SE
 
 def info(features: int) -> DeviceInfo:
     values = {**DESCRIPTION, "kit": ROBOT.kit.fingerprint, "features": features}
-    return described(HelloReply(**values))  # type: ignore[arg-type]
+    return device_info_of(HelloReply(**values))  # type: ignore[arg-type]
 
 
 CODES = {

@@ -157,7 +157,7 @@ def test_a_virtual_robot_refuses_what_it_cannot_be(
 ) -> None:
     with fails(tiniscript.UsageError, reason):
         tiniscript.virtual_robot(**arguments)  # type: ignore[arg-type]
-    assert directory.running() == []
+    assert directory.running_robots() == []
 
 
 def test_wrong_use_of_a_connection_is_an_error(
@@ -185,7 +185,7 @@ def test_wrong_use_of_a_connection_is_an_error(
 def test_a_virtual_robot_is_gone_when_it_is_left() -> None:
     before = threading.active_count()
     with tiniscript.virtual_robot() as robot:
-        assert [each.address for each in directory.running()] == [robot.port]
+        assert [each.address for each in directory.running_robots()] == [robot.port]
     assert not list(directory._folder().iterdir())
     assert threading.active_count() == before
 
@@ -304,7 +304,7 @@ class StoppedAtFirst:
         self.stops = stops
         self.robot: object = None
 
-    def do(self, make: Callable[[Any], PendingRequest[Any]]) -> PendingRequest[Any]:
+    def begin(self, make: Callable[[Any], PendingRequest[Any]]) -> PendingRequest[Any]:
         return make(SimpleNamespace(hello=PendingRequest))
 
     def wait(self, request: PendingRequest[Any], look: Callable[[], None]) -> Reply[Any]:
@@ -465,7 +465,7 @@ def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch
     from tiniscript.link import ports
 
     for listed in ([], [ports.ListedPort("/dev/other", "")]):
-        monkeypatch.setattr(ports, "listed", lambda listed=listed: listed)
+        monkeypatch.setattr(ports, "list_ports", lambda listed=listed: listed)
         with fails(tiniscript.RobotError, "port_missing") as raised:
             tiniscript.connect("/dev/none-here")
         assert ("/dev/other" in str(raised.value)) == bool(listed)

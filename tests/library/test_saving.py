@@ -113,7 +113,7 @@ class Line:
     def __init__(self) -> None:
         self.asked: list[Asked] = []
 
-    def do(self, make: object) -> Asked:
+    def begin_request(self, make: object) -> Asked:
         self.asked.append(Asked())
         return self.asked[-1]
 

@@ -41,7 +41,7 @@ class Line:
     def meet(self) -> Any:
         return self.device_info
 
-    def ask(self, make: object) -> Reply[Any]:
+    def request(self, make: object) -> Reply[Any]:
         if getattr(make, "__name__", "") == "status":
             fields: dict[str, Any] = dict.fromkeys(StatusReply._fields, 0)
             return Reply(
@@ -52,7 +52,7 @@ class Line:
         return Reply(OK, 0, ReceiptReply(**{**fields, "program": self.program, "run": self.run}))
 
     def send_program(self, *_: object, **__: object) -> Reply[Any]:
-        return self.ask(None)
+        return self.request(None)
 
     def event(self, limit_s: float) -> tuple[int, Event] | None:
         return self.events.pop(0) if self.events else None

@@ -96,14 +96,14 @@ def test_a_program_is_found_by_its_checksum_alone() -> None:
     mine, theirs = compiled("SHOW(DISTANCE)"), compiled("SHOW(LIGHT_R)")
     at = rows(mine.code)[-1].offset
     finder = Finder({checksum(mine.image): mapped(mine)})
-    assert finder.of(event(checksum(mine.image), at)) == Show("DISTANCE", 1, 1)
+    assert finder.show_of(event(checksum(mine.image), at)) == Show("DISTANCE", 1, 1)
     other = event(checksum(theirs.image), at, run=2)
-    assert finder.of(other) is None, "nobody here has it"
+    assert finder.show_of(other) is None, "nobody here has it"
     source_map.remember(theirs.image, mapped(theirs))
-    assert finder.of(other) == Show("LIGHT_R", 1, 1), "it came into the cache later"
-    assert finder.of(event(checksum(mine.image), at, run=3)) == Show("DISTANCE", 1, 1)
-    assert finder.of(event(checksum(mine.image), -1)) is None
-    assert Finder().of(ShownEvent(1000, 0)) is None, "of an older robot"
+    assert finder.show_of(other) == Show("LIGHT_R", 1, 1), "it came into the cache later"
+    assert finder.show_of(event(checksum(mine.image), at, run=3)) == Show("DISTANCE", 1, 1)
+    assert finder.show_of(event(checksum(mine.image), -1)) is None
+    assert Finder().show_of(ShownEvent(1000, 0)) is None, "of an older robot"
 
 
 @pytest.mark.usefixtures("cache")
@@ -113,9 +113,9 @@ def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
     program, at = checksum(first.image), rows(first.code)[-1].offset
     maps = {program: mapped(first)}
     finder = Finder(maps)
-    names = [finder.of(event(program, at))]
+    names = [finder.show_of(event(program, at))]
     maps[program] = mapped(second)
-    names += [finder.of(event(program, at)), finder.of(event(program, at, run=2))]
+    names += [finder.show_of(event(program, at)), finder.show_of(event(program, at, run=2))]
     assert [each and each.text for each in names] == ["NEAR", "NEAR", "FAR"], "until its next run"
 
 
@@ -130,8 +130,11 @@ def test_a_value_is_called_so_whatever_was_shown_before() -> None:
         for shown_last in events:
             finder = Finder(known)
             for shown_before in before:
-                finder.of(shown_before)
-            assert finder.of(shown_last) == Finder(known).of(shown_last), (before, shown_last)
+                finder.show_of(shown_before)
+            assert finder.show_of(shown_last) == Finder(known).show_of(shown_last), (
+                before,
+                shown_last,
+            )
 
 
 @pytest.mark.usefixtures("cache")
@@ -144,7 +147,7 @@ def test_a_run_keeps_the_text_that_it_began_with() -> None:
     for run, found in enumerate(texts):
         maps[program] = mapped(found)
         finder.begin(run % 2, program)
-    names = [finder.of(event(program, at, run)) for run in (1, 0, 1)]
+    names = [finder.show_of(event(program, at, run)) for run in (1, 0, 1)]
     assert [each and each.text for each in names] == ["FAR", "THIRD", "FAR"]
     finder.begin(1, program + 1)
-    assert finder.of(event(program + 1, at, 1)) is None
+    assert finder.show_of(event(program + 1, at, 1)) is None

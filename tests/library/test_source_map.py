@@ -28,7 +28,7 @@ def compiled(text: str) -> Compiled:
 
 
 def mapped(found: Compiled) -> Map:
-    return source_map.made(found)
+    return source_map.map_of_compiled(found)
 
 
 def located(text: str) -> list[tuple[str, str]]:

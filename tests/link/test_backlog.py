@@ -96,7 +96,7 @@ def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(session, "receive", lambda data, now_ms: pieces.append(data))
     with closing(PortConnection(Socket(), session)) as line:
         until(lambda: line.has_ended, "the socket is at its end")
-    assert (pieces, line.gone) == ([CHATTER], "socket disconnected")
+    assert (pieces, line.end_reason) == ([CHATTER], "socket disconnected")
 
 
 def shown(number: int) -> Told:

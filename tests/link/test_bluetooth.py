@@ -37,8 +37,8 @@ LARGEST = 65  # bytes of a frame on the wire
 @pytest.fixture(autouse=True)
 def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
     """No cable, and nobody in the network, is waited for; modules say their names more often."""
-    monkeypatch.setattr("tiniscript.link.ports.listed", list)
-    monkeypatch.setattr("tiniscript.link.ports.announced", list)
+    monkeypatch.setattr("tiniscript.link.ports.list_ports", list)
+    monkeypatch.setattr("tiniscript.link.ports.find_announced", list)
     monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LINGER_S", 16 * ADVERTISED_S)
     monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LISTED_S", 30 * ADVERTISED_S)
 

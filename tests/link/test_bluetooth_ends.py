@@ -77,7 +77,7 @@ def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
     command.ended().gives(3, f"lost the Bluetooth connection to {PLACE}")
     stops_by_itself(ble)
     assert inside("upload", "-e", DRIVE, "--port", NAME).code == 0
-    port = ports.opened(PLACE, 9600)
+    port = ports.open_port(PLACE, 9600)
     assert port.read(1) == b""
     bluez.part(ble)
     with pytest.raises(OSError, match="has ended"):
@@ -142,8 +142,8 @@ def test_a_computer_without_bluetooth(
 ) -> None:
     with FakeBluez(has_bluez, has_adapter) as bluez:
         monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", bluez.address)
-        monkeypatch.setattr(ports, "listed", list)
-        monkeypatch.setattr(ports, "announced", list)
+        monkeypatch.setattr(ports, "list_ports", list)
+        monkeypatch.setattr(ports, "find_announced", list)
         for language, words in zip(("en", "es"), said, strict=True):
             inside("doctor", "--identify", "--port", NAME, "--lang", language).gives(3, words)
         inside("doctor", "--ports", "--ask").gives(0, said[0])

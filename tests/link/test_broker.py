@@ -159,8 +159,8 @@ def test_a_retained_message_that_is_too_large_is_left_out(school: Mosquitto, siz
     with closing(Broker("127.0.0.1", school.port, Access("robots", "word"))) as found:
         for _ in range(2):
             assert len(found.present("3b")) == ROBOTS  # one of them was written over
-        assert sorted(found.skipped) == sorted(topic[:80] for topic in topics)
-        assert all(size < bytes_of_it < size + 320 for bytes_of_it in found.skipped.values())
+        assert sorted(found.skipped_topics) == sorted(topic[:80] for topic in topics)
+        assert all(size < bytes_of_it < size + 320 for bytes_of_it in found.skipped_topics.values())
         assert found.stop("3b") and not found.gone
 
 

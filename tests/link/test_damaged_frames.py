@@ -16,7 +16,7 @@ from tests.machines.damage import CppDamage, DamagedLine, cpp_damage
 from tests.machines.link import cpp_link
 from tests.support.campaign import wanted
 from tests.support.link_cases import packets_of
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import CRC_BYTES, HEAD_BYTES, SMALL_FRAME
 
 FRAMES = 250_000  # damaged ones, in the tests
@@ -65,7 +65,7 @@ def whole_frames(rows: list[str]) -> list[Frame]:
     frames = []
     for row in rows:
         if row.endswith(" whole"):
-            frame = decoded(bytes.fromhex(row.split(" ", 2)[2].removesuffix(" whole")))
+            frame = decode_frame(bytes.fromhex(row.split(" ", 2)[2].removesuffix(" whole")))
             assert frame
             frames.append(frame)
     return frames
@@ -77,7 +77,7 @@ def judge_in_python(line: DamagedLine, is_large: bool) -> None:
     at = 0
     for frame, is_damaged in zip(sent.frames, sent.is_damaged, strict=True):
         if not is_damaged:
-            wire = encoded(frame)
+            wire = encode_frame(frame)
             found = sent.data.find(wire, at)
             assert found >= 0, f"the C++ encodes it in another way: {frame}"
             at = found + len(wire)

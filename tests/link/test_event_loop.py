@@ -66,7 +66,7 @@ def test_ctrl_c_cancels_what_it_interrupts(monkeypatch: pytest.MonkeyPatch) -> N
 def test_the_end_of_a_process_cancels_what_runs() -> None:
     code = (
         "import asyncio, threading\n"
-        "from tiniscript.link.transports.event_loop import shared\n"
+        "from tiniscript.link.transports.event_loop import shared_loop\n"
         "begun = threading.Event()\n"
         "async def work():\n"
         "    begun.set()\n"
@@ -75,7 +75,7 @@ def test_the_end_of_a_process_cancels_what_runs() -> None:
         "async def begin():\n"
         "    global task\n"
         "    task = asyncio.create_task(work())\n"
-        "shared().run(begin(), 100); begun.wait(100)\n"
+        "shared_loop().run(begin(), 100); begun.wait(100)\n"
     )
     done = Command(code=code).ended()
     assert (done.code, done.out, done.err) == (0, "cancelled\n", "")

@@ -15,8 +15,8 @@ from tests.support.foreign_boards import RECORDINGS, Recording
 from tests.support.uart import at_speed
 from tiniscript.link import foreign
 from tiniscript.link.connection import FOREIGN, KEPT_BYTES, LinkConnection, reason_of
-from tiniscript.link.foreign import recognised, stranger
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.foreign import identify_board, stranger
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.requests import Reply
@@ -51,7 +51,7 @@ def test_there_are_a_robot_s_bytes_to_look_at() -> None:
 
 @EACH
 def test_a_board_is_known_by_its_recording(recording: Recording) -> None:
-    found = recognised(recording.data)
+    found = identify_board(recording.data)
     assert found is not None
     assert (found.name, found.said, found.is_sure) == (recording.name, recording.said, True)
 
@@ -69,7 +69,7 @@ def test_a_recording_that_is_cut_is_of_that_board_or_of_none(recording: Recordin
     chance = random.Random(recording.said)
     for _ in range(400):
         first, last = sorted(chance.randrange(len(recording.data) + 1) for _ in range(2))
-        found = recognised(recording.data[first:last])
+        found = identify_board(recording.data[first:last])
         assert (found and found.name) in also, recording.data[first:last]
 
 
@@ -79,13 +79,13 @@ def test_a_recording_says_the_same_however_its_pieces_come(recording: Recording)
     for at in range(0, len(recording.data), 3):
         line.note_heard(recording.data[at : at + 3])
     assert line.came == recording.data and line.heard == len(recording.data)
-    assert recognised(line.came) == recognised(recording.data)
+    assert identify_board(line.came) == identify_board(recording.data)
 
 
 @EACH
 @pytest.mark.parametrize("before", [b"", b"\xf8\x00\x80", b"x\xfe\r\n"])
 def test_noise_before_a_recording_changes_nothing(recording: Recording, before: bytes) -> None:
-    found = recognised(before + b"\r\n" + recording.data)
+    found = identify_board(before + b"\r\n" + recording.data)
     assert found is not None and found.name == recording.name
 
 
@@ -97,7 +97,7 @@ def test_two_bytes_alone_say_nothing() -> None:
 
 def test_the_two_that_send_high_bytes_are_told_apart() -> None:
     for data, name in ((boards.FIRMATA, "firmata"), (boards.MBOT_VERSION, "mbot")):
-        found = recognised(data)
+        found = identify_board(data)
         assert found is not None and found.name == name
         rows = [row.name for row in foreign.ROWS if row.recognise(data)]
         assert rows == [name]
@@ -113,13 +113,13 @@ def test_noise_of_a_wrong_speed_is_no_board(recording: Recording) -> None:
             noise = at_speed(recording.data, sent, heard)
             assert (noise == recording.data) == (sent == heard)
             if sent != heard:
-                assert recognised(noise) is None, (sent, heard)
+                assert identify_board(noise) is None, (sent, heard)
                 assert stranger(noise) is None, (sent, heard)
 
 
 @given(st.binary(max_size=300))
 def test_random_bytes_are_no_board(data: bytes) -> None:
-    assert recognised(data) is None
+    assert identify_board(data) is None
 
 
 def test_much_noise_is_no_board() -> None:
@@ -144,7 +144,7 @@ def test_a_robot_is_no_board(traffic: list[bytes], noise: bytes) -> None:
 def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
     number: int, data: bytes, is_reply: bool
 ) -> None:
-    frame = encoded(Frame(number, 3, 7, data[:50], is_reply))
+    frame = encode_frame(Frame(number, 3, 7, data[:50], is_reply))
     assert foreign.is_robot(frame)
     assert stranger(b"\0" + frame) is None
 
@@ -155,12 +155,12 @@ def test_a_piece_of_a_robot_s_bytes_is_no_board(piece: int) -> None:
     chance = random.Random(piece)
     data = b"".join(chance.choices(OURS, k=5))
     first, last = sorted(chance.randrange(len(data) + 1) for _ in range(2))
-    assert recognised(data[first:last]) is None
+    assert identify_board(data[first:last]) is None
 
 
 def test_what_a_computer_sends_is_no_robot_s() -> None:
     """It comes back from what echoes."""
-    assert not foreign.is_robot(b"\0" + encoded(Frame(1, 3, 7, b"123456789")))
+    assert not foreign.is_robot(b"\0" + encode_frame(Frame(1, 3, 7, b"123456789")))
 
 
 # -- text ---------------------------------------------------------------------------------------

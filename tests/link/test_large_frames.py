@@ -17,7 +17,7 @@ from tiniscript import robots
 from tiniscript.bytecode.image import HEADER_BYTES, isa_of, pack, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, checksum, decoded, encoded
+from tiniscript.link.frames import Frame, checksum, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     CRC_BYTES,
@@ -31,9 +31,9 @@ from tiniscript.link.messages import (
     RUN,
     SMALL_FRAME,
     STATUSES,
+    decode_payload,
+    encode_payload,
     payload_bytes,
-    read,
-    written,
 )
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.receiver import LARGE_PACKET, SMALL_PACKET
@@ -60,9 +60,9 @@ def open_link(is_large: bool = True, epoch: int = EPOCH) -> CppLink:
     robot = cpp_link(is_large)
     robot.begin(room=8192, kit=KIT, epoch=epoch)
     payload = struct.pack("<BBBBHI", MAJOR, MINOR, *isa_of(0), KIT, 7)
-    frames = [decoded(each) for each in sent_by(robot, Frame(HELLO, 1, 0, payload))]
+    frames = [decode_frame(each) for each in sent_by(robot, Frame(HELLO, 1, 0, payload))]
     (reply,) = [frame for frame in frames if frame]
-    found = read(BY_NAME["HELLO"].reply, reply.payload[1:])
+    found = decode_payload(BY_NAME["HELLO"].reply, reply.payload[1:])
     sizes = (LARGE_FRAME, LARGE_WINDOW) if is_large else (SMALL_FRAME, 1)
     assert (found["largest"], found["window"]) == sizes
     return robot
@@ -70,12 +70,12 @@ def open_link(is_large: bool = True, epoch: int = EPOCH) -> CppLink:
 
 def sent_by(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[bytes]:
     """Return the packets that a robot answers to frames."""
-    step = robot.step(10, b"\0" + b"".join(map(encoded, frames)), is_late=is_late)
+    step = robot.step(10, b"\0" + b"".join(map(encode_frame, frames)), is_late=is_late)
     return [part for part in step.sent.split(b"\0") if part]
 
 
 def answers(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[Frame]:
-    found = [decoded(each) for each in sent_by(robot, *frames, is_late=is_late)]
+    found = [decode_frame(each) for each in sent_by(robot, *frames, is_late=is_late)]
     assert all(found)
     return [frame for frame in found if frame]
 
@@ -95,7 +95,7 @@ def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
         assert all(frame.payload[0] == statuses[frame.number] for frame in found)
         assert [frame.seq for frame in found] == [2 + k for k in range(window)]
         (status,) = answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
-        told = read(BY_NAME["STATUS"].reply, status.payload[1:])
+        told = decode_payload(BY_NAME["STATUS"].reply, status.payload[1:])
         assert (told["dropped"], told["damaged"]) == (2, 0)
 
 
@@ -106,7 +106,7 @@ def test_live_code_of_a_large_frame_runs() -> None:
             robot = open_link()
             code = large_upload.program(length).code
             live = Frame(LIVE, 2, EPOCH + 1, bytes([RUN]) + code)
-            step = robot.step(10, b"\0" + encoded(live), is_late)
+            step = robot.step(10, b"\0" + encode_frame(live), is_late)
             checksum = unpack(pack("SI", 0, code)).checksum
             assert f"TAKE live {checksum:08x}" in step.did, length
             assert sum(row.startswith("START") for row in step.did) == 1
@@ -125,7 +125,7 @@ def test_a_large_frame_without_its_zero_is_damaged() -> None:
         step = robot.step(10, wire + b"\0", is_late)
         assert step.sent == b"" and step.did == []
         (status,) = answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
-        assert read(BY_NAME["STATUS"].reply, status.payload[1:])["damaged"] == 1
+        assert decode_payload(BY_NAME["STATUS"].reply, status.payload[1:])["damaged"] == 1
 
 
 def with_checksum(body: bytes) -> bytes:
@@ -151,7 +151,7 @@ def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, most: i
     whole = len(pack("SI", 0, CODE))
     while len(image) < whole:
         (wire,) = sent_by(robot, Frame(FETCH, 2, 0, struct.pack("<H", len(image))))
-        frame = decoded(wire)
+        frame = decode_frame(wire)
         assert frame and frame.payload[0] == OK
         assert struct.unpack("<H", frame.payload[1:3])[0] == whole
         assert len(frame.payload) - 3 == min(most, whole - len(image))
@@ -170,7 +170,7 @@ def test_both_receivers_find_the_same_where_frames_wait() -> None:
         now_ms = 0
         for number in range(draw.randrange(1, 12)):
             payload = draw.randbytes(draw.choice((0, 3, 56, 57, 100, 242)))
-            data = encoded(Frame(draw.choice(REQUESTS), number, draw.randrange(256), payload))
+            data = encode_frame(Frame(draw.choice(REQUESTS), number, draw.randrange(256), payload))
             if draw.random() < 0.2:
                 noise = draw.randbytes(draw.randrange(1, 300)).replace(b"\0", b"")
                 data = draw.choice((b"\1", b"\2", b"\4", b"\5", b"\x1f")) + noise + b"\0"
@@ -213,7 +213,7 @@ class Answering:
         due: list[tuple[int, Frame]] = []
         while request.outcome is None and self.now_ms < most_ms:
             for packet in self.session.poll(self.now_ms).split(b"\0"):
-                frame = decoded(packet) if packet else None
+                frame = decode_frame(packet) if packet else None
                 if frame is not None:
                     self.longest = max(self.longest, len(packet))
                     due.append((self.now_ms + late_ms, frame))
@@ -231,7 +231,7 @@ class Answering:
             values = {field.name: 0 if field.kind != "rest" else b"R" for field in message.reply}
             values |= {"major": MAJOR, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR, "kit": KIT}
             values |= {"largest": self.largest, "window": self.window, "room": 8192}
-            payload = bytes([OK]) + written(message.reply, values)
+            payload = bytes([OK]) + encode_payload(message.reply, values)
         elif frame.number == BY_NAME["BEGIN"].number:
             payload = struct.pack("<BH", OK, 0)
         elif frame.number == DATA:
@@ -244,7 +244,7 @@ class Answering:
             payload = struct.pack("<BIBBB", OK, IMAGE.checksum, 1, 0, 3)
         if payload is not None:
             reply = frame._replace(payload=payload, is_reply=True)
-            self.session.receive(b"\0" + encoded(reply), self.now_ms)
+            self.session.receive(b"\0" + encode_frame(reply), self.now_ms)
 
 
 class Taking:
@@ -347,7 +347,7 @@ def test_a_stop_ends_the_pieces() -> None:
         if robot.data:
             break
         for packet in robot.session.poll(robot.now_ms).split(b"\0"):
-            frame = decoded(packet) if packet else None
+            frame = decode_frame(packet) if packet else None
             if frame is not None:
                 robot.answer(frame)
         robot.now_ms += 5
@@ -357,7 +357,7 @@ def test_a_stop_ends_the_pieces() -> None:
     assert robot.session.poll(robot.now_ms).strip(b"\0") == b""
     seq = robot.data[0][0]
     late = Frame(DATA, seq, 0, struct.pack("<BH", OK, 240), is_reply=True)
-    robot.session.receive(encoded(late), robot.now_ms)  # the answer comes all the same
+    robot.session.receive(encode_frame(late), robot.now_ms)  # the answer comes all the same
     assert robot.session.poll(robot.now_ms + 50).strip(b"\0") == b""
 
 
@@ -370,7 +370,7 @@ def test_the_largest_program_takes_little_more_than_the_wire() -> None:
     assert profile.board.program_bytes == 8192
     robot = Esp32Robot(profile)
     robot.wait(300)
-    took = large_upload.uploaded(robot, profile.kit.fingerprint, 8192)
+    took = large_upload.upload(robot, profile.kit.fingerprint, 8192)
     robot.close()
     assert took.times <= large_upload.MUST
     assert took.sent_bytes < 8192 * 1.1

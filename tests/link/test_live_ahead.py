@@ -16,7 +16,7 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import messages
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 
 LIVE, HELLO = (messages.BY_NAME[name].number for name in ("LIVE", "HELLO"))
 RUN = 16
@@ -35,12 +35,12 @@ def greeted(epoch: int = EPOCH) -> CppLink:
     robot = cpp_link()
     robot.begin(epoch=epoch)
     payload = struct.pack("<BBBBHI", messages.MAJOR, 0, ISA_MAJOR, ISA_MINOR, KIT.fingerprint, 7)
-    assert robot.step(0, b"\0" + encoded(Frame(HELLO, 1, 0, payload))).sent
+    assert robot.step(0, b"\0" + encode_frame(Frame(HELLO, 1, 0, payload))).sent
     return robot
 
 
 def live(code: bytes, seq: int = 2, epoch: int = EPOCH + 1) -> bytes:
-    return encoded(Frame(LIVE, seq, epoch, bytes([RUN]) + code))
+    return encode_frame(Frame(LIVE, seq, epoch, bytes([RUN]) + code))
 
 
 def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
@@ -82,7 +82,7 @@ def test_a_robot_makes_the_image_of_the_compiler(text: str) -> None:
     """Without tasks it is one of 2.0, in a session of 2.1 too."""
     image = compile_text(text, KIT).image
     sent = greeted().step(10, live(unpack(image).code)).sent
-    replies = [frame for frame in map(decoded, sent.split(b"\0")) if frame is not None]
+    replies = [frame for frame in map(decode_frame, sent.split(b"\0")) if frame is not None]
     checksum = unpack(image).checksum.to_bytes(4, "little")
     assert [checksum in reply.payload for reply in replies] == [True]
 

@@ -13,7 +13,7 @@ from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.campaign import wanted
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME as OPCODES
-from tiniscript.link.frames import decoded
+from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.statuses import name_of
 
@@ -29,7 +29,7 @@ class LiveWorld(World):
     sent = 0
 
     def heard(self, data: bytes) -> None:
-        frame = decoded(data.strip(b"\0"))
+        frame = decode_frame(data.strip(b"\0"))
         self.sent += frame is not None and frame.number == LIVE and not frame.is_reply
 
 

@@ -14,7 +14,7 @@ from tests.support.texts import said
 from tiniscript.bytecode.image import REFUSALS
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages, statuses
-from tiniscript.link.frames import Frame, checksum, decoded, encoded
+from tiniscript.link.frames import Frame, checksum, decode_frame, encode_frame
 from tiniscript.link.messages import (
     CRC_BYTES,
     FEATURES,
@@ -88,11 +88,11 @@ def test_no_frame_can_be_a_line(length: int) -> None:
         for flags in ((False, False), (True, False), (False, True)):
             payload = b"\0" * flags[1] + b"\1" * (length - flags[1])
             frame = Frame(number, 77, 1, payload, *flags)
-            wire = encoded(frame)
+            wire = encode_frame(frame)
             is_large = length > PAYLOAD_BYTES
             assert len(wire) == length + HEAD_BYTES + CRC_BYTES + 2 + (is_large and not flags[1])
             assert wire[0] <= (HEAD_BYTES + 1 if is_large or flags[1] else SMALL_FRAME + 1)
-            assert 0 not in wire[:-1] and decoded(wire[:-1]) == frame
+            assert 0 not in wire[:-1] and decode_frame(wire[:-1]) == frame
             assert not re.match(rb"[ -~][ -~\r\n]", wire)
 
 
@@ -103,7 +103,7 @@ def test_a_large_frame_has_a_zero_after_its_head(is_sealed: bool) -> None:
         body = bytes([2 | SEALED * is_sealed, 0, 1, zero]) + bytes(PAYLOAD_BYTES)
         wire = cobs.encode(body + checksum(body).to_bytes(CRC_BYTES, "little"))
         frame = Frame(2, 0, 1, bytes(PAYLOAD_BYTES + is_sealed), is_sealed=is_sealed)
-        assert decoded(wire) == (frame if is_whole else None)
+        assert decode_frame(wire) == (frame if is_whole else None)
 
 
 def test_each_status_has_its_sentences() -> None:

@@ -24,7 +24,7 @@ from tiniscript.link import known_ports, ports
 if TYPE_CHECKING:  # without zeroconf there is none
     from zeroconf import ServiceInfo, Zeroconf
 
-    from tiniscript.link.transports.network import Announced
+    from tiniscript.link.transports.network import AnnouncedRobot
 
 
 @pytest.fixture
@@ -50,7 +50,7 @@ def listing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with ExitStack() as stack:
         while True:
             with suppress(TimeoutError):
-                stack.enter_context(files.alone(shared))
+                stack.enter_context(files.lock_file(shared))
                 break
             assert time.monotonic() < end_s, "another test does not end"
         yield
@@ -120,7 +120,7 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
         sender.join()
 
 
-def ours(found: list[Announced], number: int) -> list[Announced]:
+def ours(found: list[AnnouncedRobot], number: int) -> list[AnnouncedRobot]:
     """Those at a TCP port of this computer: a robot of the room may announce itself, too."""
     return [each for each in found if each.port == f"socket://127.0.0.1:{number}"]
 
@@ -143,7 +143,7 @@ def test_a_robot_is_reached_by_its_name(tini: Robot) -> None:
         port = typed.format(HERE)
         done = run("upload", "-e", "SI|F(0.2, 50)", "--port", port)
         assert (done.code, done.err) == (0, ""), port
-        assert known_ports.known().last == port
+        assert known_ports.remembered_ports().last == port
     assert inside("doctor", "--identify").code == 0  # it is remembered
 
 
@@ -157,7 +157,7 @@ def test_a_name_and_an_address_share_a_connection(tini: Robot) -> None:
 def test_a_robot_announces_itself_only_when_asked(
     listing: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ports, "listed", list)
+    monkeypatch.setattr(ports, "list_ports", list)
     with robot("--name", "quiet") as found, robot("--announce") as other:
         name = other.line()
         assert name == f"tcp://tinibot-{number_of(other.port)}"
@@ -207,10 +207,10 @@ def test_a_packet_may_announce_anything(
     """Written by hand: zeroconf refuses to announce some of these, and to believe others."""
     monkeypatch.setattr(network, "LISTED_S", 0.5)
     heard = ["_tcp", "a.b", "plain", "x" * 63, "\u202ex"]
-    found: list[Announced] = []
+    found: list[AnnouncedRobot] = []
 
     def all_are_heard() -> bool:
-        found[:] = ours(network.listed(), 7007)
+        found[:] = ours(network.list_robots(), 7007)
         return len(found) >= len(heard)
 
     with packets("\x1b[31mx", "a\r\nb", *heard, number=7007):
@@ -221,7 +221,7 @@ def test_a_packet_may_announce_anything(
 def test_names_without_an_address_do_not_hold_up_the_list(
     listing: None, network: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked, limits_ms = network.asked, []
+    asked, limits_ms = network.query_service, []
 
     def look(zeroconf: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
         limits_ms.append(limit_ms)
@@ -229,9 +229,9 @@ def test_names_without_an_address_do_not_hold_up_the_list(
         return service_info
 
     monkeypatch.setattr(network, "ADDRESSES_S", 0.5)
-    monkeypatch.setattr(network, "asked", look)
+    monkeypatch.setattr(network, "query_service", look)
     with packets("robot", number=7007, lonely=40):
-        names = [each.name for each in ours(network.listed(), 7007)]
+        names = [each.name for each in ours(network.list_robots(), 7007)]
     assert names == ["robot"]
     assert limits_ms[0] <= 500 and limits_ms.count(1) > 30  # the first one has all the time
 
@@ -239,7 +239,7 @@ def test_names_without_an_address_do_not_hold_up_the_list(
 def test_a_hostile_name_is_shown_without_what_a_terminal_obeys(
     listing: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ports, "listed", list)
+    monkeypatch.setattr(ports, "list_ports", list)
     with robot("--listen", "0") as found, announced("\u202ex", "127.0.0.1", number_of(found.port)):
         done = inside("doctor", "--ports", "--ask").gives(0, out=found.port)
         assert "\u202e" not in done.out

@@ -21,7 +21,7 @@ from tiniscript.link.outcomes import (
 )
 from tiniscript.link.payloads import REPLIES, ReceiptReply, ShowEvent, StatusReply
 from tiniscript.link.sharing import protocol
-from tiniscript.link.sharing.protocol import event_of, filled, of_event
+from tiniscript.link.sharing.protocol import event_fields, event_of, make_payload
 
 REPLY_MESSAGES = [message for message in MESSAGES if message.number < FIRST_EVENT]
 EVENT_MESSAGES = [message for message in MESSAGES if message.number >= FIRST_EVENT]
@@ -34,7 +34,7 @@ def value(field: Field) -> int | bytes:
 @pytest.mark.parametrize("message", REPLY_MESSAGES, ids=lambda each: str(each.name))
 def test_a_reply_has_the_fields_of_the_table_in_their_order(message: Message) -> None:
     values = {field.name: value(field) for field in message.reply}
-    made = filled(REPLIES[message.name], values)
+    made = make_payload(REPLIES[message.name], values)
     assert list(made._asdict().items()) == list(values.items())
 
 
@@ -46,7 +46,7 @@ def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:
             continue
         made = event_of(message.name, {field.name: value(field) for field in message.reply})
         assert isinstance(made, EVENTS[message.name]) and made.name == message.name
-        assert list(of_event(made)) == [field.name for field in message.reply]
+        assert list(event_fields(made)) == [field.name for field in message.reply]
 
 
 OTHERS: tuple[Event, ...] = (
@@ -61,9 +61,9 @@ def test_every_event_comes_through_a_shared_port() -> None:
     assert {type(each) for each in told} == set(get_args(Event)) == {*EVENTS.values()}
     reader = protocol.MessageReader(protocol.LINE_BYTES)
     for each in told:
-        values = protocol.plain(of_event(each))
+        values = protocol.to_json_values(event_fields(each))
         message = {"event": each.name, "ms": 5, "values": values}
-        [read] = reader.put(protocol.written(message))
+        [read] = reader.put(protocol.encode_message(message))
         assert protocol.event(read) == (5, each)
 
 
@@ -78,8 +78,12 @@ def test_every_event_comes_through_a_shared_port() -> None:
 )
 def test_other_fields_are_refused(values: dict[str, int | bytes]) -> None:
     with pytest.raises(Malformed):
-        filled(ReceiptReply, values)
-    message: protocol.JsonMessage = {"status": 0, "detail": 0, "values": protocol.plain(values)}
+        make_payload(ReceiptReply, values)
+    message: protocol.JsonMessage = {
+        "status": 0,
+        "detail": 0,
+        "values": protocol.to_json_values(values),
+    }
     with pytest.raises(protocol.BadMessage):
         protocol.reply(message, ReceiptReply)
 

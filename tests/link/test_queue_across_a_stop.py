@@ -19,14 +19,14 @@ from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.images import image_of
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME, STATE_STOPPED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 SHORT, LONG = "SI|F(60, 40)", "SI|" + "F(0.1, 30); B(0.1, 20);" * 30
 RUNS = "SI|F(60, 80)"
-STOP_MESSAGE = b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))
+STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 Ask = Callable[[Session], PendingRequest[Any]]
 ACTING: list[Ask] = [
     lambda session: session.live(image_of(SHORT).code),

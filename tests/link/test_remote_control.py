@@ -18,7 +18,7 @@ from tests.link.test_unsent_requests import greeted, image
 from tests.machines.host_firmware import HostFirmware
 from tests.support.owners import KIT, Keys, Owned
 from tiniscript.base.kit import YES_NO, Device, Kit
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     HOLD_MS,
@@ -27,14 +27,14 @@ from tiniscript.link.messages import (
     STATE_STOPPED,
     STATUS_NAMES,
     STATUSES,
-    written,
+    encode_payload,
 )
 from tiniscript.link.outcomes import CANCELLED, LOST
-from tiniscript.link.remote import GAP_MS, NOTHING, Pressed, pressed
+from tiniscript.link.remote import GAP_MS, NOTHING, Pressed, pressed_of
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
-UP, LEFT, A = (pressed([name]) for name in ("UP", "LEFT", "A"))
+UP, LEFT, A = (pressed_of([name]) for name in ("UP", "LEFT", "A"))
 DRIVES = "SI|F(FOREVER, 40)\nTASK\nW(1)\nEND_TASK"
 KEYS = BY_NAME["KEYS"]
 LIVE = BY_NAME["LIVE"]
@@ -74,7 +74,7 @@ class Hand:
                 self._say()
             data = session.poll(robot.now_ms)
             for packet in data.split(b"\0"):
-                frame = decoded(packet)
+                frame = decode_frame(packet)
                 if frame is not None and frame.number == KEYS.number:
                     self._note(frame)
             sent = robot.step(b"" if data and self.loses() else data)
@@ -99,7 +99,7 @@ def hand() -> Hand:
 
 def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
     one = hand()
-    for held in (UP, Pressed(0, 100, -100), pressed(["UP", "B"], -1, 30), NOTHING, A, NOTHING):
+    for held in (UP, Pressed(0, 100, -100), pressed_of(["UP", "B"], -1, 30), NOTHING, A, NOTHING):
         one.holds(held)
         one.talk(40)
         assert one.robot.remote() == readings(held)
@@ -159,7 +159,7 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
     one = hand()
     for _ in range(100):
         one.loses = lambda: False
-        one.holds(rng.choice([UP, pressed(["A", "LEFT"]), Pressed(0, 50, -50)]))
+        one.holds(rng.choice([UP, pressed_of(["A", "LEFT"]), Pressed(0, 50, -50)]))
         one.talk(rng.randint(60, 400))
         assert one.robot.remote() == readings(one.held)
         one.loses = lambda: True
@@ -178,7 +178,7 @@ def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
     read = looks = 0
     for _ in range(40):
         one.loses = lambda: rng.random() < 0.3
-        one.holds(rng.choice([UP, A, pressed(["DOWN", "B"], 10, 20)]))
+        one.holds(rng.choice([UP, A, pressed_of(["DOWN", "B"], 10, 20)]))
         one.talk(300)
         for _ in range(20):
             one.talk(50)
@@ -223,13 +223,13 @@ def test_two_who_press_on_one_line() -> None:
     session.press(*UP, 1)
     session.press(A.keys, 10, 20, 2)
     robot.talk(session, 100)
-    assert robot.remote() == readings(pressed(["UP", "A"], 10, 20))
+    assert robot.remote() == readings(pressed_of(["UP", "A"], 10, 20))
     session.press(UP.keys, -5, 0, 1)
     robot.talk(session, 100)
-    assert robot.remote() == readings(pressed(["UP", "A"], -5, 0))
+    assert robot.remote() == readings(pressed_of(["UP", "A"], -5, 0))
     session.press(speaker=1)
     robot.talk(session, 100)
-    assert robot.remote() == readings(pressed(["A"], 10, 20))
+    assert robot.remote() == readings(pressed_of(["A"], 10, 20))
 
 
 @pytest.mark.parametrize("text", ["SI|SHOW(1)", "SI|" + "SHOW(1);" * 60], ids=["short", "long"])
@@ -387,7 +387,7 @@ def test_an_older_robot_is_told_nothing() -> None:
     assert request.outcome and request.outcome.status == STATUSES["NO_REMOTE"]
     newer = described(features=REMOTE)
     newer.press(*UP)
-    frame = decoded(newer.poll(10).strip(b"\0"))
+    frame = decode_frame(newer.poll(10).strip(b"\0"))
     assert frame and frame.number == KEYS.number and frame.payload == bytes((1, 0, 0))
 
 
@@ -438,16 +438,16 @@ class Wire:
     def frame(self, name: str, payload: bytes, epoch: int | None = None) -> bytes:
         self.seq = (self.seq + 1) & 0xFF
         number = BY_NAME[name].number
-        return b"\0" + encoded(
+        return b"\0" + encode_frame(
             Frame(number, self.seq, self.epoch if epoch is None else epoch, payload)
         )
 
     def keys(self, held: Pressed, epoch: int | None = None) -> bytes:
-        return self.frame("KEYS", written(KEYS.request, held._asdict()), epoch)
+        return self.frame("KEYS", encode_payload(KEYS.request, held._asdict()), epoch)
 
     def answer(self, sent: bytes) -> str:
         """Return the status of the last answer."""
-        frames = [decoded(packet) for packet in self.robot.wait(60, sent).split(b"\0")]
+        frames = [decode_frame(packet) for packet in self.robot.wait(60, sent).split(b"\0")]
         replies = [frame for frame in frames if frame is not None and frame.is_reply]
         return STATUS_NAMES[replies[-1].payload[0]]
 
@@ -492,10 +492,10 @@ def test_a_word_that_comes_twice_counts_once() -> None:
 @pytest.mark.parametrize("cut", range(1, 14))
 def test_a_word_in_two_reads_and_at_9600_baud(cut: int) -> None:
     wire = Wire()
-    word = wire.keys(pressed(["B"], -100, 100))
+    word = wire.keys(pressed_of(["B"], -100, 100))
     wire.robot.wait(30, word[:cut])
     wire.robot.wait(30, word[cut:])
-    assert wire.robot.remote() == readings(pressed(["B"], -100, 100))
+    assert wire.robot.remote() == readings(pressed_of(["B"], -100, 100))
     slow = wire.keys(LEFT)
     wire.robot.latched_while(len(slow) + 5, slow, is_spread=True)
     assert wire.robot.remote() == readings(LEFT)
@@ -551,7 +551,7 @@ def test_the_reply_says_where_the_program_is() -> None:
     program = image("SI|W(5)")
     wire.robot.wait(60, wire.frame("PROGRAM", b"\x10" + program.code))
     sent = wire.robot.wait(60, wire.keys(UP))
-    frames = [decoded(packet) for packet in sent.split(b"\0")]
+    frames = [decode_frame(packet) for packet in sent.split(b"\0")]
     reply = next(frame for frame in frames if frame is not None and frame.number == KEYS.number)
     assert reply.payload[:2] == bytes((0, STATE_RUNNING))
     assert int.from_bytes(reply.payload[5:9], "little") == program.checksum

@@ -8,7 +8,7 @@ from tests.machines.link import CppLink, cpp_link
 from tests.support.link_cases import KIT, packets_of
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import messages
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import AGAIN_MS, BY_NAME, DEAD_MAN_MS, LISTEN_MS
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
@@ -20,7 +20,11 @@ def robot_with_session() -> CppLink:
     cpp.begin(kit=KIT)
     hello = {"major": messages.MAJOR, "minor": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR,
              "kit": KIT, "nonce": 3}  # fmt: skip
-    cpp.step(0, b"\0" + encoded(Frame(1, 1, 0, messages.written(BY_NAME["HELLO"].request, hello))))
+    cpp.step(
+        0,
+        b"\0"
+        + encode_frame(Frame(1, 1, 0, messages.encode_payload(BY_NAME["HELLO"].request, hello))),
+    )
     return cpp
 
 
@@ -35,10 +39,10 @@ def ends_at(cpp: CppLink, from_ms: int, until_ms: int) -> int | None:
 @pytest.mark.parametrize("start", [0, 0xFFFFFFFF - 2000])
 def test_an_attached_program_ends_a_second_after_the_last_valid_frame(start: int) -> None:
     cpp = robot_with_session()
-    live = messages.written(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
-    cpp.step(start, b"\0" + encoded(Frame(8, 2, 10, live)))
-    cpp.step(start + 700, b"\0" + encoded(Frame(2, 3, 10)))
-    cpp.step(start + 900, encoded(Frame(2, 4, 10))[:-2] + b"\1\0")  # damaged: does not count
+    live = messages.encode_payload(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
+    cpp.step(start, b"\0" + encode_frame(Frame(8, 2, 10, live)))
+    cpp.step(start + 700, b"\0" + encode_frame(Frame(2, 3, 10)))
+    cpp.step(start + 900, encode_frame(Frame(2, 4, 10))[:-2] + b"\1\0")  # damaged: does not count
     assert ends_at(cpp, start + 900, start + 2000) == start + 700 + DEAD_MAN_MS
 
 
@@ -46,10 +50,10 @@ def test_an_attached_program_ends_a_second_after_the_last_valid_frame(start: int
 def test_a_detached_program_and_what_the_button_has_started_go_on(name: str) -> None:
     cpp = robot_with_session()
     mode = {"PROGRAM": 0x50, "START": 0, "button": 0x10}[name]
-    program = messages.written(BY_NAME["PROGRAM"].request, {"mode": mode, "code": FORWARD})
-    cpp.step(10, encoded(Frame(9, 2, 10, program)))
+    program = messages.encode_payload(BY_NAME["PROGRAM"].request, {"mode": mode, "code": FORWARD})
+    cpp.step(10, encode_frame(Frame(9, 2, 10, program)))
     if name == "START":
-        cpp.step(20, encoded(Frame(7, 3, 10, b"\x40")))
+        cpp.step(20, encode_frame(Frame(7, 3, 10, b"\x40")))
     elif name == "button":
         cpp.happens("b")
         cpp.step(20)
@@ -76,7 +80,7 @@ def test_what_is_counted_does_not_wrap() -> None:
 def test_a_line_that_is_held_low_neither_runs_the_epoch_round_nor_fills_the_line_back() -> None:
     cpp = robot_with_session()
     sent = b"".join(cpp.step(now_ms, b"\0").sent for now_ms in range(10, 70_010))
-    frames = [decoded(part) for part in sent.split(b"\0") if part]
+    frames = [decode_frame(part) for part in sent.split(b"\0") if part]
     assert {frame.epoch for frame in frames if frame} == {11}
     assert {frame.number for frame in frames if frame} == {BY_NAME["STOPPED"].number}
     assert 1000 < len(frames) <= 70_000 // AGAIN_MS + 1, len(frames)
@@ -127,9 +131,9 @@ def test_a_module_that_answers_each_line_gets_few_answers(line: bytes) -> None:
 def test_a_slow_line_back_costs_no_answer() -> None:
     """What comes before the last answer could be sent waits."""
     cpp = robot_with_session()
-    data = b"".join(encoded(Frame(2, seq, 10)) for seq in (2, 3, 4))
+    data = b"".join(encode_frame(Frame(2, seq, 10)) for seq in (2, 3, 4))
     sent = cpp.step(10, data, is_slow=True).sent
-    frames = [decoded(part) for part in sent.split(b"\0") if part]
+    frames = [decode_frame(part) for part in sent.split(b"\0") if part]
     assert [frame.seq for frame in frames if frame] == [2, 3, 4]
 
 

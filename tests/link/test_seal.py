@@ -11,7 +11,7 @@ import random
 import pytest
 
 from tests.machines.link import cpp_link
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME, SEALED_PAYLOAD_BYTES
 from tiniscript.link.receiver import Receiver
 from tiniscript.link.seal import LAST, Seal, session_key, siphash
@@ -93,7 +93,7 @@ def test_the_computer_seals_and_the_robot_opens_as_written_and_what_is_new() -> 
     for _ in range(300):
         frame, counter = random_frame(chance, False), counters(chance)
         sent = by_hand(frame, counter)
-        assert whole(seal(sent=counter - 1).closed(frame)) == sent
+        assert whole(seal(sent=counter - 1).seal_frame(frame)) == sent
         assert cpp_link().opens(KEY, ORIGIN, counter - 1, sent)
         assert not cpp_link().opens(KEY, ORIGIN, counter, sent)
 
@@ -105,25 +105,25 @@ def test_the_robot_seals_and_the_computer_opens_as_written_and_what_is_new() -> 
         marked, sent = whole(frame._replace(is_sealed=True)), by_hand(frame, counter)
         assert cpp_link().sealed(KEY, ORIGIN, 0, counter - 1, marked) == sent
         mine = seal(heard=counter - 1)
-        assert mine.opened(frame_of(sent)) == frame._replace(is_sealed=True)
-        assert mine.opened(frame_of(sent)) is None  # once
-        assert seal(heard=counter).opened(frame_of(sent)) is None
+        assert mine.open_frame(frame_of(sent)) == frame._replace(is_sealed=True)
+        assert mine.open_frame(frame_of(sent)) is None  # once
+        assert seal(heard=counter).open_frame(frame_of(sent)) is None
 
 
 def test_each_bit_and_each_length_counts() -> None:
     frame = Frame(8, 3, 10, bytes.fromhex("10448c50"))
     to_robot, to_computer = by_hand(frame, 7), by_hand(frame._replace(is_reply=True), 7)
-    assert seal(6).opened(frame_of(to_computer))
+    assert seal(6).open_frame(frame_of(to_computer))
     assert cpp_link().opens(KEY, ORIGIN, 6, to_robot)
     for bit in range(8 * len(to_robot)):
         change = 1 << bit % 8
         for data in (to_robot, to_computer):
             other = bytearray(data)
             other[bit // 8] ^= change
-            assert seal(0).opened(frame_of(bytes(other))) is None
+            assert seal(0).open_frame(frame_of(bytes(other))) is None
             assert not cpp_link().opens(KEY, ORIGIN, 0, bytes(other))
     for length in range(3, len(to_robot)):
-        assert seal(0).opened(frame_of(to_computer[:length])) is None
+        assert seal(0).open_frame(frame_of(to_computer[:length])) is None
         assert not cpp_link().opens(KEY, ORIGIN, 0, to_robot[:length])
 
 
@@ -143,10 +143,10 @@ def test_another_origin_is_another_key() -> None:
 def test_a_counter_at_its_end_seals_nothing_more() -> None:
     mine = seal(sent=LAST - 1)
     assert not mine.is_spent
-    mine.closed(Frame(2, 1, 1))
+    mine.seal_frame(Frame(2, 1, 1))
     assert mine.is_spent
     with pytest.raises(AssertionError):
-        mine.closed(Frame(2, 1, 1))
+        mine.seal_frame(Frame(2, 1, 1))
     marked = whole(Frame(2, 1, 1, is_reply=True, is_sealed=True))
     assert cpp_link().sealed(KEY, ORIGIN, 0, LAST - 1, marked)
     assert cpp_link().sealed(KEY, ORIGIN, 0, LAST, marked) == b""
@@ -157,7 +157,7 @@ def test_no_sealed_frame_is_a_line_of_text() -> None:
     """Its 0 comes early: so it begins with a byte up to 4."""
     chance = random.Random(5)
     for _ in range(2000):
-        wire = encoded(seal(sent=counters(chance) - 1).closed(random_frame(chance, False)))
+        wire = encode_frame(seal(sent=counters(chance) - 1).seal_frame(random_frame(chance, False)))
         assert wire[0] <= 4
         receiver = Receiver()
         for byte in b"\0" + wire:

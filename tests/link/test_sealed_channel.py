@@ -18,7 +18,7 @@ from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.campaign import each_seed, wanted
 from tests.support.link_cases import KIT
 from tests.support.owners import Keys
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     KEY_OWNER,
@@ -29,9 +29,9 @@ from tiniscript.link.messages import (
     SEALS,
     SMALL_FRAME,
     STATUSES,
+    decode_payload,
+    encode_payload,
     payload_bytes,
-    read,
-    written,
 )
 from tiniscript.link.session import Session
 
@@ -70,7 +70,7 @@ class SealedWorld(World):
     def heard(self, data: bytes) -> None:
         self.frames += [part + b"\0" for part in data.split(b"\0") if part]
         del self.frames[:-HEARD]
-        for frame in filter(None, map(decoded, filter(None, data.split(b"\0")))):
+        for frame in filter(None, map(decode_frame, filter(None, data.split(b"\0")))):
             if not frame.is_reply:
                 self.asked = frame
             elif frame.number == BY_NAME["HELLO"].number and frame.payload[0] == 0:
@@ -90,35 +90,35 @@ class SealedWorld(World):
             return self.answered(self.asked)
         if how == 0:
             return damaged(old, draw)
-        frame = decoded(old.rstrip(b"\0"))
+        frame = decode_frame(old.rstrip(b"\0"))
         if how < 3 or frame is None:
             return old
         if how == 3:  # a seal is taken off, put on, or moved to what may still be expected
             number = draw.choice((frame.number, BY_NAME["LIVE"].number))
             frame = frame._replace(number=number, seq=(frame.seq + draw.randrange(3)) & 0xFF)
-            return encoded(frame._replace(is_sealed=draw.random() < 0.5))
+            return encode_frame(frame._replace(is_sealed=draw.random() < 0.5))
         if how == 4:  # the robot is said to have no seal, or to have done it
             status = draw.choice((0, 0, STATUSES["NOT_OWNER"], STATUSES["STALE"]))
             payload = bytes([status]) + draw.randbytes(draw.choice((0, 2, 8)))
-            return encoded(frame._replace(payload=payload, is_reply=True, is_sealed=False))
+            return encode_frame(frame._replace(payload=payload, is_reply=True, is_sealed=False))
         requests = [message for message in MESSAGES if message.number < 32]
         message = draw.choice(requests if self.has_hello else requests[1:])
         most = sum(field.high for field in message.request)
         least = sum(field.low for field in message.request)
         payload = draw.randbytes(draw.randint(least, most))
         seq, epoch = draw.randrange(256), frame.epoch
-        return encoded(Frame(message.number, seq, epoch, payload))
+        return encode_frame(Frame(message.number, seq, epoch, payload))
 
     def answered(self, asked: Frame) -> bytes:
         """Return an answer that has no seal: HELLO as a robot that seals nothing, or done."""
         message = next(message for message in MESSAGES if message.number == asked.number)
         payload = b"\0" + self.draw.randbytes(sum(field.low for field in message.reply))
         if message.name == "HELLO" and self.greeting:
-            values = read(message.reply, self.greeting[1:])
+            values = decode_payload(message.reply, self.greeting[1:])
             cleared = self.draw.choice((OWNED, SEALS, OWNED | SEALS))
             values["features"] = int(values["features"]) & ~cleared
-            payload = b"\0" + written(message.reply, values)
-        return encoded(asked._replace(payload=payload, is_reply=True, is_sealed=False))
+            payload = b"\0" + encode_payload(message.reply, values)
+        return encode_frame(asked._replace(payload=payload, is_reply=True, is_sealed=False))
 
 
 class QuietWorld(SealedWorld):
@@ -147,7 +147,7 @@ def test_the_frames_of_a_session_are_sealed() -> None:
     request = world.session.live(program(world.draw)[: world.line])
     world.run(request)
     assert request.outcome and request.outcome.status == 0
-    frames = [decoded(frame.rstrip(b"\0")) for frame in world.frames[-2:]]
+    frames = [decode_frame(frame.rstrip(b"\0")) for frame in world.frames[-2:]]
     assert [(frame.number, frame.is_sealed) for frame in frames if frame] == [(8, True), (8, True)]
 
 
@@ -160,7 +160,7 @@ def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
         world.run(request)
         assert request.outcome and request.outcome.status == 0
         frame = Frame(stop, 1, 0, payload, is_sealed=is_sealed)
-        step = world.cpp.step(world.now_ms, b"\0" + encoded(frame))
+        step = world.cpp.step(world.now_ms, b"\0" + encode_frame(frame))
         assert "STOP" in step.did
         world.session.receive(step.sent, world.now_ms)
         world.run(None, 300)

@@ -26,7 +26,7 @@ class Line(NamedTuple):
 def line(request: pytest.FixtureRequest) -> Iterator[Line]:
     end, theirs = pty.openpty()
     tty.setraw(theirs)
-    device = serial.opened(os.ttyname(theirs), 9600, 20.0, is_exclusive=request.param)
+    device = serial.open_port(os.ttyname(theirs), 9600, 20.0, is_exclusive=request.param)
     os.close(theirs)
     with FileIO(end, "r+") as ours:
         yield Line(ours, device)

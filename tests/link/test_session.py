@@ -16,7 +16,7 @@ from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages
 from tiniscript.link.connection import DEADLINE_MS, LinkConnection, PendingRequest, reason_of
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -50,18 +50,18 @@ DESCRIPTION: dict[str, int | bytes] = {
 
 def answer(sent: bytes, values: dict[str, int | bytes], status: int = 0, epoch: int = 10) -> bytes:
     """Return a robot's answer to what a session has sent."""
-    frame = decoded(sent.strip(b"\0"))
+    frame = decode_frame(sent.strip(b"\0"))
     assert frame
     payload = bytes((status, 0, 0))
     if not status:
-        payload = b"\0" + messages.written(messages.BY_NUMBER[frame.number].reply, values)
-    return b"\0" + encoded(Frame(frame.number, frame.seq, epoch, payload, is_reply=True))
+        payload = b"\0" + messages.encode_payload(messages.BY_NUMBER[frame.number].reply, values)
+    return b"\0" + encode_frame(Frame(frame.number, frame.seq, epoch, payload, is_reply=True))
 
 
 def event(name: str, seq: int, values: dict[str, int | bytes], epoch: int = 11) -> bytes:
     message = BY_NAME[name]
-    payload = messages.written(message.reply, values)
-    return b"\0" + encoded(Frame(message.number, seq, epoch, payload, is_reply=True))
+    payload = messages.encode_payload(message.reply, values)
+    return b"\0" + encode_frame(Frame(message.number, seq, epoch, payload, is_reply=True))
 
 
 def greeted(baud: int = 9600, now_ms: int = 0, features: int = 0) -> Session:
@@ -300,7 +300,7 @@ def test_a_late_answer_to_a_stop_ends_no_run_that_has_begun_since() -> None:
     while live.outcome is None:
         now_ms += 5
         data = session.poll(now_ms)
-        frame = decoded(data.strip(b"\0")) if data else None
+        frame = decode_frame(data.strip(b"\0")) if data else None
         if frame is not None:
             values = receipt(1) if frame.number == BY_NAME["LIVE"].number else {}
             session.receive(answer(data, values, epoch=11), now_ms)
@@ -364,7 +364,7 @@ def test_a_program_that_is_done_before_its_receipt_does_not_run() -> None:
 
 def test_text_and_echoes_are_told() -> None:
     session = greeted()
-    session.receive(b"OK+LOST\r\n\0" + encoded(Frame(2, 1, 1)), 5)
+    session.receive(b"OK+LOST\r\n\0" + encode_frame(Frame(2, 1, 1)), 5)
     found = session.events()
     assert [each.name for each in found] == ["TEXT", "ECHO"]
     assert found[0] == TextEvent(b"OK+LOST")
@@ -373,13 +373,13 @@ def test_text_and_echoes_are_told() -> None:
 def test_what_a_newer_robot_sends_is_no_harm() -> None:
     session = greeted()
     for frame in (Frame(40, 0, 10, b"new", is_reply=True), Frame(35, 1, 10, b"", is_reply=True)):
-        session.receive(b"\0" + encoded(frame), 5)
+        session.receive(b"\0" + encode_frame(frame), 5)
     request = session.ping()
     data = session.poll(6)
-    sent = decoded(data.strip(b"\0"))
+    sent = decode_frame(data.strip(b"\0"))
     assert sent
-    session.receive(encoded(Frame(2, sent.seq, 10, b"", is_reply=True)), 7)
-    session.receive(encoded(Frame(2, sent.seq, 10, b"\0\1\1" + bytes(7), is_reply=True)), 7)
+    session.receive(encode_frame(Frame(2, sent.seq, 10, b"", is_reply=True)), 7)
+    session.receive(encode_frame(Frame(2, sent.seq, 10, b"\0\1\1" + bytes(7), is_reply=True)), 7)
     assert request.outcome is None and session.damaged == 3
     session.receive(answer(data, {"state": 0, "run": 0}), 8)
     assert request.outcome
@@ -419,7 +419,7 @@ def uploaded(image: Image, kit: int | None, is_refused: int = 0) -> tuple[list[s
     while request.outcome is None:
         now_ms += 1000
         data = session.poll(now_ms)
-        frame = decoded(data.strip(b"\0"))
+        frame = decode_frame(data.strip(b"\0"))
         assert frame
         names.append(BY_NUMBER[frame.number].name)
         values: dict[str, int | bytes] = {}
@@ -466,7 +466,7 @@ def test_a_program_of_an_older_instruction_set_says_so() -> None:
     session.hello()
     session.receive(answer(session.poll(0), {**DESCRIPTION, "isa_minor": ISA_MINOR + 1}), 0)
     session.upload(unpack(pack("SI", 0, FORWARD)))
-    frame = decoded(session.poll(0).strip(b"\0"))
+    frame = decode_frame(session.poll(0).strip(b"\0"))
     assert frame and frame.number == BY_NAME["BEGIN"].number
 
 
@@ -626,10 +626,10 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
     now_ms = 10
     for payload in replies:
         now_ms += 1000
-        sent = decoded(session.poll(now_ms).strip(b"\0"))
+        sent = decode_frame(session.poll(now_ms).strip(b"\0"))
         assert sent and sent.number == 2 and sent.payload == b"\1"
         reply = Frame(2, sent.seq, 10, b"\0" + payload, is_reply=True)
-        session.receive(b"\0" + encoded(reply), now_ms + 1)
+        session.receive(b"\0" + encode_frame(reply), now_ms + 1)
     return [
         (place_event.run, place_event.at)
         for place_event in session.events()

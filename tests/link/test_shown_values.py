@@ -8,7 +8,7 @@ import pytest
 
 from tests.link.test_session import FORWARD, answer, event, greeted, receipt
 from tiniscript.bytecode.image import pack, unpack
-from tiniscript.link.frames import decoded
+from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME, PLACES, STATE_IDLE, STATE_RUNNING
 from tiniscript.link.outcomes import Event, MissedEvent, ShownEvent
 from tiniscript.link.payloads import DoneEvent
@@ -48,7 +48,7 @@ def answer_to_ping(
 ) -> bytes:
     """Return the robot's answer to PING, which the session sends now and asks for its place."""
     sent = session.poll(now_ms)
-    frame = decoded(sent.strip(b"\0"))
+    frame = decode_frame(sent.strip(b"\0"))
     assert frame and (frame.number, frame.payload) == (BY_NAME["PING"].number, ASKS_PLACE)
     place = struct.pack("<HI", 9, program) if state == STATE_RUNNING else b""
     return answer(sent, {"state": state, "run": run, "place": place})

@@ -68,12 +68,12 @@ class Talk:
         data = self.session.poll(self.now_ms)
         self.sent_bytes += len(data)
         self.there.send(self.kept(data), self.now_ms)
-        came = self.there.arrived(self.now_ms)
+        came = self.there.receive(self.now_ms)
         if came or self.now_ms % LOOK_MS == 0:
             found = self.robot.step(self.now_ms, came)
             self.did += found.did
             self.back.send(self.kept(found.sent), self.now_ms)
-        self.session.receive(self.back.arrived(self.now_ms), self.now_ms)
+        self.session.receive(self.back.receive(self.now_ms), self.now_ms)
         self.now_ms += STEP_MS
 
     def wait(self, request: PendingRequest[Any], most_ms: int = 600_000) -> int:

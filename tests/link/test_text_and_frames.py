@@ -13,7 +13,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.link.test_large_frames import IMAGE, Answering, Taking
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     FIRST_EVENT,
     LARGE_FRAME,
@@ -68,7 +68,7 @@ class Line:
             if packet.is_text:
                 lines.append(packet.data)
             else:
-                frames.append(decoded(packet.data))
+                frames.append(decode_frame(packet.data))
         return frames, lines
 
 
@@ -96,7 +96,7 @@ def all_arrive(sender: TextSender, draw: random.Random) -> None:
             assert not data or line.put(data) == ([], [said])
         else:
             frame = random_frame(draw)
-            data = sender.frames(encoded(frame), line.now_ms)
+            data = sender.frames(encode_frame(frame), line.now_ms)
             assert line.put(data) == ([frame], [])
     assert line.receiver.damaged == line.receiver.dropped == 0
 
@@ -106,7 +106,7 @@ def torn_ones_arrive_when_repeated(sender: TextSender, draw: random.Random) -> N
     line = Line()
     for _ in range(FRAMES):
         frame = random_frame(draw)
-        data = sender.frames(encoded(frame), line.now_ms)
+        data = sender.frames(encode_frame(frame), line.now_ms)
         at = draw.randrange(len(data))
         line.receiver.put(data[0], line.now_ms)  # nobody looks
         for byte in data[1:at]:
@@ -117,7 +117,7 @@ def torn_ones_arrive_when_repeated(sender: TextSender, draw: random.Random) -> N
             line.receiver.put(byte, line.now_ms)
         line.receiver.take()
         line.now_ms += draw.choice((0, 30, 200))
-        data = sender.frames(encoded(frame), line.now_ms, is_repeated=True)
+        data = sender.frames(encode_frame(frame), line.now_ms, is_repeated=True)
         assert line.put(data)[0][-1:] == [frame]
 
 

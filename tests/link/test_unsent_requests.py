@@ -17,7 +17,7 @@ from tiniscript.bytecode.image import Image, unpack
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.payloads import EmptyReply, ReceiptReply
-from tiniscript.link.requests import OK, Exchange, Reply, Request, single
+from tiniscript.link.requests import OK, Exchange, Reply, Request, send_single
 from tiniscript.link.session import Session
 
 FAULTS = "SHOW(1 / DISTANCE)"  # at once
@@ -136,7 +136,7 @@ def two_steps() -> Exchange[EmptyReply]:
     reply = yield Request("PING", {"asks": b""})
     if reply.status != OK:
         return Reply(reply.status)
-    return (yield from single(Request("IDENTIFY"), EmptyReply))
+    return (yield from send_single(Request("IDENTIFY"), EmptyReply))
 
 
 def test_a_stop_that_is_told_before_the_first_step_with_an_effect_voids_it() -> None:

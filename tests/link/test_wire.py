@@ -36,14 +36,14 @@ class Port:
 
 def test_it_waits_for_the_first_byte_and_then_for_a_silence() -> None:
     port = Port(b"OK\r", b"\n+")
-    assert Wire(port).heard(500, 60) == b"OK\r\n+"
+    assert Wire(port).receive(500, 60) == b"OK\r\n+"
     assert port.waits == [0.5, 0.06, 0.06]
-    assert Wire(Port()).heard(500) == b""
+    assert Wire(Port()).receive(500) == b""
 
 
 def test_it_does_not_listen_for_ever() -> None:
     port = Port(*[b"x" * 100] * 1000)
-    assert MOST_BYTES <= len(Wire(port).heard(500)) < MOST_BYTES + 100
+    assert MOST_BYTES <= len(Wire(port).receive(500)) < MOST_BYTES + 100
 
 
 def test_a_board_restarts_when_its_lines_come_back() -> None:
@@ -62,6 +62,6 @@ def test_what_goes_wrong_is_an_os_error() -> None:
             raise TypeError("None")
 
     wire = Wire(Closed())
-    for use in (lambda: wire.heard(10), lambda: wire.send(b"x"), lambda: wire.set_baud(7)):
+    for use in (lambda: wire.receive(10), lambda: wire.send(b"x"), lambda: wire.set_baud(7)):
         with pytest.raises(OSError):
             use()

@@ -9,7 +9,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.trace import Ending
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.bytecode.image import EVERYTHING
-from tiniscript.bytecode.verify import loaded
+from tiniscript.bytecode.verify import load_image
 from tiniscript.vm.runner import run
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def ran_python(image: bytes, kit: Kit, senses: Senses, has: int = EVERYTHING) -> Ran:
     """Run an image, which is read and verified as a machine that has so much of `needs` does it."""
-    code = loaded(image, kit, has).code
+    code = load_image(image, kit, has).code
     events = run(code, kit, lists_of(kit, senses), senses.max_ms, senses.max_steps, senses.seed)
     *lines, ending = events
     assert isinstance(ending, Ending)

@@ -13,7 +13,7 @@ from tests.support.simulated_modules import SimulatedModule as Simulated
 from tests.support.simulated_wire import SimulatedWire
 from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS
-from tiniscript.link.modules.set_up import Outcome, Wanted
+from tiniscript.link.modules.set_up import Outcome, WantedSettings
 from tiniscript.link.modules.talk import Module, find_module
 
 of_each = pytest.mark.parametrize("kind", KINDS)
@@ -25,11 +25,13 @@ def met(wire: SimulatedWire) -> Module:
     return module
 
 
-def ended(wire: SimulatedWire, wanted: Wanted, module: Module | None = None) -> list[Outcome]:
+def ended(
+    wire: SimulatedWire, wanted: WantedSettings, module: Module | None = None
+) -> list[Outcome]:
     """Set up the module that is met at the other end."""
     module = module or met(wire)
     told: list[Outcome] = []
-    outcomes = set_up.done(wire, module, set_up.steps(wanted, module.dialect), told.append)
+    outcomes = set_up.apply_steps(wire, module, set_up.steps(wanted, module.dialect), told.append)
     assert told == outcomes
     return outcomes
 
@@ -37,7 +39,7 @@ def ended(wire: SimulatedWire, wanted: Wanted, module: Module | None = None) -> 
 def all_wanted(wire: SimulatedWire, end: Simulated, name: str, baud: int) -> Module:
     """Set up everything; return the module as it was met, which has it all now."""
     module = met(wire)
-    wanted = Wanted(name, "135790"[: module.dialect.pin_digits], baud)
+    wanted = WantedSettings(name, "135790"[: module.dialect.pin_digits], baud)
     outcomes = ended(wire, wanted, module)
     assert [outcome.how in set_up.GOOD for outcome in outcomes] == [True] * 3
     assert (end.name, end.pin, end.data_baud) == wanted
@@ -99,7 +101,9 @@ def test_a_module_that_says_no_version_is_found_all_the_same(kind: str) -> None:
     wire = SimulatedWire(Odd(end, deaf="VER"))
     module = met(wire)
     assert (module.dialect.name, module.version) == (kind, "")
-    assert [outcome.how in set_up.GOOD for outcome in ended(wire, Wanted("Tini"), module)] == [True]
+    assert [
+        outcome.how in set_up.GOOD for outcome in ended(wire, WantedSettings("Tini"), module)
+    ] == [True]
     assert end.name == "Tini"
 
 
@@ -144,7 +148,7 @@ def test_name_pin_and_speed_are_what_was_wanted_and_else_stay(kind: str, baud: i
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(end)
     before = end.name, end.pin, end.data_baud
-    assert ended(wire, Wanted()) == []
+    assert ended(wire, WantedSettings()) == []
     assert (end.name, end.pin, end.data_baud) == before
     all_wanted(wire, end, "Tini-7F3A", baud)
     end.power_on()
@@ -154,7 +158,7 @@ def test_name_pin_and_speed_are_what_was_wanted_and_else_stay(kind: str, baud: i
 def test_an_old_hc_05_gets_its_pin_without_quotes_and_a_new_one_with() -> None:
     for end in (Hc05(), Hc05New()):
         wire = SimulatedWire(end)
-        (outcome,) = ended(wire, Wanted(pin="4711"))
+        (outcome,) = ended(wire, WantedSettings(pin="4711"))
         assert (end.pin, outcome.how) == ("4711", set_up.DONE)
 
 
@@ -165,7 +169,7 @@ def test_quotes_that_a_module_has_kept_are_not_taken_for_the_pin() -> None:
     wire = SimulatedWire(end)
     module = met(wire)
     assert module.dialect.name == "HC-05 3.x"
-    (outcome,) = ended(wire, Wanted(pin="4711"), module)
+    (outcome,) = ended(wire, WantedSettings(pin="4711"), module)
     assert (end.pin, outcome.how) == ("4711", set_up.DONE)
 
 
@@ -183,7 +187,7 @@ def test_a_speed_that_was_set_before_a_restart_is_found_again() -> None:
     wire = SimulatedWire(end)
     module = met(wire)
     end.breaks_after = len(end.commands) + 1  # AT+BAUD is the last one that it hears
-    outcomes = ended(wire, Wanted(baud=115200), module)
+    outcomes = ended(wire, WantedSettings(baud=115200), module)
     assert outcomes[-1].how == set_up.LOST
     end.breaks_after = None
     end.power_on()
@@ -197,7 +201,9 @@ def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, comman
     wire = SimulatedWire(end)
     module = met(wire)
     end.breaks_after = len(end.commands) + commands
-    outcomes = ended(wire, Wanted("ANA", "135790"[: module.dialect.pin_digits], 57600), module)
+    outcomes = ended(
+        wire, WantedSettings("ANA", "135790"[: module.dialect.pin_digits], 57600), module
+    )
     is_whole = end.is_on
     assert is_whole == (
         len(outcomes) == 3 and all(outcome.how in set_up.GOOD for outcome in outcomes)
@@ -221,12 +227,12 @@ def test_a_clone_whose_numbers_are_others_is_found_where_it_went() -> None:
     module = met(wire)
     assert module.dialect.name == "CC41-A"
     end.data_baud = 38400
-    (outcome,) = ended(wire, Wanted(baud=9600), module)
+    (outcome,) = ended(wire, WantedSettings(baud=9600), module)
     assert (outcome.how, end.baud) == (set_up.DONE, 9600)
-    outcomes = ended(wire, Wanted(baud=57600))
+    outcomes = ended(wire, WantedSettings(baud=57600))
     assert outcomes[-1].how == set_up.REFUSED
     end.bauds = Hm10.bauds
-    outcomes = ended(wire, Wanted(baud=9600))
+    outcomes = ended(wire, WantedSettings(baud=9600))
     assert (outcomes[-1].how, outcomes[-1].said) == (set_up.ELSEWHERE, "115200")
     assert end.baud == 115200
 
@@ -238,7 +244,7 @@ def test_a_module_that_refuses_is_not_said_to_have_done_it() -> None:
 
     end = Stubborn()
     wire = SimulatedWire(end)
-    outcomes = ended(wire, Wanted("ANA", "1111", 115200))
+    outcomes = ended(wire, WantedSettings("ANA", "1111", 115200))
     assert [outcome.how for outcome in outcomes] == [set_up.UNSEEN, set_up.REFUSED]
     assert outcomes[-1].said == "ERROR:(7)"
     assert (end.pin, end.baud) == ("1234", 9600)
@@ -252,40 +258,44 @@ def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
             return said
 
     wire = SimulatedWire(Short())
-    (outcome,) = ended(wire, Wanted("Tini-7F3A"))
+    (outcome,) = ended(wire, WantedSettings("Tini-7F3A"))
     assert (outcome.how, outcome.said) == (set_up.DIFFERS, "Tini")
 
 
 @each_row(
     "wanted, dialect, what",
     [
-        (Wanted("x" * 20), "HC-06", ""),
-        (Wanted("x" * 21), "HC-06", "name"),
-        (Wanted("x" * 12), "HM-10", ""),
-        (Wanted("x" * 13), "HM-10", "name"),
-        (Wanted(""), "HC-05", "name"),
-        (Wanted(" a"), "HC-05", "name"),
-        (Wanted("a,b"), "HC-05", "name"),
-        (Wanted("ÑANDÚ"), "HC-05", "name"),
-        (Wanted("a\r\nAT+ORGL"), "HC-05", "name"),
-        (Wanted(pin="1234"), "HC-05", ""),
-        (Wanted(pin="12345"), "HC-05", "pin"),
-        (Wanted(pin="1234"), "HM-10", "pin"),
-        (Wanted(pin="123456"), "CC41-A", ""),
-        (Wanted(pin="12a4"), "HC-06", "pin"),
-        (Wanted(pin="१२३४"), "HC-06", "pin"),
-        (Wanted(baud=57600), "HC-06", ""),
-        (Wanted(baud=57601), "HC-06", "baud"),
+        (WantedSettings("x" * 20), "HC-06", ""),
+        (WantedSettings("x" * 21), "HC-06", "name"),
+        (WantedSettings("x" * 12), "HM-10", ""),
+        (WantedSettings("x" * 13), "HM-10", "name"),
+        (WantedSettings(""), "HC-05", "name"),
+        (WantedSettings(" a"), "HC-05", "name"),
+        (WantedSettings("a,b"), "HC-05", "name"),
+        (WantedSettings("ÑANDÚ"), "HC-05", "name"),
+        (WantedSettings("a\r\nAT+ORGL"), "HC-05", "name"),
+        (WantedSettings(pin="1234"), "HC-05", ""),
+        (WantedSettings(pin="12345"), "HC-05", "pin"),
+        (WantedSettings(pin="1234"), "HM-10", "pin"),
+        (WantedSettings(pin="123456"), "CC41-A", ""),
+        (WantedSettings(pin="12a4"), "HC-06", "pin"),
+        (WantedSettings(pin="१२३४"), "HC-06", "pin"),
+        (WantedSettings(baud=57600), "HC-06", ""),
+        (WantedSettings(baud=57601), "HC-06", "baud"),
     ],
 )
-def test_what_a_module_cannot_have_is_known_before(wanted: Wanted, dialect: str, what: str) -> None:
+def test_what_a_module_cannot_have_is_known_before(
+    wanted: WantedSettings, dialect: str, what: str
+) -> None:
     (found_dialect,) = (each for each in DIALECTS if each.name == dialect)
     assert set_up.misfit(wanted, found_dialect) == what
 
 
 def test_a_name_from_an_id_fits_each() -> None:
     assert set_up.name_for(0x12347F3A) == "Tini-7F3A"
-    assert all(not set_up.misfit(Wanted(set_up.name_for(7)), dialect) for dialect in DIALECTS)
+    assert all(
+        not set_up.misfit(WantedSettings(set_up.name_for(7)), dialect) for dialect in DIALECTS
+    )
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -298,5 +308,5 @@ def test_what_was_sent_before_is_no_part_of_a_command(kind: str, seed: int) -> N
     plain = met(SimulatedWire(KINDS[kind](*([end.baud] if not kind.startswith("HC-05") else []))))
     command = chance.choice(["AT", "AT+", "AT+VERSION", "AT+ROLE?", "AT\r", "A", "w" * 20, "\0"])
     wire.send(command.encode())
-    wire.heard(chance.choice([1, 10, 100, 900]))
+    wire.receive(chance.choice([1, 10, 100, 900]))
     assert met(wire) == plain

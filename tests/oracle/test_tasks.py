@@ -22,7 +22,7 @@ from tests.support.rows import each_row
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import unpack
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 
 KIT = robots.load("tinibot").kit
 MAX_MS = 600
@@ -50,9 +50,9 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,), needs:
         for machine in machines:
             got = machine(image, KIT, Senses(senses, MAX_MS))
             assert got == want, f"seed {seed}, {image.hex()}:\n{text}"
-    laid_out = formatted(Source(text))
+    laid_out = format_source(Source(text))
     assert compile_text(laid_out, KIT).image == both[0].image, f"seed {seed}"
-    assert formatted(Source(laid_out)) == laid_out, f"seed {seed}"
+    assert format_source(Source(laid_out)) == laid_out, f"seed {seed}"
     return want.split()[-1]
 
 

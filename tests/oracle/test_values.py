@@ -20,7 +20,7 @@ from tests.oracle.task_programs import shared_program
 from tests.support.campaign import each_seed, wanted
 from tiniscript import compile_text, robots
 from tiniscript.base.source import Source
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 
 KIT = robots.load("tinibot").kit
 MAX_MS = 300
@@ -42,7 +42,7 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
     images = [compiled.image]
     if seed % WHOLE_IN == 0:
         images.append(compile_text(text, KIT, optimize=False).image)
-        laid_out = formatted(Source(text))
+        laid_out = format_source(Source(text))
         assert compile_text(laid_out, KIT).image == compiled.image, f"seed {seed}, formatted"
     for image in dict.fromkeys(images):
         for machine in machines:

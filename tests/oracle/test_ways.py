@@ -25,7 +25,7 @@ from tests.vm.test_agreement import same
 from tiniscript import Compiled, compile_text
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import GO, unpack
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 
 BATCH = 100
 
@@ -47,7 +47,7 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
             assert same(want, got), f"seed {seed}, {image.hex()}:\n{text}"
         got = machine.trace(unpack(image).code, theirs, readings, MAX_MS, max_steps=MAX_STEPS)
         assert machine.TOO_MANY in got or same(want, got), f"seed {seed}, the page:\n{text}"
-    laid_out = formatted(Source(text))
+    laid_out = format_source(Source(text))
     assert compile_text(laid_out, kit).image == both[0].image, f"seed {seed}"
     return want.splitlines()[-1].split(" ", 1)[1]
 

@@ -10,7 +10,7 @@ import pytest
 from tests.support.platformio import firmware, shared
 from tools import uno
 from tools.bench import avr_bench, machine, sizes, sketch_cycles
-from tools.bench.workloads import MUST, WORKS, Work, WrongResult, check, expected
+from tools.bench.workloads import MUST, WORKS, Work, WrongResult, check, expected_values
 
 needs_chip = pytest.mark.skipif(
     bool(avr_bench.missing()), reason=avr_bench.missing() or "there is a simulated chip"
@@ -19,7 +19,7 @@ needs_chip = pytest.mark.skipif(
 
 @pytest.mark.parametrize("work", WORKS, ids=lambda work: work.name)
 def test_a_wrong_value_is_an_error(work: Work) -> None:
-    shown = expected(work)
+    shown = expected_values(work)
     check("some machine", work, shown)
     for other in ((*shown[:-1], shown[-1] + 1), shown[:-1]):
         with pytest.raises(WrongResult, match=f"some machine, work {work.name}"):

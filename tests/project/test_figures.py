@@ -100,7 +100,7 @@ def test_the_firmware_is_measured_at_each_baud(
         return baud / 100
 
     breaks = False
-    monkeypatch.setattr(link, "built", lambda baud, folder: folder / str(baud))
+    monkeypatch.setattr(link, "build", lambda baud, folder: folder / str(baud))
     monkeypatch.setattr(uno, "missing", lambda: "")
     for most, code in ((2000.0, 0), (100.0, 1)):
         found = link.on_each_baud(measure, lambda its, _: max(its.values()) <= most)  # noqa: B023

@@ -103,7 +103,7 @@ def test_what_a_guide_types_prints_what_it_shows(
     monkeypatch.setenv("LC_ALL", f"{language}_MX.UTF-8")
     rows = guide.read_text(encoding="utf-8").splitlines()
     name = "COM3"
-    monkeypatch.setattr(ports, "listed", lambda: [ListedPort(pty_robot.port, PORTS[name])])
+    monkeypatch.setattr(ports, "list_ports", lambda: [ListedPort(pty_robot.port, PORTS[name])])
     printed: list[tuple[Step, str]] = []
     for step in steps(guide):
         if step.name:

@@ -25,12 +25,12 @@ from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics import codes
 from tiniscript.library.text_fitting import misfits
-from tiniscript.robots.kit_words import packed_range
+from tiniscript.robots.kit_words import pack_range
 from tiniscript.robots.text_levels import LEVELS, Level
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.description import description
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 from tools.generate import paper, poster, text_tables
 from tools.generate.documents import language_document
 from tools.generate.paper import Line
@@ -147,7 +147,7 @@ def test_a_value_of_such_a_word_is_the_whole_of_one_value() -> None:
 
 
 def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
-    assert formatted(Source(PROGRAM.lower())) == PROGRAM
+    assert format_source(Source(PROGRAM.lower())) == PROGRAM
     form = read(PROGRAM, KIT)
     horn = form.body[0].bodies[0][0]
     assert (horn.kind, horn.word, horn.values) == ("plain", HORN.text, ())
@@ -215,7 +215,7 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) ->
     for word in (HORN.text, WIGGLE.text):
         assert f"// {word}" in packed and f"// {word}" not in rows
     (times,) = WIGGLE.arguments  # no robot reads the word
-    assert text_tables.bytes_of_table(packed_range(times.low, times.high)) not in ranges
+    assert text_tables.bytes_of_table(pack_range(times.low, times.high)) not in ranges
 
 
 # The same of a word with a role of its own, of which no stage but the table of words knows.

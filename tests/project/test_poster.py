@@ -10,12 +10,12 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.rows import each_row
 from tiniscript import check_text, robots
-from tiniscript.base.languages import told_in
+from tiniscript.base.languages import translated_languages
 from tiniscript.base.words import WORDS
 from tools.generate import paper, poster
 from tools.generate.paper import MONO, Line
 
-in_both = each_row("language", told_in("documents", "poster/title"))
+in_both = each_row("language", translated_languages("documents", "poster/title"))
 
 
 def lines_of(language: str) -> list[Line]:

@@ -33,6 +33,6 @@ def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:
     ],
 )
 def test_what_is_said_of_a_text(text: str, said: list[str]) -> None:
-    found = "\n".join(readers.told(text)).splitlines()
+    found = "\n".join(readers.trace(text)).splitlines()
     assert [line for line in found if line in said] == said
     assert bool(found) == bool(said)

@@ -404,10 +404,10 @@ def test_the_question_names_what_the_studio_downloads(monkeypatch: pytest.Monkey
     from tiniscript.studio import building, serving
 
     monkeypatch.setattr(serving, "is_built", lambda: False)
-    monkeypatch.setattr(building, "found_tools", lambda: None)
+    monkeypatch.setattr(building, "find_tools", lambda: None)
     monkeypatch.setattr(building, "are_fetched", lambda: False)
     assert page_build.megabytes() == building.NODE_MB + building.NPM_MB
-    monkeypatch.setattr(building, "found_tools", lambda: building.Tools([], [], ""))
+    monkeypatch.setattr(building, "find_tools", lambda: building.Tools([], [], ""))
     assert page_build.megabytes() == building.NPM_MB == 40  # as the READMEs say
     monkeypatch.setattr(serving, "is_built", lambda: True)
     assert page_build.megabytes() == 0

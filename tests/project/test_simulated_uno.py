@@ -44,7 +44,7 @@ def test_it_tells_how_long_interrupts_are_off() -> None:
     """In the program, from the entry of an interrupt on, and where it has let others in."""
     with Uno(built("masked", Program=500, Interrupt=300, Later=200), watches_masked=True) as uno:
         uno.run_ms(20)
-        spans = uno.masked()
+        spans = uno.longest_masked()
     program = [span.cycles for span in spans if span.vector == 0]
     entries = [span for span in spans if span.is_entry]
     later = [span.cycles for span in spans if span.vector and not span.is_entry]
@@ -62,12 +62,12 @@ def test_a_byte_has_ten_bits() -> None:
     with Uno(built("echo", Baud=115200, Wait=1)) as uno:
         uno.send(b"ab", at=20_000)
         uno.run_ms(3)
-    assert [byte.value for byte in uno.sent] == [*b"ab"]
-    first, second = uno.received
+    assert [byte.value for byte in uno.sent_bytes] == [*b"ab"]
+    first, second = uno.received_bytes
     assert first.began == 20_000
     assert second.began - first.began == pytest.approx(10 * BIT, abs=1)
     assert first.cycle - first.began == pytest.approx(9.5 * CHIP_BIT, abs=10)
-    assert all(byte.cycle - byte.began == 10 * CHIP_BIT for byte in uno.sent)
+    assert all(byte.cycle - byte.began == 10 * CHIP_BIT for byte in uno.sent_bytes)
     assert uno.pins["D8"].state == uno.pins["D9"].state == "low"
 
 
@@ -76,10 +76,10 @@ def test_a_burst_overruns_the_buffer() -> None:
     with Uno(built("echo", Baud=115200, Wait=5)) as uno:
         uno.send(b"abcde", at=CYCLES_PER_MS)
         uno.run_ms(4.9)
-        assert [byte.value for byte in uno.received] == [*b"abcde"]
+        assert [byte.value for byte in uno.received_bytes] == [*b"abcde"]
         uno.run_ms(2)
-    assert bytes(byte.value for byte in uno.sent) == b"abe"
-    assert uno.lost == b"cd"
+    assert bytes(byte.value for byte in uno.sent_bytes) == b"abe"
+    assert uno.lost_bytes == b"cd"
     assert cycles_of(uno, "D9", "high")  # the chip knows that something is missing
 
 

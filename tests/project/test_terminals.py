@@ -45,7 +45,7 @@ def played(lines: list[str], language: str) -> list[str]:
     from tiniscript import robots
     from tiniscript.virtual.robot import VirtualRobot
 
-    robot = VirtualRobot(robots.load("tinibot").speaking(language), floor())
+    robot = VirtualRobot(robots.load("tinibot").with_language(language), floor())
     found = []
     for k, line in enumerate(lines):
         if line.startswith(ANSWER):

@@ -201,8 +201,8 @@ def test_nothing_of_this_computer_is_on_the_stick(stick: Path) -> None:
 
 def test_an_installer_that_cannot_be_fetched_is_named(tmp_path: Path) -> None:
     missing = usb_stick.add_installer(tmp_path, "file:///nowhere/python-3.13.9-amd64.exe")
-    assert "by hand" in missing[0].said("en")
-    assert "a mano" in missing[0].said("es")
+    assert "by hand" in missing[0].sentence("en")
+    assert "a mano" in missing[0].sentence("es")
     assert "No such file" in missing[0].why
     page = tmp_path / "page.exe"
     page.write_text("<html>blocked by the school</html>")

@@ -262,11 +262,11 @@ def test_keys_come_from_the_console(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", Console())
     monkeypatch.setitem(sys.modules, "msvcrt", console)
     with Keys() as keys:
-        assert keys.pressed() == "bq"
-        assert keys.pressed() == ""
+        assert keys.read_pressed() == "bq"
+        assert keys.read_pressed() == ""
         waiting += "\x03"
         with pytest.raises(KeyboardInterrupt):
-            keys.pressed()
+            keys.read_pressed()
 
 
 class Kernel:

@@ -23,7 +23,7 @@ from typing import NamedTuple
 from tiniscript import robots
 from tiniscript.base.source import Source
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.diagnostics.rendering import message
 from tiniscript.library.compiling import compile_source
 
@@ -104,7 +104,7 @@ def found_in(entry: Entry) -> Entry:
     diagnostics = check(program)
     source = Source(program)
     messages = [message(diagnostic, source, "es") for diagnostic in diagnostics]
-    mended = fixed(program, check).text
+    mended = repair_program(program, check).text
     said = tuple(f"{each.line} {each.code} {each.fix}".rstrip() for each in messages)
     kept = "\n".join(line.rstrip() for line in mended.split("\n"))  # as the file keeps it
     return entry._replace(said=said, mended=kept or None if mended != program else None)

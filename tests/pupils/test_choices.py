@@ -8,7 +8,7 @@ from tests.pupils.corpus import check
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import CHECKS, fixed, is_better
+from tiniscript.diagnostics.fixing import CHECKS, is_better, repair_program
 from tiniscript.library import compiling
 
 
@@ -16,13 +16,13 @@ from tiniscript.library import compiling
 def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.MonkeyPatch) -> None:
     text = piece * (7000 // len(piece))
     checks: list[str] = []
-    checked = compiling.analyzed
+    checked = compiling.analyze
 
     def counted(text: str, kit: Kit, name: str = "") -> compiling.Compiled:
         checks.append(text)
         return checked(text, kit, name)
 
-    monkeypatch.setattr(compiling, "analyzed", counted)
+    monkeypatch.setattr(compiling, "analyze", counted)
     assert check(text)
     assert 0 < len(checks) <= 40
 
@@ -36,7 +36,7 @@ def test_a_program_is_checked_so_often_and_no_more() -> None:
         texts.append(text)
         return [missing] * (2 * CHECKS - len(texts))
 
-    assert fixed("F(2 80)", endless).repairs == CHECKS - 1 and len(texts) == CHECKS
+    assert repair_program("F(2 80)", endless).repairs == CHECKS - 1 and len(texts) == CHECKS
 
 
 def test_a_repair_with_a_mistake_in_it_is_none() -> None:

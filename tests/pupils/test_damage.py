@@ -15,9 +15,9 @@ import pytest
 from tests.pupils.corpus import check
 from tests.pupils.test_pupils import OTHER_NUMBERS, mistakes
 from tests.support.casefile import ROOT, read
-from tiniscript.base.source import applied
+from tiniscript.base.source import apply_edits
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.diagnostics.fixing import edits_of, repair_program
 
 IN_CI = 150
 # What is put in, or takes the place of a sign: of phones, of other languages, of Spanish.
@@ -65,16 +65,16 @@ def test_a_damaged_program_is_repaired_or_left(seed: int) -> None:
     diagnostics = check(text)
     for diagnostic in diagnostics[:20]:
         edits = edits_of(diagnostic)
-        assert edits is None or applied(text, edits) != text
-    done = fixed(text, check)
+        assert edits is None or apply_edits(text, edits) != text
+    done = repair_program(text, check)
     assert mistakes(done.left) <= mistakes(diagnostics)
     assert done.left == check(done.text)
-    assert fixed(done.text, check).text == done.text
+    assert repair_program(done.text, check).text == done.text
     for diagnostic in diagnostics[:20]:  # each alone
         edits = edits_of(diagnostic)
-        alone = fixed(text, partial(_only, text, diagnostic))
+        alone = repair_program(text, partial(_only, text, diagnostic))
         if alone.text != text and diagnostic.code not in OTHER_NUMBERS:
-            assert edits and digits(text) == digits(applied(text, edits))
+            assert edits and digits(text) == digits(apply_edits(text, edits))
 
 
 def digits(text: str) -> str:

@@ -10,7 +10,7 @@ from itertools import accumulate
 
 from tests.pupils.corpus import Entry, check
 from tests.support.rows import each_row
-from tiniscript.base.source import Edit, Span, applied, overlap
+from tiniscript.base.source import Edit, Span, apply_edits, overlap
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import edits_of
@@ -41,7 +41,7 @@ def ways(diagnostic: Diagnostic, text: str) -> list[list[Edit]]:
 
 def wrong_in(diagnostic: Diagnostic, text: str, edits: list[Edit], told: set[str]) -> list[str]:
     """Return the codes of mistakes in what a message shows of the changed program."""
-    changed = applied(text, edits)
+    changed = apply_edits(text, edits)
     own = sorted(edits_of(diagnostic) or edits)
     spans = [span for edit, span in zip(sorted(edits), put_in(edits), strict=True) if edit in own]
     said = next((diagnostic.values[gap] for gap in SAID if diagnostic.values.get(gap)), "")

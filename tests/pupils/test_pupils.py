@@ -15,10 +15,10 @@ from tests.pupils import cover
 from tests.pupils.corpus import Entry, check, entries, found_in, write
 from tests.pupils.cover import LIST, add, chosen, forks, head, stale
 from tests.support.rows import go_through
-from tiniscript.base.source import Edit, Source, applied
+from tiniscript.base.source import Edit, Source, apply_edits
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import edits_of, fixed, offer
+from tiniscript.diagnostics.fixing import edits_of, offer, repair_program
 
 # Repairs that write a number in another way: a unit, a letter for a digit, `X++`, `50.`, and how
 # often `I = 1 TO 4` and `LOOP(I = 0; I < 4; I++)` go round.
@@ -54,7 +54,7 @@ def numbers(text: str) -> list[str]:
 
 def loses_a_number(text: str, edits: list[Edit]) -> bool:
     """Whether a change drops one of the program's numbers."""
-    left = numbers(applied(text, edits))
+    left = numbers(apply_edits(text, edits))
     for number in numbers(text):
         if number not in left:
             return True
@@ -128,7 +128,7 @@ def helps_and_keeps_the_numbers(entry: Entry) -> None:
         edits, repair = edits_of(diagnostic), diagnostic.repair
         if not edits or not diagnostic.is_mistake:
             continue
-        after = check(applied(entry.program, edits))
+        after = check(apply_edits(entry.program, edits))
         if mistakes(after) > mistakes(diagnostics):  # it has uncovered several: no button makes it
             assert not offer(entry.program, diagnostics, diagnostics.index(diagnostic), check)
         assert mistakes(after) <= mistakes(diagnostics) or not (repair and repair.is_sure)
@@ -171,7 +171,7 @@ def offers_what_it_says(entry: Entry) -> None:
         names_one = any(diagnostic.values.get(gap) for gap in WRITTEN.get(diagnostic.code, ()))
         assert edits or not names_one, diagnostic
         if edits and not diagnostic.is_mistake:
-            after = check(applied(text, edits))
+            after = check(apply_edits(text, edits))
             assert mistakes(after) <= mistakes(diagnostics) and diagnostic not in after
             assert diagnostic.repair is None
 
@@ -182,5 +182,5 @@ def test_what_is_repaired_is_repaired_once(programs: tuple[Entry, ...]) -> None:
 
 def repaired_once(entry: Entry) -> None:
     if entry.mended is not None:
-        assert fixed(entry.mended, check).text == entry.mended
+        assert repair_program(entry.mended, check).text == entry.mended
         assert mistakes(check(entry.mended)) <= mistakes(check(entry.program))

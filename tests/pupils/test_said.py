@@ -7,9 +7,9 @@ import re
 import pytest
 
 from tests.pupils.corpus import check
-from tiniscript.base.source import Source, applied
+from tiniscript.base.source import Source, apply_edits
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 from tiniscript.semantics import unknown_words
 from tiniscript.syntax.lexer import Scan, scan
@@ -31,7 +31,7 @@ def test_a_note_keeps_all_and_changes_nothing(program: str) -> None:
         assert diagnostics[0].code is codes.WORDS_AFTER
         edits = edits_of(diagnostics[0])
         assert edits
-        text = applied(text, edits)
+        text = apply_edits(text, edits)
     lines = [line.partition("//") for line in text.split("\n")]
     said = [f"{head.rstrip()} {note.strip()}".rstrip() for head, _, note in lines]
     assert said == program.split("\n")
@@ -58,8 +58,8 @@ def test_each_order_of_a_sentence_is_written(program: str, orders: str, example:
     (diagnostic,) = check(program)
     assert diagnostic.code is codes.SEVERAL_ORDERS
     assert (diagnostic.values["fix"], diagnostic.values["example"]) == (orders, example)
-    assert not check(applied(program, edits_of(diagnostic) or []))
-    assert fixed(program, check).text == program or not example, "an example is a guess"
+    assert not check(apply_edits(program, edits_of(diagnostic) or []))
+    assert repair_program(program, check).text == program or not example, "an example is a guess"
     for language in ("es", "en"):
         assert example in message(diagnostic, Source(program), language).message
 

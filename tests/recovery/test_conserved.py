@@ -11,8 +11,8 @@ from tests.pupils.corpus import check
 from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.base.languages import languages, table
-from tiniscript.base.source import Source, applied
-from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.base.source import Source, apply_edits
+from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 from tiniscript.recovery import rewrites
 from tiniscript.recovery.conserved import difference
@@ -91,7 +91,7 @@ def variants(text: str) -> list[tuple[str, str, float, str]]:
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
 def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> None:
     for wrong, written, value, unit in variants(text):
-        made = fixed(wrong, check).text
+        made = repair_program(wrong, check).text
         assert is_kept(written, value, unit, made), (wrong, made)
 
 
@@ -107,7 +107,7 @@ def test_what_is_only_shown_keeps_a_unit_or_says_that_it_loses_it(text: str) -> 
         ]
         is_part = re.search(rf"\d\. {re.escape(written)}", wrong)  # of one number: `2. 80`
         for diagnostic in shown if unit and not is_part else ():
-            made = applied(wrong, edits_of(diagnostic) or [])
+            made = apply_edits(wrong, edits_of(diagnostic) or [])
             lost = diagnostic.values.get("lost", "")
             assert written in lost or is_kept(written, value, unit, made), (wrong, made)
 
@@ -118,7 +118,7 @@ def test_no_repair_loses_a_sign_or_a_unit(text: str) -> None:
         for word, unit, scale in units():
             written = f"{sign}{number}{space}{word}"
             wrong = text.replace("{}", written)
-            made = fixed(wrong, check).text
+            made = repair_program(wrong, check).text
             value = float(number) * scale * (-1 if sign else 1)
             assert is_kept(written, value, unit, made), (wrong, made)
 
@@ -179,7 +179,7 @@ def test_what_a_repair_loses_or_does_more(
     ],
 )
 def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(wrong: str, made: str) -> None:
-    assert fixed(wrong, check).text == made
+    assert repair_program(wrong, check).text == made
 
 
 @pytest.mark.parametrize(
@@ -199,7 +199,7 @@ def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
 ) -> None:
     (diagnostic,) = check(wrong)
     assert message(diagnostic, Source(wrong), "en").fix == tried
-    assert fixed(wrong, check).text == wrong or diagnostic.values.get("carried")
+    assert repair_program(wrong, check).text == wrong or diagnostic.values.get("carried")
 
 
 def test_no_repair_takes_a_sign_for_a_command_out() -> None:
@@ -211,7 +211,7 @@ def test_no_repair_takes_a_sign_for_a_command_out() -> None:
     assert ("S", "\U0001f6d1") in signs
     for word, sign in signs:
         for text in ("F(2, 80) {}", "F(2, 80){}", "F(2, 80); {}", "S\n{}", "SI|F(2, 80)\n  {} "):
-            made = fixed(text.format(sign), check).text
+            made = repair_program(text.format(sign), check).text
             assert sign in made or made.rstrip().endswith(word), (sign, text, made)
 
 
@@ -219,7 +219,7 @@ def test_what_one_line_would_lose_costs_the_others_nothing() -> None:
     """A number of another line is not that of this one, and nobody knows what BLA is."""
     wrong = "IF(LUZ_ESQ > 50%)\nF(2 80)\nENDIF\nBLA(3);F(1, 50)"
     right = wrong.replace("F(2 80)", "F(2, 80)").replace("LUZ_ESQ", "LIGHT_L")
-    assert fixed(wrong, check).text == right
+    assert repair_program(wrong, check).text == right
 
 
 def test_a_unit_is_told_where_it_stands() -> None:

@@ -7,7 +7,7 @@ from itertools import product
 import pytest
 
 from tests.pupils.corpus import check
-from tiniscript.base.source import Source, applied
+from tiniscript.base.source import Source, apply_edits
 from tiniscript.diagnostics.fixing import edits_of
 from tiniscript.diagnostics.rendering import message
 
@@ -27,7 +27,7 @@ BETWEEN = ("\n", "\n  ")
 def mended(wrong: str) -> str:
     """Return a program with all that its messages offer."""
     edits = [edit for each in check(wrong) for edit in edits_of(each) or []]
-    return applied(wrong, edits)
+    return apply_edits(wrong, edits)
 
 
 @pytest.mark.parametrize("head", HEADS)

@@ -10,8 +10,8 @@ from itertools import product
 import pytest
 
 from tests.pupils.corpus import check
-from tiniscript.base.source import Source, applied
-from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.base.source import Source, apply_edits
+from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 
 BLOCKS = (
@@ -46,7 +46,7 @@ def test_each_place_is_named_and_none_is_made(
         text = begun + between.join((block[0], *body))
         _, tried = said(text)
         assert tried == f"Where does it end? Write ;{block[1]} after one of these: {places(body)}"
-        assert fixed(text, check).text == text
+        assert repair_program(text, check).text == text
 
 
 @pytest.mark.parametrize("around", AROUND)
@@ -63,7 +63,7 @@ def test_the_inner_block_lacks_its_end_where_the_outer_one_has_its_own(
         f"This {name} has no {block[1]}",
         f"Where does it end? Write ;{block[1]} after one of these: {places(body)}",
     )
-    assert fixed(text, check).text == text
+    assert repair_program(text, check).text == text
 
 
 @pytest.mark.parametrize("body", BODIES)
@@ -72,7 +72,7 @@ def test_an_endless_loop_in_a_task_ends_where_that_ends(body: tuple[str, ...], b
     text = "SI|" + ";".join(("TASK", "LOOP(FOREVER)", *body, "END_TASK")) + behind
     last = body[-1]
     assert said(text) == ("This LOOP has no END_LOOP", f"Write ;END_LOOP after {last}")
-    assert fixed(text, check).text == text.replace("END_TASK", "END_LOOP;END_TASK")
+    assert repair_program(text, check).text == text.replace("END_TASK", "END_LOOP;END_TASK")
 
 
 @pytest.mark.parametrize("block", BLOCKS)
@@ -85,5 +85,5 @@ def test_it_ends_in_its_last_branch_and_before_the_end_of_another() -> None:
     text = "SI|IF(DISTANCE < 9);S;W(2);ELSE;W(1);F(1, 60)"
     assert said(text)[1] == "Where does it end? Write ;ENDIF after one of these: W(1), F(1, 60)"
     (found,) = check("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP")
-    made = applied("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP", edits_of(found) or [])
+    made = apply_edits("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP", edits_of(found) or [])
     assert made == "SI|LOOP(2);IF(DISTANCE < 9);S;ENDIF;END_LOOP"

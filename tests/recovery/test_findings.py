@@ -11,7 +11,7 @@ from tests.pupils.corpus import check
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.told import moved_back
 
@@ -33,7 +33,7 @@ def test_what_comes_after_is_told_where_it_stands() -> None:
     assert [(one.code.number, text[slice(*one.span)]) for one in diagnostics] == [
         ("TS036", "SI"), ("TS013", ""), ("TS101", "FAST"),
     ]  # fmt: skip
-    assert fixed(text, check).text == "SI|F(2, 80); R(1, 60); S; FAST"
+    assert repair_program(text, check).text == "SI|F(2, 80); R(1, 60); S; FAST"
 
 
 def test_a_line_with_a_checksum_is_left_alone() -> None:
@@ -66,13 +66,13 @@ def codes_and_places(text: str) -> list[tuple[str, str]]:
 def test_a_finding_does_not_reach_into_the_words_after_it() -> None:
     text = "F(2, 80 %) de potencia"
     assert codes_and_places(text) == [("TS049", "80 %"), ("TS085", "de potencia")]
-    assert fixed(text, check).text == "F(2, 80) de potencia"
+    assert repair_program(text, check).text == "F(2, 80) de potencia"
 
 
 def test_each_line_is_told_with_its_repair() -> None:
     text = "F(2 s, 80%)\r\nLOOP(3 veces)\r\n  R(1, 60)\r\nFIN\r\n"
     assert [code for code, _ in codes_and_places(text)] == ["TS049", "TS049", "TS023"]
-    assert fixed(text, check).text == "F(2, 80)\r\nLOOP(3)\r\n  R(1, 60)\r\nEND_LOOP\r\n"
+    assert repair_program(text, check).text == "F(2, 80)\r\nLOOP(3)\r\n  R(1, 60)\r\nEND_LOOP\r\n"
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_each_line_is_told_with_its_repair() -> None:
     ],
 )
 def test_what_would_lose_something_is_never_repaired_without_asking(wrong: str) -> None:
-    assert fixed(wrong, check).text == wrong
+    assert repair_program(wrong, check).text == wrong
 
 
 FORMS = ("{}{}", "{} {}", "{}: {}", "{}({}", "{}[{}]", "{}( {} )", "{} {})", "{} {}]")
@@ -99,7 +99,7 @@ def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
     changed = []
     for values, form, between in product(pairs, FORMS, BETWEEN):
         wrong = form.format(word, between.join(values))
-        made = fixed(wrong, check).text
+        made = repair_program(wrong, check).text
         numbers = [float(each) for each in re.findall(r"-?[0-9]*\.?[0-9]+", made)]
         if made != wrong and numbers != [float(value) for value in values]:
             changed.append((wrong, made))
@@ -130,7 +130,7 @@ def test_a_block_that_never_ends_is_told_with_its_last_line() -> None:
 def test_one_name_is_told_with_all_its_lines() -> None:
     (diagnostic,) = check("año = 3\nF(año, 50)\nF(2, año)")
     assert (diagnostic.values["line"], diagnostic.values["lines"]) == ("2", "2, 3")
-    assert fixed("año = 3\nF(año, 50)", check).text == "ANIO = 3\nF(ANIO, 50)"
+    assert repair_program("año = 3\nF(año, 50)", check).text == "ANIO = 3\nF(ANIO, 50)"
 
 
 def test_a_long_text_is_not_read_as_a_whole() -> None:
@@ -153,4 +153,7 @@ def test_lines_may_end_in_every_way_beside_each_other(ends: tuple[str, ...]) -> 
     places = [text[: diagnostic.span.start].count(")") for diagnostic in check(text)]
     assert [diagnostic.code.number for diagnostic in check(text)] == ["TS017", "TS017", "TS024"]
     assert places[:2] == [0, 1]
-    assert "F(2, 80)" in fixed(text, check).text and "R(1, 60)" in fixed(text, check).text
+    assert (
+        "F(2, 80)" in repair_program(text, check).text
+        and "R(1, 60)" in repair_program(text, check).text
+    )

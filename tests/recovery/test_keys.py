@@ -7,8 +7,8 @@ from itertools import product
 import pytest
 
 from tests.pupils.corpus import check
-from tiniscript.base.source import Source, applied
-from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.base.source import Source, apply_edits
+from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 from tiniscript.recovery.keys import KEYS
 
@@ -38,9 +38,9 @@ ORDERS = ("F(1, 60)", "S")
 @pytest.mark.parametrize(("said", "side"), CASES)
 def test_a_key_in_own_words_becomes_its_reading_wherever_it_is_asked(said: str, side: str) -> None:
     for place in PLACES:
-        assert fixed(place.replace("{}", said), check).text == place.replace("{}", f"KEY_{side}"), (
-            place
-        )
+        assert repair_program(place.replace("{}", said), check).text == place.replace(
+            "{}", f"KEY_{side}"
+        ), place
 
 
 @pytest.mark.parametrize("key", ["KEY", "TECLA", "FLECHA", "SETA"])
@@ -53,7 +53,7 @@ def test_another_key_is_told_all_that_there_are_and_asks_for_no_number(
         (found,) = check(text)
         said = message(found, Source(text), "en").message
         assert found.code.number == "TS103" and all(each in said for each in KEYS), text
-        assert fixed(text, check).text == text
+        assert repair_program(text, check).text == text
 
 
 @pytest.mark.parametrize("sign", [" = ", ": ", " -> "])
@@ -65,7 +65,7 @@ def test_an_order_for_a_key_is_asked_for_it(side: str, order: str, sign: str) ->
         wrong = f"SI|{said}{sign}{order}\nW(3)"
         (found,) = check(wrong)
         right = f"SI|WHEN(KEY_{side});{order};END_WHEN\nW(3)"
-        assert applied(wrong, edits_of(found) or []) == right
+        assert apply_edits(wrong, edits_of(found) or []) == right
         inside = f"SI|LOOP(FOREVER);{said}{sign}{order};END_LOOP"
         (found,) = check(inside)
         assert found.values["fix"] == f"IF(KEY_{side});{order};ENDIF"
@@ -117,7 +117,7 @@ def test_a_light_in_own_words_becomes_its_reading(stem: str, way: str, side: str
         ("{0}_{1}", "{1}_{0}", "{0}{1}", "{1}{0}", "{0}({1})", "{0} {1}"), PLACES
     ):
         asked = f"{form.format(stem, way)} > 300"
-        assert fixed(place.replace("{}", asked), check).text == place.replace(
+        assert repair_program(place.replace("{}", asked), check).text == place.replace(
             "{}", f"LIGHT_{side[0]} > 300"
         )
 

@@ -7,9 +7,9 @@ from itertools import permutations, product
 import pytest
 
 from tests.pupils.corpus import check
-from tiniscript.base.source import Source, applied
+from tiniscript.base.source import Source, apply_edits
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 
 BETWEEN = (";", "\n", ";\n  ")  # instructions
@@ -34,7 +34,7 @@ def messages(text: str) -> list[str]:
 
 def tried(text: str, diagnostic: Diagnostic) -> str:
     """Return a program with what a diagnostic offers."""
-    return applied(text, edits_of(diagnostic) or [])
+    return apply_edits(text, edits_of(diagnostic) or [])
 
 
 # -- ends that are crossed ------------------------------------------------------------------------
@@ -52,7 +52,7 @@ def test_crossed_ends_are_swapped_and_no_body_leaves_its_block(
     assert not any(diagnostic.is_mistake for diagnostic in check(right))
     (diagnostic,) = check(wrong)
     assert diagnostic.code.number == "TS026" and diagnostic.values["swapped"] == inner[1]
-    assert tried(wrong, diagnostic) == right and fixed(wrong, check).text == wrong
+    assert tried(wrong, diagnostic) == right and repair_program(wrong, check).text == wrong
 
 
 def test_they_are_told_beside_another_mistake_and_in_words() -> None:
@@ -88,7 +88,7 @@ def test_the_second_branch_of_a_question_is_its_else(word: str, sign: str, aroun
 
 def test_what_stands_after_its_brackets_is_in_no_branch() -> None:
     text = "SI|W(1);SI(DISTANCE < 10; S);F(1, 60)"
-    assert fixed(text, check).text == "SI|W(1);IF(DISTANCE < 10);S;ENDIF;F(1, 60)"
+    assert repair_program(text, check).text == "SI|W(1);IF(DISTANCE < 10);S;ENDIF;F(1, 60)"
 
 
 # -- a DEF that is set ----------------------------------------------------------------------------
@@ -107,7 +107,10 @@ def test_a_def_without_a_value_or_a_name_that_is_asked_gets_another_name() -> No
     for text in ("DEF A;S;END_DEF;A = 3;A", "DEF A(N);W(N);END_DEF;A = 3;A(2);SHOW(A)"):
         assert codes_and_fixes(text)[0] == ("TS110", "A_2")
     two = "DEF LADO(N, P);F(N, P);END_DEF;LADO = 2, 60"
-    assert codes_and_fixes(two) == [("TS015", "LADO(2, 60)")] and fixed(two, check).text == two
+    assert (
+        codes_and_fixes(two) == [("TS015", "LADO(2, 60)")]
+        and repair_program(two, check).text == two
+    )
 
 
 # -- a letter that multiplies ---------------------------------------------------------------------
@@ -120,7 +123,7 @@ def test_a_def_without_a_value_or_a_name_that_is_asked_gets_another_name() -> No
      "SI|W(1);F(2 {} 3, 60)", "IF(LIGHT_L {} 2 > 90);S;ENDIF", "V = 4;V = V {} (V + 1);SHOW(V)"],
 )  # fmt: skip
 def test_a_letter_between_two_values_multiplies(text: str, sign: str) -> None:
-    assert fixed(text.format(sign), check).text == text.format("*")
+    assert repair_program(text.format(sign), check).text == text.format("*")
 
 
 @pytest.mark.parametrize("text", ["V = 3\nV = 2 x V", "A = 1;B1 = A x A;SHOW(B1)", "V = V x 2"])
@@ -131,7 +134,10 @@ def test_nothing_that_multiplies_becomes_a_note(text: str, beside: str) -> None:
 
 def test_a_variable_x_is_only_shown_as_a_sign() -> None:
     text = "SI|X = 4;Y = 2 x X;SHOW(Y)"
-    assert codes_and_fixes(text) == [("TS010", "Y = 2 * X")] and fixed(text, check).text == text
+    assert (
+        codes_and_fixes(text) == [("TS010", "Y = 2 * X")]
+        and repair_program(text, check).text == text
+    )
     assert not check("SI|X = 4;SHOW(2 * X)")
 
 
@@ -147,7 +153,7 @@ def test_a_unit_stays_with_its_number_and_the_other_reading_is_beside_it(
     wrong = around.format(f"{word}({power}, {way} {unit})")
     own, other = f"{word}({way} {unit}, {power})", f"{word}({power} {unit}, {way})"
     assert codes_and_fixes(wrong) == [("TS076", f"{own} or {other}")]
-    assert fixed(wrong, check).text == wrong
+    assert repair_program(wrong, check).text == wrong
 
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
@@ -159,7 +165,7 @@ def test_what_hardly_moves_a_robot_is_no_power_where_another_number_is_one(
     wrong = around.format(f"{word}({little}, {power} {unit})")
     first, other = f"{word}({little} {unit}, {power})", f"{word}({power} {unit}, {little})"
     assert codes_and_fixes(wrong) == [("TS076", f"{first} or {other}")]
-    assert fixed(wrong, check).text == wrong
+    assert repair_program(wrong, check).text == wrong
 
 
 def test_each_of_several_moves_has_both_readings() -> None:
@@ -191,7 +197,7 @@ def test_the_unit_of_a_value_of_a_def_goes_into_its_body(
 def test_a_moved_program_says_which_unit_it_loses() -> None:
     text = "SI|ESPERA_X(3)\nDEF ESPERA_X(N graus)\nW(N)\nEND_DEF"
     (diagnostic,) = check(text)
-    assert diagnostic.values["lost"] == "graus" and fixed(text, check).text == text
+    assert diagnostic.values["lost"] == "graus" and repair_program(text, check).text == text
 
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
@@ -308,7 +314,7 @@ def test_a_message_names_the_word_that_was_written(word: str) -> None:
 @pytest.mark.parametrize(("asked", "behind"), [*product(["DISTANCE<25", "LIGHT_L > 300"], "FB")])
 def test_the_question_after_until_is_shown(asked: str, behind: str) -> None:
     text = f"SI|F(5, 60) UNTIL {asked}. {behind}(1, 50)"
-    assert fixed(text, check).text == f"SI|F(5, 60) UNTIL({asked}); {behind}(1, 50)"
+    assert repair_program(text, check).text == f"SI|F(5, 60) UNTIL({asked}); {behind}(1, 50)"
 
 
 @pytest.mark.parametrize("number", ["15", "32.5"])
@@ -359,9 +365,9 @@ def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
         line = f"{order} {word}({question});B(1, 50)"
         text = f"SI|DEF P;S;END_DEF\n{around.format(line)}"
         assert any(each.is_mistake for each in check(text))
-        assert fixed(text, check).text == text
+        assert repair_program(text, check).text == text
         ended = f"SI|DEF P;S;END_DEF\n{around.format(f'{line};{end}')}"
-        assert f"{order};{word}({question});B(1, 50);{end}" in fixed(ended, check).text
+        assert f"{order};{word}({question});B(1, 50);{end}" in repair_program(ended, check).text
 
 
 # -- what is named, and what is told once -----------------------------------------------------

@@ -7,7 +7,7 @@ from itertools import product
 import pytest
 
 from tests.pupils.corpus import check
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 
 ALONE = ("{n})", "{n}.", "{n} -", "{n}.-", "({n})", "{n}º", "{n}:", "{a})", "{a}.", "{A})", "{a}:")
 WORDS = (
@@ -36,7 +36,7 @@ def test_a_label_is_taken_out_wherever_its_instruction_stands(label: str) -> Non
     for program, (begun, between) in product(PROGRAMS, PLACES):
         wrong = begun + between.join(labelled(label, program))
         assert {each.code.number for each in check(wrong)} == {"TS054"}, wrong
-        assert fixed(wrong, check).text == begun + between.join(program), wrong
+        assert repair_program(wrong, check).text == begun + between.join(program), wrong
 
 
 @pytest.mark.parametrize("label", LABELS)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.pupils.corpus import check
-from tiniscript.base.source import Source, applied
-from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.base.source import Source, apply_edits
+from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 
 WORDS = ("OUT", "NOW", "here", "ahora", "aquí", "XYZ", "here now")
@@ -25,8 +25,8 @@ def test_words_after_an_order_without_values_are_taken_out(
     wrong = place.format(f"{order} {words}")
     (found,) = [each for each in check(wrong) if each.is_mistake]
     assert message(found, Source(wrong), "en").fix == f"Remove {words}"
-    assert applied(wrong, edits_of(found) or []) == place.format(order)
-    assert fixed(wrong, check).text == wrong
+    assert apply_edits(wrong, edits_of(found) or []) == place.format(order)
+    assert repair_program(wrong, check).text == wrong
 
 
 @pytest.mark.parametrize("words", WORDS)
@@ -36,7 +36,7 @@ def test_and_so_are_words_after_an_end(end: str, words: str) -> None:
     for behind in ("", ";S", "\nW(1)"):
         wrong = f"SI|{head};F(1, 60);{end} {words}{behind}"
         (found,) = [each for each in check(wrong) if each.is_mistake]
-        assert applied(wrong, edits_of(found) or []) == wrong.replace(f" {words}", "")
+        assert apply_edits(wrong, edits_of(found) or []) == wrong.replace(f" {words}", "")
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_a_second_start_behind_an_instruction_is_a_separator(
     if sign[0] != " " and not before.endswith(")"):
         return  # one word: SSI
     text = f"SI|F(2, 80);{before}{sign}{behind};W(1)"
-    assert fixed(text, check).text == f"SI|F(2, 80);{before}; {behind};W(1)"
+    assert repair_program(text, check).text == f"SI|F(2, 80);{before}; {behind};W(1)"
 
 
 @pytest.mark.parametrize("between", [";", "\n"])
@@ -74,4 +74,4 @@ def test_an_end_of_all_is_not_needed_whatever_else_is_wrong(above: str, word: st
     assert "TS044" in {each.code.number for each in check(wrong)}
     for head, end in (("LOOP(2)", "END_LOOP"), ("IF(DISTANCE < 9)", "ENDIF")):
         block = f"SI|{head}\nF(2, 80)\n{word.rstrip('.;')}"
-        assert fixed(block, check).text == f"SI|{head}\nF(2, 80)\n{end}"
+        assert repair_program(block, check).text == f"SI|{head}\nF(2, 80)\n{end}"

@@ -8,7 +8,7 @@ import pytest
 
 from tests.pupils.corpus import check
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 
 SIGNS = ("# ", "#", "## ", "-- ", "<!-- ", "REM ", "rem ", "/* ")
 NOTES = (
@@ -31,14 +31,14 @@ def test_a_note_begins_with_another_sign_and_is_told_once(sign: str, place: str)
         told = check(wrong)
         assert [each.code for each in told] == [codes.OTHER_NOTE] * len(told), wrong
         right = place.replace("{}", f"// {note}")
-        assert fixed(wrong, check).text == right
+        assert repair_program(wrong, check).text == right
 
 
 @pytest.mark.parametrize("end", [" */", "*/", " -->", " **/"])
 def test_a_note_loses_the_sign_that_ends_it(end: str) -> None:
     begin = "<!-- " if ">" in end else "/* "
     wrong = f"SI|F(2, 80) {begin}go{end}\n{begin}wait 3{end}\nW(3)"
-    assert fixed(wrong, check).text == "SI|F(2, 80) // go\n// wait 3\nW(3)"
+    assert repair_program(wrong, check).text == "SI|F(2, 80) // go\n// wait 3\nW(3)"
 
 
 @pytest.mark.parametrize("sign", SIGNS)
@@ -46,7 +46,7 @@ def test_a_note_loses_the_sign_that_ends_it(end: str) -> None:
 def test_a_note_that_may_be_an_order_is_not_made_one(sign: str, order: str) -> None:
     wrong = f"SI|F(2, 80) {sign}{order}"
     assert check(wrong)
-    assert fixed(wrong, check).text == wrong
+    assert repair_program(wrong, check).text == wrong
 
 
 @pytest.mark.parametrize("sign", ["#", "# ", "--"])

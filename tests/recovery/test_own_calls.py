@@ -16,7 +16,7 @@ from tests.support.rows import each_row
 from tiniscript.base.languages import languages
 from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.source import Source
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.diagnostics.rendering import message
 
 NAMES, NUMBERS = ("SIZE", "V", "ZOOM", "N2"), ("30", "2.5", "7", "0")
@@ -36,7 +36,7 @@ def test_brackets_may_be_missing_around_any_count(count: int, joint: str, other:
     bare = {"head": f" {joint.join(names)}", "call": f" {other.join(numbers)}"}
     for lacks in ({"head"}, {"call"}, {"head", "call"}):
         wrong = program(count=count, **{**right, **{it: bare[it] for it in lacks}})
-        assert fixed(wrong, check).text == program(count=count, **right), wrong
+        assert repair_program(wrong, check).text == program(count=count, **right), wrong
 
 
 SLIPS = (

@@ -8,8 +8,8 @@ from itertools import product
 import pytest
 
 from tests.pupils.corpus import check
-from tiniscript.base.source import Source, applied
-from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.base.source import Source, apply_edits
+from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 
 PLACES = (
@@ -36,14 +36,14 @@ def test_a_unit_that_is_a_value_goes_to_its_own(
                 f"{word}({value} {unit}, {power})",
             )
         )
-        assert fixed(wrong, check).text.replace("; ", ";") == right.replace("; ", ";")
+        assert repair_program(wrong, check).text.replace("; ", ";") == right.replace("; ", ";")
 
 
 @pytest.mark.parametrize("place", PLACES)
 def test_a_comma_between_thousands_is_none_between_values(place: str) -> None:
     for one, other in product(THOUSANDS, THOUSANDS):
         wrong = place.format(f"BEEP(1, {one});SHOW({other});BEEP(1, {other})")
-        assert fixed(wrong, check).text == re.sub(r",(?=\d{3})", "", wrong)
+        assert repair_program(wrong, check).text == re.sub(r",(?=\d{3})", "", wrong)
 
 
 @pytest.mark.parametrize("text", ["W(1,500)", "BEEP(1,500, 440)", "F(1,500)", "MAX(1,500)"])
@@ -61,9 +61,9 @@ def test_the_seconds_of_motors_are_those_of_a_wait(
     (found,) = [each for each in check(wrong) if each.is_mistake]
     shown = f"M({left}, {right});W({time})" + ";S" * place.endswith("|{}")
     assert message(found, Source(wrong), "en").fix == shown
-    made = applied(wrong, edits_of(found) or [])
+    made = apply_edits(wrong, edits_of(found) or [])
     assert made == wrong.replace(f"M({left}, {right}, {time})", shown)
-    assert fixed(wrong, check).text == wrong  # it may run on, too
+    assert repair_program(wrong, check).text == wrong  # it may run on, too
 
 
 @pytest.mark.parametrize(

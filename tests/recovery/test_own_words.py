@@ -10,10 +10,10 @@ import pytest
 from tests.pupils.corpus import check
 from tests.support.rows import each_row
 from tiniscript.base.languages import languages, table
-from tiniscript.base.source import Edit, Source, applied
+from tiniscript.base.source import Edit, Source, apply_edits
 from tiniscript.base.words import SINCE, WORDS
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.diagnostics.rendering import message
 
 OWN = "37"  # a number that is in no example
@@ -56,7 +56,7 @@ def test_a_word_after_a_number_lacks_no_comma() -> None:
         text = f"{word}(3 {unit}, 60)" if word != "W" else f"W(3 {unit})"
         (diagnostic,) = check(text)
         assert diagnostic.code.number != "TS017", text
-        assert fixed(text, check).text == text
+        assert repair_program(text, check).text == text
         is_turn = word in "LR"
         assert (diagnostic.values.get("fix") == f"{word}(1080 DEG, 60)") is is_turn, text
 
@@ -74,7 +74,7 @@ def test_a_word_after_a_number_lacks_no_comma() -> None:
 def test_a_part_of_a_turn_is_degrees(wrong: str, right: str) -> None:
     (diagnostic,) = check(wrong)
     assert diagnostic.values["fix"] == right
-    assert fixed(wrong, check).text == wrong
+    assert repair_program(wrong, check).text == wrong
 
 
 RENAMED = [
@@ -98,14 +98,14 @@ def test_a_name_is_renamed_wherever_it_is_meant(word: str) -> None:
     move = WORDS[word].example if WORDS[word].role.is_instruction else "S"
     text = f"DEF {word}\n{move}\nEND_DEF\n{word}\nF(1, 60)\n{word}"
     name, edits = renamed(text)
-    made = applied(text, edits)
+    made = apply_edits(text, edits)
     assert made == f"DEF {name}\n{move}\nEND_DEF\n{name}\nF(1, 60)\n{name}"
 
 
 @each_row("word", [word for word in RENAMED if word != "TIME"])
 def test_a_variable_is_renamed_in_its_uses(word: str) -> None:
     text = f"{word} = 2\nF({word}, 60)\nW(1 + {word})\nX = {word} + 1\nS\nF(X, 60)"
-    made = applied(text, renamed(text)[1])
+    made = apply_edits(text, renamed(text)[1])
     assert made.split("\n")[4] == "S"
     assert not [diagnostic for diagnostic in check(made) if diagnostic.is_mistake]
 
@@ -152,7 +152,7 @@ def test_words_beside_a_comparison_are_asked_beside_it(wrong: str, question: str
 
 def test_lines_that_nobody_reads_are_instructions_of_their_blocks() -> None:
     text = "if distance < 20 then\nturn right 90 degrees\nelse\nforward\nend"
-    assert fixed(text, check).text == (
+    assert repair_program(text, check).text == (
         "IF(DISTANCE < 20)\nturn right 90 degrees\nelse\nforward\nENDIF"
     )
 
@@ -208,7 +208,7 @@ def test_words_are_asked_of_the_sensor_that_they_mean(wrong: str, told: dict[str
     ],
 )
 def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
-    assert fixed(wrong, check).text == right
+    assert repair_program(wrong, check).text == right
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.base.kit import Kit
 from tiniscript.diagnostics.codes import Code
-from tiniscript.library.compiling import analyzed
+from tiniscript.library.compiling import analyze
 from tiniscript.recovery import rewrites, rows
 from tiniscript.recovery.meanings import ENDED, lexemes, texts
 from tiniscript.recovery.search import Candidate, Recovery
@@ -41,7 +41,7 @@ def examples() -> list[str]:
 @lru_cache(None)
 def mistakes(kit: Kit, text: str) -> tuple[Code, ...]:
     return tuple(
-        diagnostic.code for diagnostic in analyzed(text, kit).diagnostics if diagnostic.is_mistake
+        diagnostic.code for diagnostic in analyze(text, kit).diagnostics if diagnostic.is_mistake
     )
 
 

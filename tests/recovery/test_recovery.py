@@ -18,7 +18,7 @@ from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.lessons import catalogue
-from tiniscript.library.compiling import analyzed
+from tiniscript.library.compiling import analyze
 from tiniscript.recovery import lines, rewrites, rows, slips
 from tiniscript.recovery.explanation import explained
 from tiniscript.recovery.meanings import Lexeme, Names, lexemes
@@ -48,7 +48,7 @@ def meant(text: str) -> Candidate | None:
 
 
 def mistakes(kit: Kit, text: str) -> list[Code]:
-    return [each.code for each in analyzed(text, kit).diagnostics if each.is_mistake]
+    return [each.code for each in analyze(text, kit).diagnostics if each.is_mistake]
 
 
 def right_programs() -> list[str]:
@@ -109,12 +109,12 @@ def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
     named = {*slips.NAMED[code]}
     asked = []
     for part in ("message", "try"):
-        text = languages.found("messages", f"{code.number}/{part}", "en")
+        text = languages.find_text("messages", f"{code.number}/{part}", "en")
         for k in count(2):
             if text is None:
                 break
             asked.append({*re.findall(r"\{@?(\w+)\}", text)})
-            text = languages.found("messages", f"{code.number}/{part}/{k}", "en")
+            text = languages.find_text("messages", f"{code.number}/{part}/{k}", "en")
     assert named <= set().union(*asked) | ASKED_FOR.get(code, set())
     own = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
     whole = [each & own for each in asked if each <= own | OF_BLOCKS]

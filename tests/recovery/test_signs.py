@@ -6,9 +6,9 @@ import pytest
 
 from tests.pupils.corpus import check
 from tests.studio.programs import programs
-from tiniscript.base.source import Source, applied
+from tiniscript.base.source import Source, apply_edits
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.fixing import edits_of, fixed
+from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, scan
 
@@ -42,7 +42,11 @@ def test_a_plus_before_a_number_goes_and_the_number_stays() -> None:
             assert [(each.code, each.span.start) for each in told] == [
                 (codes.EXTRA_WORD, token.start)
             ], wrong
-            assert applied(wrong, edits_of(told[0]) or []) == fixed(wrong, check).text == text
+            assert (
+                apply_edits(wrong, edits_of(told[0]) or [])
+                == repair_program(wrong, check).text
+                == text
+            )
             count += 1
     assert count > 300
 
@@ -51,7 +55,7 @@ def test_a_plus_before_a_number_goes_and_the_number_stays() -> None:
 def test_a_plus_after_the_sign_that_sets_a_variable_may_be_one_more(text: str) -> None:
     told = check(f"{text};SHOW(X)")
     assert "X = X + 5" in message(told[0], Source(text), "en").fix
-    assert fixed(f"{text};SHOW(X)", check).text == f"{text};SHOW(X)"
+    assert repair_program(f"{text};SHOW(X)", check).text == f"{text};SHOW(X)"
 
 
 @pytest.mark.parametrize("frame", FRAMES)
@@ -59,7 +63,7 @@ def test_a_plus_after_the_sign_that_sets_a_variable_may_be_one_more(text: str) -
 def test_one_more_or_less_is_read_everywhere(step: str, frame: str) -> None:
     text = frame.format("SPEED = 60;" + step.format("SPEED") + ";F(1, SPEED)")
     sign = step.strip("{} ")[0]
-    mended = fixed(text, check).text
+    mended = repair_program(text, check).text
     assert f"SPEED = SPEED {sign}" in mended and mended.count("SPEED") == 4
     assert not [each for each in check(mended) if each.code.is_mistake]
 
@@ -71,7 +75,7 @@ def test_one_more_or_less_is_read_everywhere(step: str, frame: str) -> None:
 )  # fmt: skip
 def test_questions_in_brackets_of_their_own_are_one(frame: str, word: str) -> None:
     text = frame.format(f"(DISTANCE < 10) {word} (LIGHT_L < 20)")
-    mended = fixed(text, check).text
+    mended = repair_program(text, check).text
     assert not [each for each in check(mended) if each.code.is_mistake]
     assert mended.replace(" ", "") == frame.format(
         f"((DISTANCE < 10) {word}(LIGHT_L < 20))"

@@ -10,7 +10,7 @@ from tests.pupils.corpus import check
 from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.recovery import rows as recovery_rows
 from tiniscript.recovery import usage
 from tiniscript.recovery.rows import SIGNS, TOKENS
@@ -117,16 +117,16 @@ def test_what_follows_a_question_in_words_is_told_with_it() -> None:
     asked, end = check("IF(mucha luz) S ENDIF")
     assert (asked.values["question"], asked.values["another"]) == ("LIGHT_L > 500", "LIGHT_R > 500")
     assert end.values["fix"] == "IF(LIGHT_L > 500);S;ENDIF"
-    assert fixed("IF(mucha luz) S ENDIF", check).text == "IF(mucha luz);S;ENDIF"
+    assert repair_program("IF(mucha luz) S ENDIF", check).text == "IF(mucha luz);S;ENDIF"
 
 
 def test_words_are_never_dropped_without_asking() -> None:
     for wrong in ("F(1, 80) hola", "F(2, 80) 3 veces", "F(2, 80) y retrocede", "F(2, 80) al 50%"):
-        assert fixed(wrong, check).text == wrong
+        assert repair_program(wrong, check).text == wrong
 
 
 def test_a_repair_beside_words_does_not_drop_them() -> None:
-    assert "hola" in fixed("F(1, 80) B(1, 80) hola", check).text
+    assert "hola" in repair_program("F(1, 80) B(1, 80) hola", check).text
 
 
 def test_a_number_of_another_unit_is_converted() -> None:

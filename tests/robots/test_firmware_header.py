@@ -167,8 +167,8 @@ def test_the_language_of_answers_is_that_of_the_profile_or_else_of_whoever_makes
     english = wired("uno", "tinibot", ("status_led = 13", 'language = "en"'))
     assert plain.kit.fingerprint == fixed.kit.fingerprint
     for robot, is_spanish in (
-        (plain, False), (plain.speaking("en"), False), (plain.speaking("es"), True),
-        (fixed, True), (fixed.speaking("en"), True), (english.speaking("es"), False),
+        (plain, False), (plain.with_language("en"), False), (plain.with_language("es"), True),
+        (fixed, True), (fixed.with_language("en"), True), (english.with_language("es"), False),
     ):  # fmt: skip
         assert (define in firmware.header([robot], "a test.")) == is_spanish
 

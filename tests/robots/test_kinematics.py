@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from tiniscript.robots.kinematics import START, STEP, Pose, Way, moved, points
+from tiniscript.robots.kinematics import START, STEP, Pose, Way, move_pose, points
 from tiniscript.robots.profile import Body
 
 BODY = Body(
@@ -29,7 +29,7 @@ def near(pose: Pose) -> Pose:
 
 def test_one_wheel_alone_turns_the_robot_around_the_other() -> None:
     half_turn_ms = 4 * QUARTER_MS
-    assert moved(BODY, START, 0, 100, half_turn_ms) == near(Pose(0, BODY.wheel_base_cm, 180))
+    assert move_pose(BODY, START, 0, 100, half_turn_ms) == near(Pose(0, BODY.wheel_base_cm, 180))
 
 
 def test_an_arc_stays_on_its_circle() -> None:
@@ -43,8 +43,8 @@ def test_an_arc_stays_on_its_circle() -> None:
 def test_a_time_in_parts_is_the_same_way(left: int, right: int) -> None:
     pose = Pose(5, -3, 20)
     for part_ms in (20, 0, 333, 1, 646):
-        pose = moved(BODY, pose, left, right, part_ms)
-    assert pose == near(moved(BODY, Pose(5, -3, 20), left, right, 1000))
+        pose = move_pose(BODY, pose, left, right, part_ms)
+    assert pose == near(move_pose(BODY, Pose(5, -3, 20), left, right, 1000))
 
 
 # ---- points
@@ -53,7 +53,7 @@ def test_a_time_in_parts_is_the_same_way(left: int, right: int) -> None:
 @pytest.mark.parametrize(("left", "right"), SETTINGS)
 def test_points_end_where_the_way_ends_and_are_close_enough(left: int, right: int) -> None:
     way = [START, *points(BODY, START, left, right, 1500)]
-    assert way[-1] == moved(BODY, START, left, right, 1500)
+    assert way[-1] == move_pose(BODY, START, left, right, 1500)
     if left != -right:
         for a, b in pairwise(way):
             turn = abs(b.heading - a.heading) % 360
@@ -63,7 +63,7 @@ def test_points_end_where_the_way_ends_and_are_close_enough(left: int, right: in
 def test_many_rounds_are_one_circle_and_the_way_to_the_end() -> None:
     way = points(BODY, START, 20, 80, 10**9)
     assert len(way) <= 2 * 360 / STEP
-    assert way[-1] == moved(BODY, START, 20, 80, 10**9)
+    assert way[-1] == move_pose(BODY, START, 20, 80, 10**9)
     assert math.dist(way[-1][:2], way[-2][:2]) < 1
 
 
@@ -78,7 +78,7 @@ def test_a_way_knows_its_corners_and_where_the_robot_is() -> None:
     way.set_motors(2000 + QUARTER_MS, 50, 50)
     assert way.pose(3000 + QUARTER_MS) == near(Pose(20, 20, 90))
     assert way.corners == [START, near(Pose(20, 0, 0))]
-    assert way.ahead(3000 + QUARTER_MS) == [near(Pose(20, 20, 90))]
+    assert way.points_ahead(3000 + QUARTER_MS) == [near(Pose(20, 20, 90))]
 
 
 def test_the_same_setting_again_is_no_corner() -> None:

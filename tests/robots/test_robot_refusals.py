@@ -18,7 +18,7 @@ from tiniscript import robots
 from tiniscript.robots.boards import NEEDS
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
-from tiniscript.robots.refusals import describe, shown
+from tiniscript.robots.refusals import describe, printable_value
 
 
 def refusal(text: str) -> ProfileRefused:
@@ -312,8 +312,8 @@ def test_another_name_in_the_kit_names_the_tables_that_need_it_too() -> None:
 
 
 def test_what_is_shown_is_short_and_printable() -> None:
-    assert shown("a\x1b[2J\n" + "b" * 99) == "a?[2J?" + "b" * 34 + "…"
-    assert shown(16**9000) == "…"
+    assert printable_value("a\x1b[2J\n" + "b" * 99) == "a?[2J?" + "b" * 34 + "…"
+    assert printable_value(16**9000) == "…"
 
 
 # ---- files

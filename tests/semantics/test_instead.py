@@ -7,7 +7,7 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript import check_text, robots
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Source, applied
+from tiniscript.base.source import Source, apply_edits
 from tiniscript.base.words import lexicon
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import message
@@ -39,14 +39,14 @@ def test_a_number_for_a_distance_that_is_driven_is_centimetres(
     assert f"Write {word}({value} CM, 60) instead of {word}(DISTANCE, 60)" in fix_of(text)
     assert diagnostic.repair is not None and not diagnostic.repair.is_sure
     right = around.format(f"{word}({value} CM, 60){between}S")
-    assert applied(text, diagnostic.repair.edits) == right and not mistakes(right)
+    assert apply_edits(text, diagnostic.repair.edits) == right and not mistakes(right)
 
 
 def test_each_use_up_to_the_next_number_is_written() -> None:
     text = "SI|DISTANCE = 30;F(DISTANCE, 60);B(DISTANCE, 40);DISTANCE = 9;F(DISTANCE, 60)"
     first = check(text)[0]
     assert first.repair is not None
-    after = applied(text, first.repair.edits)
+    after = apply_edits(text, first.repair.edits)
     assert after == "SI|F(30 CM, 60);B(30 CM, 40);DISTANCE = 9;F(DISTANCE, 60)"
 
 
@@ -93,7 +93,7 @@ def test_the_rest_after_a_break_goes_into_the_other_branch(
     right = [head, *(inside or ["S"]), "ELSE", *rest, "ENDIF"]
     assert diagnostic.values["fix"] == ";".join(right)
     assert diagnostic.repair is not None
-    after = applied(text, diagnostic.repair.edits)
+    after = apply_edits(text, diagnostic.repair.edits)
     joined = after.replace("\n", ";").replace("; ", ";")
     assert joined == around.format(";".join(right)).replace("; ", ";")
     assert not mistakes(after)

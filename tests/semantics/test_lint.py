@@ -8,7 +8,7 @@ import pytest
 
 from tests.support.rows import each_row
 from tiniscript import check_text, robots
-from tiniscript.base.source import applied
+from tiniscript.base.source import apply_edits
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import lint as lints
 from tiniscript.semantics.lint import lint
@@ -261,5 +261,5 @@ def test_advice_is_for_right_programs_alone() -> None:
 def test_a_loop_is_put_around_a_task_that_is_done_once(text: str, wanted: str) -> None:
     (diagnostic,) = check_text(text, KIT).diagnostics
     assert diagnostic.repair is not None
-    assert applied(text, diagnostic.repair.edits) == wanted
+    assert apply_edits(text, diagnostic.repair.edits) == wanted
     assert not check_text(wanted, KIT).diagnostics

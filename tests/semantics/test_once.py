@@ -13,7 +13,7 @@ from tests.pupils.corpus import check
 from tests.support.casefile import ROOT
 from tiniscript import check_text, robots
 from tiniscript.base.kit import REMOTE
-from tiniscript.base.source import applied
+from tiniscript.base.source import apply_edits
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 
@@ -59,7 +59,7 @@ def test_a_question_that_is_asked_once_is_told(around: str, read: str, question:
     is_early = around in ("{}", "SI|{}", *AROUND[4:5], AROUND[6], AROUND[9])
     assert ("early" in diagnostic.values) == is_early or "W(1);ELSEIF" in asked
     if diagnostic.repair and "IF(DISTANCE < 9)" not in text and "WHEN" not in text:
-        assert not of(codes.ASKED_ONCE, applied(text, diagnostic.repair.edits))
+        assert not of(codes.ASKED_ONCE, apply_edits(text, diagnostic.repair.edits))
 
 
 @pytest.mark.parametrize("value", ["PAD_X", "ABS(PAD_Y) + 5"])
@@ -83,8 +83,8 @@ def test_several_are_told_once_and_the_loop_is_around_all() -> None:
     (diagnostic,) = check(text)
     assert diagnostic.repair is not None and not diagnostic.repair.is_sure
     body = text.removeprefix("SI|")
-    assert applied(text, diagnostic.repair.edits) == f"SI|LOOP(FOREVER)\n{body}\nEND_LOOP"
-    assert not check(applied(text, diagnostic.repair.edits))
+    assert apply_edits(text, diagnostic.repair.edits) == f"SI|LOOP(FOREVER)\n{body}\nEND_LOOP"
+    assert not check(apply_edits(text, diagnostic.repair.edits))
 
 
 def test_a_variable_that_is_called_as_a_key_is_no_key() -> None:
@@ -116,7 +116,7 @@ def test_of_a_lone_task_that_drives_and_beeps_one_goes_outside(
     text = f"SI|{between.join(['TASK', *inside, 'END_TASK'])}"
     (diagnostic,) = of(codes.LONE_TASK, text)
     assert diagnostic.repair is not None
-    after = applied(text, diagnostic.repair.edits)
+    after = apply_edits(text, diagnostic.repair.edits)
     assert after == f"SI|{between.join(['TASK', BEEP, 'END_TASK', move])}"
     assert not of(codes.LONE_TASK, after)
     assert diagnostic.values["fix"] == f"TASK;{BEEP};END_TASK;{move}"

@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.ir_text import program_text
 from tiniscript import check_text, robots
-from tiniscript.semantics.optimizer import optimized
+from tiniscript.semantics.optimizer import optimize_program
 
 KIT = robots.load("tinibot").kit
 
@@ -18,7 +18,7 @@ def short(text: str) -> str:
     """Return the optimised program as text, without its start mode."""
     program = check_text(text, KIT).program
     assert program is not None
-    return program_text(optimized(program)).split("\n", 1)[1]
+    return program_text(optimize_program(program)).split("\n", 1)[1]
 
 
 @pytest.mark.parametrize(

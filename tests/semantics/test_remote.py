@@ -18,7 +18,7 @@ from tiniscript.base.kit import KIT_WORDS_SINCE, NUMBER, REMOTE, YES_NO, Device,
 from tiniscript.base.trace import Senses
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.bytecode.image import ImageRefused, unpack
-from tiniscript.bytecode.verify import Refused, loaded
+from tiniscript.bytecode.verify import Refused, load_image
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.diagnostics import codes
 from tiniscript.library.compiling import Compiled, compile_text, for_robot
@@ -151,11 +151,11 @@ def test_a_word_of_the_profile_stays_what_it_is_there(is_actuator: bool) -> None
 
 def test_an_image_is_refused_where_its_numbers_mean_something_else() -> None:
     image = compile_text("SHOW(KEY_UP)", TINIBOT).image
-    assert loaded(image, TINIBOT).devices == TINIBOT.hashes[3]
+    assert load_image(image, TINIBOT).devices == TINIBOT.hashes[3]
     with pytest.raises(ImageRefused, match="OTHER_KIT"):
-        loaded(image, robots.load("liner").kit)  # where it is BATTERY
+        load_image(image, robots.load("liner").kit)  # where it is BATTERY
     with pytest.raises(Refused, match="NO_SUCH_DEVICE"):
-        loaded(compile_text("SHOW(PAD_Y)", TINIBOT).image, kit_of(9))
+        load_image(compile_text("SHOW(PAD_Y)", TINIBOT).image, kit_of(9))
 
 
 # -- names of before ----------------------------------------------------------------------------

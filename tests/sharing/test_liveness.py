@@ -23,7 +23,7 @@ from tiniscript.link.sharing.shared_connection import DEAF_S, SharedConnection
 LONG_S = 20 * DEAF_S
 ANSWER = {"id": 1, "status": OK, "detail": 0, "heard": 9, "came": "fe", "is_echoed": False,
           "boot": 0, "values": {}}  # fmt: skip
-SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.of_event(ShownEvent(5, 0))}
+SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.event_fields(ShownEvent(5, 0))}
 
 
 class Holder:
@@ -46,7 +46,7 @@ class Holder:
     def says(self, message: JsonMessage, after_s: float) -> None:
         at_s = self.now_s + after_s
         if at_s < self.dies_s:
-            insort(self._coming, (at_s, protocol.written(message)))
+            insort(self._coming, (at_s, protocol.encode_message(message)))
 
     def settimeout(self, seconds: float) -> None:
         self._limit_s = seconds
@@ -122,7 +122,7 @@ def test_a_request_that_takes_long_is_answered(
 ) -> None:
     holder = Holder(lambda: 0.1)
     line = shared(monkeypatch, holder)
-    request: PendingRequest[EmptyReply] = line.do(lambda session: session.name(b"Pia"))
+    request: PendingRequest[EmptyReply] = line.begin(lambda session: session.name(b"Pia"))
     holder.says(ANSWER, takes_s)
     assert line.wait(request).status == OK
     assert holder.now_s - 100.0 >= takes_s

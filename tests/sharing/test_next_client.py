@@ -43,7 +43,7 @@ Json = dict[str, Any]
 class SteppedLine:
     """The port of a simulated robot, without a thread."""
 
-    address, held_by, gone, heard, came, is_echoed, boot = "", "", None, 0, b"", False, 0
+    address, held_by, end_reason, heard, came, is_echoed, boot = "", "", None, 0, b"", False, 0
 
     def __init__(self) -> None:
         self.robot_itself, self.session = switched_on(), computer()
@@ -59,7 +59,7 @@ class SteppedLine:
     def tell(self, event: Event) -> None:
         """Of this process alone."""
 
-    def do(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
+    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
         return make(self.session)
 
     def runs(self, run: int) -> bool:
@@ -97,7 +97,7 @@ class Client:
 
     def says(self, message: Json) -> None:
         with suppress(OSError):
-            self.socket.send(protocol.written(message))
+            self.socket.send(protocol.encode_message(message))
 
     def asks(self, do: str, **more: object) -> None:
         self._number += 1
@@ -261,7 +261,9 @@ def second(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
     at.steps(400)
     heard = [each for each in client.heard if "beat" not in each]
     begins = next((k for k, each in enumerate(heard) if "status" in each), 0)
-    said = [STRIPPED.sub(r'"\1"', protocol.written(each).decode()) for each in heard[begins:]]
+    said = [
+        STRIPPED.sub(r'"\1"', protocol.encode_message(each).decode()) for each in heard[begins:]
+    ]
     did = [line.split(" ", 1)[1] for line in robot.did if not line.endswith(" 200")]  # its sign
     return said, did[did.index(MARKED) :] if MARKED in did else did
 

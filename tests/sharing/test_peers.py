@@ -167,11 +167,11 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
         address = f"socket://127.0.0.1:{number}"
-        note = directory.announce(directory.Running(address, "tinibot", "room", "", ""))
-        assert [each.address for each in directory.running()] == [address]
+        note = directory.announce(directory.RunningRobot(address, "tinibot", "room", "", ""))
+        assert [each.address for each in directory.running_robots()] == [address]
         monkeypatch.setattr(peers, "is_of_another", lambda port: port == number)
         for _ in range(2):
-            assert directory.running() == []
+            assert directory.running_robots() == []
             for words in (["show"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
                 for port in (address, address.replace("127.0.0.1", "localhost")):
                     done = inside(*words, "--port", port)
@@ -184,7 +184,7 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
         inside("start", "--port", address, "--lang", "es").gives(3, "escucha otro usuario")
         monkeypatch.setattr(peers, "is_of_another", lambda port: False)
         assert directory.is_virtual(address)
-    assert directory.running() == []
+    assert directory.running_robots() == []
     assert note is not None and not note.exists()
 
 
@@ -294,7 +294,7 @@ def test_who_lets_a_port_go_leaves_the_file_of_the_next_one(tmp_path: Path) -> N
     """Somebody has removed ours meanwhile, and another command has the port."""
     path = tmp_path / "port"
     for is_others in (False, True):
-        held = registry._locked(path)
+        held = registry._try_lock(path)
         assert held is not None
         if is_others:
             path.unlink()

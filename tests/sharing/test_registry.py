@@ -98,13 +98,13 @@ def test_a_server_that_registers_while_another_command_removes_is_found(
         if not has_registered:
             continue
         assert registry.find_registration(PORT) == live
-        assert registry.all_found() == [live]
+        assert registry.find_all() == [live]
         registry.remove(live)
-        assert registry.all_found() == []
+        assert registry.find_all() == []
 
 
 def lock() -> IO[bytes] | None:
-    return registry.claimed(PORT)
+    return registry.claim(PORT)
 
 
 def has_one_owner(owners: list[IO[bytes] | None]) -> None:

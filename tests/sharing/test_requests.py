@@ -15,7 +15,7 @@ from tiniscript.link.messages import BY_NAME, Field, Message
 from tiniscript.link.payloads import REPLIES, EmptyReply
 from tiniscript.link.requests import Request
 from tiniscript.link.sharing.protocol import BadMessage, message_of
-from tiniscript.link.sharing.requests import ClientRequest, ClientRequests, asked_for
+from tiniscript.link.sharing.requests import ClientRequest, ClientRequests, request_maker
 from tiniscript.link.wifi import BrokerSettings, Network, Tls
 
 HOME = Network(b"Home", b"a password", False)
@@ -55,7 +55,7 @@ ASKED = (
 @pytest.mark.parametrize("asked", ASKED, ids=str)
 def test_it_is_asked_of_the_session_as_of_the_client(asked: Asked) -> None:
     session = Mock()
-    request = asked_for(asked.message(), 700)(session)
+    request = request_maker(asked.message(), 700)(session)
     ((name, taken, named),) = session.method_calls
     assert (name, taken, named) == (asked.method, asked.given, {})
     assert request.limit_ms == 700
@@ -97,20 +97,20 @@ BAD: tuple[dict[str, Any], ...] = (
 @pytest.mark.parametrize("message", BAD, ids=lambda message: str(message)[:60])
 def test_what_no_session_may_be_asked_is_refused(message: dict[str, Any]) -> None:
     with pytest.raises(BadMessage):
-        asked_for(message, 700)
+        request_maker(message, 700)
 
 
 def test_a_client_of_2_0_names_no_needs() -> None:
     message = of("upload", IMAGE)
     del message["needs"]
     session = Mock()
-    asked_for(message, 700)(session)
+    request_maker(message, 700)(session)
     assert session.upload.call_args.args[0] == IMAGE
 
 
 def test_who_presses_keys_is_not_for_the_client_to_say() -> None:
     session = Mock()
-    asked_for(of("press", 1, 0, 0, 9), 700, 2)(session)
+    request_maker(of("press", 1, 0, 0, 9), 700, 2)(session)
     assert session.press.call_args.args == (1, 0, 0, 2)
 
 
@@ -141,7 +141,7 @@ def _knows_nod(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, ...]) -> None:
     """Of this process and of a client of a shared port; no other file has to know it."""
     session = Mock()
-    asked_for(Asked("nod", values).message(), 700)(session)
+    request_maker(Asked("nod", values).message(), 700)(session)
     ((name, taken, _),) = session.method_calls
     assert (name, taken) == ("nod", values)
     given = dict(zip((its.name for its in NOD.request), values, strict=True))
@@ -157,4 +157,4 @@ def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, 
 )  # fmt: skip
 def test_a_field_of_such_a_message_keeps_to_its_range(wrong: dict[str, Any]) -> None:
     with pytest.raises(BadMessage):
-        asked_for(of("nod", 1, 2, 3, b"a") | wrong, 700)
+        request_maker(of("nod", 1, 2, 3, b"a") | wrong, 700)

@@ -21,7 +21,7 @@ from tiniscript.link.requests import OK, Reply
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.requests import ClientRequest, ClientRequests
 from tiniscript.link.sharing.server import Server
-from tiniscript.link.sharing.shared_connection import SharedConnection, joined
+from tiniscript.link.sharing.shared_connection import SharedConnection, join
 
 PORT = "/dev/ttyUSB0"
 
@@ -29,7 +29,7 @@ PORT = "/dev/ttyUSB0"
 class FakeLine:
     """A line whose robot does what the test says: begins run 7, ends it, and tells events."""
 
-    address, gone, robot, held_by = PORT, None, None, ""
+    address, end_reason, robot, held_by = PORT, None, None, ""
     heard, came, is_echoed, boot, has_ended = 0, b"", False, 0, False
 
     def __init__(self) -> None:
@@ -46,11 +46,11 @@ class FakeLine:
     def tell(self, event: Event) -> None:
         self._on_events([(0, event)])
 
-    def do(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
+    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
         self.asked.append(make(cast(Requester, ClientRequests())))
         return self.asked[-1]
 
-    def begin(self) -> None:
+    def begin_run(self) -> None:
         """Let the run begin that was asked for last."""
         self.is_running = True
         self.asked[-1].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))
@@ -89,7 +89,7 @@ def server(line: FakeLine) -> Iterator[Server]:
 @pytest.fixture
 def command(server: Server) -> Iterator[SharedConnection]:
     """Another command, which shares the port."""
-    shared_connection = joined(PORT, "upload")
+    shared_connection = join(PORT, "upload")
     assert shared_connection is not None
     with closing(shared_connection):
         yield shared_connection
@@ -100,7 +100,7 @@ def heard(command: SharedConnection, name: str) -> None:
 
 
 def asks(command: SharedConnection, line: FakeLine, is_detached: bool = False) -> None:
-    command.do(lambda requests: requests.start(is_detached))
+    command.begin(lambda requests: requests.start(is_detached))
     until(lambda: bool(line.asked), "the request arrives")
 
 
@@ -109,7 +109,7 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
     with closing(Server(cast(PortConnection, line), PORT, 9600, "link")) as server:
         own = server.registration
         assert [
-            registration for registration in registry.all_found() if registration.token == own.token
+            registration for registration in registry.find_all() if registration.token == own.token
         ] == [own]
         other = registry.find_registration(line.address)
         assert other is not None and other.token == own.token
@@ -134,7 +134,7 @@ def test_a_run_whose_client_leaves_ends_without_a_stop_for_all(
     line: FakeLine, server: Server, command: SharedConnection
 ) -> None:
     asks(command, line)
-    line.begin()
+    line.begin_run()
     line.tell(event("SHOW"))
     heard(command, "SHOW")
     command.close()
@@ -148,7 +148,7 @@ def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(
 ) -> None:
     """A stop, and an upload right after it: the server's thread may see both at once."""
     asks(command, line)
-    line.begin()
+    line.begin_run()
     line.tell(DoneEvent(6) if end == "DONE" else event(end))
     heard(command, end)
     assert server.has_run
@@ -170,16 +170,16 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
     monkeypatch.setattr(opening, "connection_to", lambda *_: line)
     client = Client(PORT, "monitor", robots.load("tinibot"), is_shared=False)
     client.server = Server(cast(PortConnection, line), PORT, 9600, "monitor")
-    command = joined(PORT, "upload")
+    command = join(PORT, "upload")
     assert command is not None
     with closing(command):
         if asked == "ping":
-            command.do(lambda requests: requests.ping())
+            command.begin(lambda requests: requests.ping())
             until(lambda: bool(line.asked), "the request arrives")
         else:
             asks(command, line, asked == "detached")
         if asked in ("over", "begun"):
-            line.begin()
+            line.begin_run()
             line.is_running = asked == "begun"
         client.close()
     assert line.stops == is_stopped
@@ -195,10 +195,10 @@ def test_each_client_presses_keys_of_its_own_and_lets_go_when_it_leaves(
         ]
         return [(message["speaker"], message["keys"]) for message in messages]
 
-    command.do(lambda requests: requests.press(1))
+    command.begin(lambda requests: requests.press(1))
     until(lambda: len(line.asked) == 1, "the first word arrives")
-    with closing(cast(SharedConnection, joined(PORT, "live"))) as other:
-        other.do(lambda requests: requests.press(2))
+    with closing(cast(SharedConnection, join(PORT, "live"))) as other:
+        other.begin(lambda requests: requests.press(2))
         until(lambda: len(line.asked) == 2, "the second word arrives")
     until(lambda: len(line.asked) == 3, "the second client has left")
     assert pressed() == [(1, 1), (2, 2), (2, 0)]

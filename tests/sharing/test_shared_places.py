@@ -10,7 +10,7 @@ from tests.support.waiting import HANGS_S
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.outcomes import KEPT, Backlog, Event, PlaceEvent, ShownEvent
 from tiniscript.link.requests import OK
-from tiniscript.link.sharing.shared_connection import joined
+from tiniscript.link.sharing.shared_connection import join
 
 
 def until_done(connection: LinkConnection) -> list[Event]:
@@ -30,11 +30,11 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
     image = image_of("SI|F(2, 80);R(2, 60)")  # each is asked for often, on a busy computer too
     shared = Shared()
     with shared as (pty_robot, _):
-        client, other = joined(pty_robot.port, "studio"), joined(pty_robot.port, "monitor")
+        client, other = join(pty_robot.port, "studio"), join(pty_robot.port, "monitor")
         assert client and other
         client.tell_places()
-        assert client.wait(client.do(lambda session: session.hello())).status == OK
-        request = client.do(lambda session: session.upload(image, saves=False))
+        assert client.wait(client.begin(lambda session: session.hello())).status == OK
+        request = client.begin(lambda session: session.upload(image, saves=False))
         assert client.wait(request).status == OK
         places = [
             place_event for place_event in until_done(client) if isinstance(place_event, PlaceEvent)

@@ -17,12 +17,12 @@ from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.shared_pty_robot import Shared
 from tiniscript import __version__, compile_text, robots
 from tiniscript.bytecode.image import unpack
-from tiniscript.link.frames import decoded
+from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import STATE_IDLE
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
-from tiniscript.link.sharing.shared_connection import joined
+from tiniscript.link.sharing.shared_connection import join
 
 TRIES = 8  # of a command that is told that another one has left
 # On a busy computer it takes whoever has opened a port a while to share it.
@@ -34,7 +34,7 @@ PATIENT = (
 
 def hellos(pty_robot: PtyRobot) -> int:
     """Return how often a session was begun: as often as the port was opened."""
-    frames = map(decoded, pty_robot.heard.split(b"\0"))
+    frames = map(decode_frame, pty_robot.heard.split(b"\0"))
     return sum(frame is not None and frame.number == 1 for frame in frames)
 
 
@@ -328,7 +328,7 @@ def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
         peer, _ = holding.accept()
         with peer:
             peer.recv(1000)
-            peer.sendall(protocol.written({"tsc": __version__, "answer": "b"}))
+            peer.sendall(protocol.encode_message({"tsc": __version__, "answer": "b"}))
             assert b"stop" in peer.recv(1000)
     assert stop.ended().code == 0
     assert not pty_robot.moves
@@ -399,18 +399,20 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
 def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_refused() -> None:
     """The frame that starts it was under way."""
     with Shared() as (robot, _), ExitStack() as stack:
-        other = joined(robot.port, "show --port")
+        other = join(robot.port, "show --port")
         assert other is not None
         stack.callback(other.close)
         kit = robots.load("tinibot").kit
         image = unpack(compile_text(FOREVER, kit).image)
         for _ in range(5):
-            client = joined(robot.port, "upload")
+            client = join(robot.port, "upload")
             assert client is not None
             robot.heard = b""
-            client.do(lambda session: session.upload(image, True, kit=kit.fingerprint))
+            client.begin(lambda session: session.upload(image, True, kit=kit.fingerprint))
             robot.until(lambda: len(robot.heard) > 10, "a part of it has come")
             client.close()
             robot.until(lambda: not robot.moves, "it ends")
-            assert other.wait(other.do(lambda session: session.clear())).status == OK
-            assert other.wait(other.do(lambda session: session.status())).values.state == STATE_IDLE
+            assert other.wait(other.begin(lambda session: session.clear())).status == OK
+            assert (
+                other.wait(other.begin(lambda session: session.status())).values.state == STATE_IDLE
+            )

@@ -25,7 +25,7 @@ from tiniscript.link.sharing.server import CLIENTS, FULL_BYTES
 
 def greeting(registration: Registration, **other: object) -> bytes:
     message = {"tsc": __version__, "token": registration.token, "verb": "upload"}
-    return protocol.written({**message, **other})
+    return protocol.encode_message({**message, **other})
 
 
 def visitor(registration: Registration) -> socket.socket:
@@ -77,13 +77,13 @@ def test_wrong_messages_of_a_client_end_its_visit_alone() -> None:
     with Shared() as (pty_robot, registration):
         for wrong in ({"do": "fly"}, {"do": "name", "name": "zz"}, {"do": "ping", "id": "1"}):
             with visitor(registration) as peer:
-                request = protocol.written({"id": 1, "limit_ms": 100, **wrong})
+                request = protocol.encode_message({"id": 1, "limit_ms": 100, **wrong})
                 peer.sendall(greeting(registration) + request)
                 said = b""
                 while part := _rest(peer):
                     said += part
             answer = {"tsc": __version__, "answer": registration.answer}
-            assert said == protocol.written(answer), wrong
+            assert said == protocol.encode_message(answer), wrong
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
 
 
@@ -132,7 +132,7 @@ def test_a_file_that_says_nothing_is_no_server(pty_robot: PtyRobot) -> None:
         for text in ("", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"):
             path.write_text(text)
             assert registry.find_registration(other.port) is None, text[:20]
-            assert registry.all_found() == []
+            assert registry.find_all() == []
     path.write_text(json.dumps(registration._replace(port=pty_robot.port)._asdict()))
     assert registry.find_registration(other.port) is None
 
@@ -145,7 +145,7 @@ def test_somebody_else_at_the_number_of_a_crashed_server_is_no_server(pty_robot:
         peer, _ = stranger.accept()
         with peer:
             peer.recv(1000)
-            peer.sendall(protocol.written({"tsc": __version__, "answer": "c"}))
+            peer.sendall(protocol.encode_message({"tsc": __version__, "answer": "c"}))
             done = command.ended()
     assert (done.code, done.err) == (0, "")
     assert registry.find_registration(pty_robot.port) is None
@@ -168,9 +168,9 @@ def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
 
 def test_a_lock_that_is_given_back_leaves_no_file(tmp_path: Path) -> None:
     path = tmp_path / "port.lock"
-    lock = registry._locked(path)
+    lock = registry._try_lock(path)
     assert lock is not None and path.exists()
-    assert registry._locked(path) is None, "another one has it"
+    assert registry._try_lock(path) is None, "another one has it"
     assert path.exists()
     lock.close()
     assert not path.exists()

@@ -37,7 +37,7 @@ STRANGE = (
     GREETING.decode().encode("utf-16"),
     GREETING * 50,
     GREETING[:-1],
-    protocol.written({"do": "stop"}),
+    protocol.encode_message({"do": "stop"}),
     b"\n" * 1000,
     b"\0" * 1000,
     b"GET / HTTP/1.1\r\nUpgrade: websocket\r\n\r\n",

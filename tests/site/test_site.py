@@ -21,8 +21,8 @@ from tests.support.rows import each_row
 from tools import CannotMake
 from tools.builds import site
 from tools.builds import studio as studio_build
-from tools.generate.built import built as built_texts
-from tools.generate.built import kept
+from tools.generate.built import build_all as built_texts
+from tools.generate.built import makers_of_kept
 from tools.site.documents import PARTS, documents
 from tools.site.lexer import TiniScriptLexer
 from tools.site.pages import page, shelf
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return once(
         shared(tmp_path_factory) / "site",
-        lambda path: site.build(ROOT, path, has_studio=not studio_build.stale()),
+        lambda path: site.build(ROOT, path, has_studio=not studio_build.why_stale()),
     )
 
 
@@ -159,7 +159,7 @@ def test_links_lead_to_pages_and_copies() -> None:
 def test_a_clone_keeps_what_a_person_reads_there_and_no_more() -> None:
     paths = (*ROOT.glob("docs/*/wiring/*"), *ROOT.glob("docs/*/command.md"))
     there = {path.relative_to(ROOT).as_posix() for path in paths}
-    assert there == set(kept()) < set(built_texts())
+    assert there == set(makers_of_kept()) < set(built_texts())
 
 
 def test_code_is_left_as_it_is(clone: Path) -> None:
@@ -259,7 +259,7 @@ def test_a_folder_with_something_in_it_is_left_alone(
 def test_a_studio_that_is_not_built_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(studio_build, "stale", lambda: "the page is not built.")
+    monkeypatch.setattr(studio_build, "why_stale", lambda: "the page is not built.")
     assert site.main([str(tmp_path / "site")]) == 2
     assert capsys.readouterr().err == "site: the page is not built. Without it:  --no-studio\n"
 

@@ -32,7 +32,7 @@ from tests.support.campaign import wanted as wanted_seeds
 from tests.support.casefile import example_robot, sketch_examples
 from tiniscript import compile_text, robots
 from tiniscript.base.fixed_point import ONE
-from tiniscript.codegen.sketch.writing import lacks, sketch_of
+from tiniscript.codegen.sketch.writing import missing_feature, sketch_of
 from tiniscript.lessons import catalogue
 from tiniscript.robots.profile import Robot
 
@@ -47,7 +47,7 @@ def has_sketch(text: str) -> bool:
         kit = robots.load("liner").kit
         compiled = compile_text(text, kit)
     assert compiled.program is not None and compiled.is_right
-    return lacks(compiled.program, kit) is None
+    return missing_feature(compiled.program, kit) is None
 
 
 ANSWERS = [

@@ -14,7 +14,14 @@ from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript import compile_text, robots
 from tiniscript.cli.paths import is_foreign
-from tiniscript.codegen.sketch.names import IDENTIFIERS, LOCALS, RESERVED, Names, called, counter
+from tiniscript.codegen.sketch.names import (
+    IDENTIFIERS,
+    LOCALS,
+    RESERVED,
+    Names,
+    counter,
+    translated_name,
+)
 
 
 def sketch(text: str, language: str = "en", robot: str = "tinibot") -> str:
@@ -143,14 +150,19 @@ def test_names_are_like_those_of_cpp() -> None:
         "myFirst1",
         "number",
     ]
-    assert [names.of(each) for each in asked] == made
-    assert Names("en").of("COUNTED") == "myCounted" and Names("es").of("VALOR") == "miValor"
-    assert Names("es").of("INT") == "miInt" and Names("en").of("LIGHT_R", "read") == "readLightR"
+    assert [names.name_of(each) for each in asked] == made
+    assert (
+        Names("en").name_of("COUNTED") == "myCounted" and Names("es").name_of("VALOR") == "miValor"
+    )
+    assert (
+        Names("es").name_of("INT") == "miInt"
+        and Names("en").name_of("LIGHT_R", "read") == "readLightR"
+    )
 
 
 def test_no_helper_has_a_reserved_name() -> None:
     for language in LANGUAGES:
-        names = {called(each, language) for each in IDENTIFIERS}
+        names = {translated_name(each, language) for each in IDENTIFIERS}
         assert not RESERVED & names - {"read", "leer", "time", "value"}
 
 
@@ -180,7 +192,7 @@ def test_no_name_of_a_helper_is_in_the_other_language() -> None:
     notes = " ".join(re.findall(r"// (.*)", said))
     assert not set(re.findall(r"\w+", notes)) & {"low", "high", "first", "last"}
     local = {all_said("es", "sketch")[f"local/{each}"] for each in LOCALS}
-    names = {called(each, "es") for each in IDENTIFIERS}
+    names = {translated_name(each, "es") for each in IDENTIFIERS}
     assert len(local) == len(LOCALS) and not (local | names) & RESERVED - {"leer"}
     assert local & names == {"valor"}
 

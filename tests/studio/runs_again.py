@@ -15,7 +15,7 @@ from tiniscript import robots
 from tiniscript.bytecode.image import checksum
 from tiniscript.library.compiling import compile_source, for_robot
 from tiniscript.studio.playing import play, ready
-from tiniscript.studio.recordings import VIRTUAL, Row, head, read, written
+from tiniscript.studio.recordings import VIRTUAL, Row, decode, encode, head
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import Settings
@@ -50,7 +50,7 @@ def recorded(number: int) -> tuple[bytes, list[Row]]:
     first = head(VIRTUAL, text, profile, checksum(found.image), world=world, seed=number + 1,
                  told=told)  # fmt: skip
     happened = [row for row in rows if not row.is_input]
-    return written(first, rows, end_ms).encode(), happened
+    return encode(first, rows, end_ms).encode(), happened
 
 
 def _act(rng: random.Random, run: Simulation) -> None:
@@ -64,7 +64,7 @@ def _act(rng: random.Random, run: Simulation) -> None:
 def differs(number: int) -> str | None:
     """Return how a random run differs when it is played again, or None."""
     data, happened = recorded(number)
-    played = play(ready(read(data)))
+    played = play(ready(decode(data)))
     again = [row for row in played.rows() if not row.is_input]
     parting = played.parting
     played.close()

@@ -32,7 +32,7 @@ from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.worker import MOST_BLOCKS, answer
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 from tiniscript.syntax.lexer import scan
 
 TINIBOT = robots.load("tinibot").kit
@@ -62,7 +62,7 @@ def check(text: str, kit: Kit) -> None:
     printed = print_blocks(from_data(json.loads(json.dumps(data_of(form)))))
     after = compile_text(printed.text, kit)
     assert after.is_right and after.image == before.image, printed.text
-    assert formatted(Source(printed.text)) == printed.text
+    assert format_source(Source(printed.text)) == printed.text
     assert comments(printed.text) == comments(text), printed.text
     again = read(printed.text, kit)
     assert print_blocks(again).text == printed.text
@@ -264,7 +264,7 @@ def test_blocks_that_hang_on_nothing_are_kept() -> None:
     ]  # fmt: skip
     assert form.loose[1].value == (("SENSOR", "DISTANCE"), ("NUMBER", "10"), ("LT", ""))
     assert print_blocks(form).text == text.replace("SI|S\n", "SI|S\n")
-    assert formatted(Source(text)) == text
+    assert format_source(Source(text)) == text
 
 
 @pytest.mark.parametrize("text", ["/// 5 of them", "/// SI|S", "///\n/// F(1", "/// S\nF(1, 80)"])

@@ -13,7 +13,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.needs import need
-from tiniscript.base.languages import SOURCE, counted, entries, languages
+from tiniscript.base.languages import SOURCE, entries, languages, plural_text
 from tiniscript.flash import ready
 from tiniscript.studio import serving
 from tiniscript.studio.block_kinds import KINDS, SAYS
@@ -36,7 +36,7 @@ OTHERS = ("block", "blockly", "editor", "tip")  # of other tables: see below
 
 @pytest.fixture(scope="module")
 def page() -> Path:
-    need(studio.stale())
+    need(studio.why_stale())
     return studio.PAGE
 
 
@@ -112,7 +112,7 @@ def test_a_plural_has_the_form_of_its_number() -> None:
         forms = texts[""]
         for number in (*range(200), 1000, 1001, 2101, 1_000_000):
             form = forms[number if number < 100 else 100 + number % 100]
-            wanted = counted("studio", "mistakes", number, language)
+            wanted = plural_text("studio", "mistakes", number, language)
             assert texts["mistakes"][int(form)] == wanted, (language, number)
 
 
@@ -133,7 +133,7 @@ def test_the_page_is_small_enough(page: Path) -> None:
     rows = [row.split() for row in studio.size_rows(page)[1:-1]]
     weights = {name: int(packed.replace(",", "")) for _, packed, name in rows}
     assert {*weights} == {path.name for path in files}
-    said = [sum(weights[name] for name in studio.said_in(code)) for code in languages()]
+    said = [sum(weights[name] for name in studio.language_files(code)) for code in languages()]
     assert sum(weights.values()) - sum(said) + max(said) <= LARGEST
 
 
@@ -191,9 +191,9 @@ def test_the_same_sources_give_the_same_page(
 
 
 def test_a_page_of_other_sources_is_not_used(tmp_path: Path) -> None:
-    assert studio.COMMAND in studio.stale(tmp_path)
+    assert studio.COMMAND in studio.why_stale(tmp_path)
     (tmp_path / studio.STAMP).write_text('{"sources": "others"}')
-    assert "is out of date: the sources" in studio.stale(tmp_path)
+    assert "is out of date: the sources" in studio.why_stale(tmp_path)
     assert studio.main(["--check", "-o", str(tmp_path)]) == 2
 
 

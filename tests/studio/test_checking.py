@@ -11,7 +11,7 @@ from tests.pupils import corpus
 from tests.studio.programs import LACKING, said
 from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
-from tiniscript.diagnostics.fixing import OFFERS, fixed
+from tiniscript.diagnostics.fixing import OFFERS, repair_program
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.compiling import Compiled, compile_source
 from tiniscript.studio import checking, worker
@@ -103,7 +103,7 @@ def test_a_button_does_what_the_message_names(program: str, wanted: str) -> None
         assert finding.message not in check(wanted)
         assert not [message for message in check(wanted) if message.severity == "mistake"]
     kit = robots.load("tinibot").kit
-    left = fixed(program, lambda text: compile_text(text, kit).diagnostics)
+    left = repair_program(program, lambda text: compile_text(text, kit).diagnostics)
     assert wanted.startswith("B(") or left.text == program  # -2 seconds forward are 2 back
 
 
@@ -128,9 +128,9 @@ def test_some_mistakes_are_not_repaired() -> None:
 
 def test_a_file_is_read_as_the_command_reads_it_or_gets_a_sentence() -> None:
     for data in (b"\xff\xfe", b"F(2\0, 80)", b"x" * 1_000_001):
-        message = checking.opened(data, "tinibot", "es")
+        message = checking.open_text(data, "tinibot", "es")
         assert isinstance(message, Message) and message.message, data[:9]
-    assert checking.opened("\ufeffSI|F(2, 80)\r\n".encode(), "liner", "en") == "SI|F(2, 80)\r\n"
+    assert checking.open_text("\ufeffSI|F(2, 80)\r\n".encode(), "liner", "en") == "SI|F(2, 80)\r\n"
 
 
 def test_a_robot_is_a_shipped_one() -> None:

@@ -30,7 +30,7 @@ LESSONS = ("01_first_line", "02_there_and_back", "03_turns")
 
 @pytest.fixture(autouse=True)
 def without_ports(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(classroom, "listed", list)
+    monkeypatch.setattr(classroom, "list_ports", list)
 
 
 class Page:

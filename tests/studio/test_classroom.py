@@ -770,7 +770,7 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Kee
 
 def test_one_class_of_a_user_has_the_file(kept_at: Path, keeper: Keeper) -> None:
     keeper.keep(Room().made.state_to_keep())
-    with pytest.raises(class_keeping.Taken):
+    with pytest.raises(class_keeping.ClassTaken):
         Keeper()
     assert kept_at.exists()
     keeper.close()  # its command has ended
@@ -904,7 +904,7 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
         answered.append("listed")
         return [{"port": "port9", "name": "NINE"}]
 
-    monkeypatch.setattr(classroom, "listed", slow)
+    monkeypatch.setattr(classroom, "list_ports", slow)
     state = room.teaches("class_robot", port="port9", gives=True)
     assert answered == ["stop", "beat", "here", "listed"]
     assert [each["name"] for each in state["robots"]] == ["", "NINE"]

@@ -17,7 +17,7 @@ from tiniscript import check, compile, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.known_kits import lacks
-from tiniscript.studio.checking import opened
+from tiniscript.studio.checking import open_text
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -250,7 +250,7 @@ def test_a_file_that_is_no_program_leaves_the_program(page: Page, tmp_path: Path
         path.write_bytes(data)
         page.set_input_files("#file", path)
         noted(page, path.name)
-        wanted = opened(data, "tinibot", "en")
+        wanted = open_text(data, "tinibot", "en")
         assert isinstance(wanted, Message) and wanted.message in page.inner_text("#note"), name
         assert image(page) == before, name
 

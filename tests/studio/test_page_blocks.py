@@ -28,7 +28,7 @@ from tiniscript.studio.block_form import data_of, kinds_in
 from tiniscript.studio.block_kinds import KINDS, PLAIN
 from tiniscript.studio.block_reading import read
 from tools.builds.page_texts import page_texts
-from tools.builds.studio import BLOCKLY, stale
+from tools.builds.studio import BLOCKLY, why_stale
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
@@ -838,7 +838,7 @@ LACKS = re.compile(  # things that no page has; names of shortcuts, which only a
 
 def test_the_catalogue_has_what_blockly_says() -> None:
     """All that Blockly's core names, but for LACKS: the page uses none of its ready blocks."""
-    need("" if BLOCKLY.is_dir() else stale() or f"there is no {BLOCKLY}")
+    need("" if BLOCKLY.is_dir() else why_stale() or f"there is no {BLOCKLY}")
     core = (BLOCKLY / "blockly_compressed.js").read_text(encoding="utf-8")
     named = set(re.findall(r"[A-Z][A-Z0-9_]+", core))
     messages = (BLOCKLY / "msg" / "en.js").read_text(encoding="utf-8")

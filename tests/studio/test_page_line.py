@@ -96,7 +96,7 @@ def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     page.robot.let_go()
     assert claimed == {"id": 2, "ok": True}
     kept = page.file.encode()
-    assert [key.which for key in keys.read(kept)] == [OWNER]
+    assert [key.which for key in keys.decode_keys(kept)] == [OWNER]
     page.go(3000)  # it is written
     memory = page.robot.memory
 
@@ -119,9 +119,9 @@ def key(robot: int, which: int = OWNER, byte: int = 1) -> RobotKey:
 
 
 def test_keys_of_a_file_replace_those_of_the_same_robot() -> None:
-    kept = PageKeys(keys.written([key(1, byte=1), key(2, byte=2)]))
-    assert kept.add(keys.written([key(1, byte=9), key(3, byte=3)])) == 2
-    assert sorted((key.id, key.key[0]) for key in keys.read(kept.file().encode())) == [
+    kept = PageKeys(keys.encode_keys([key(1, byte=1), key(2, byte=2)]))
+    assert kept.add(keys.encode_keys([key(1, byte=9), key(3, byte=3)])) == 2
+    assert sorted((key.id, key.key[0]) for key in keys.decode_keys(kept.file().encode())) == [
         (1, 9), (2, 2), (3, 3),
     ]  # fmt: skip
 
@@ -130,7 +130,7 @@ def test_keys_of_a_file_replace_those_of_the_same_robot() -> None:
     "data", [b"", b"{", b"[]", b"\xff", b'{"tiniscript_keys": 1}', b"[" * 5000]
 )
 def test_what_is_no_file_of_keys_changes_nothing(data: bytes) -> None:
-    kept = keys.written([key(1)]).decode()
+    kept = keys.encode_keys([key(1)]).decode()
     answer = json.loads(worker.answer(json.dumps({"do": "import_keys", "kept": kept}), data))
     assert answer == {"count": None}
 

@@ -32,7 +32,7 @@ from tests.support.studio import (
 from tiniscript import compile, robots
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
-from tiniscript.studio.recordings import read
+from tiniscript.studio.recordings import decode
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
@@ -438,7 +438,7 @@ def events(page: Page) -> list[str]:
         page.locator("#runs_list li button", has_text="Save run").first.click()
     page.click("#runs_close")
     page.click("#side_real")
-    return [row.event for row in read(saved.value.path().read_bytes()).rows]
+    return [row.event for row in decode(saved.value.path().read_bytes()).rows]
 
 
 def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) -> None:

@@ -18,7 +18,7 @@ from tests.support.studio import Pages, asked, checked, image, in_phase, noted, 
 from tiniscript import check, compile
 from tiniscript.studio.building import MODULES
 from tiniscript.studio.checking import line
-from tools.builds.studio import found_tools
+from tools.builds.studio import find_tools
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -127,7 +127,7 @@ def test_a_link_says_from_where_it_opens() -> None:
     addresses = [word for row in REACHES.values() for word in row.split()]
     code = f"import {{ reachOf }} from './src/programs/reach.js';\n{json.dumps(addresses)}"
     completed = subprocess.run(
-        [*found_tools().node, "--input-type=module", "-e",
+        [*find_tools().node, "--input-type=module", "-e",
          f"{code}.forEach((each) => console.log(reachOf(each)));"],
         cwd=MODULES.parent, capture_output=True, text=True, check=True,
     )  # fmt: skip
@@ -246,7 +246,7 @@ PIXELS = """() => {
 
 def pictured(page: Page) -> str:
     completed = subprocess.run(
-        [*found_tools().node, "--input-type=module", "-e", READ],
+        [*find_tools().node, "--input-type=module", "-e", READ],
         cwd=MODULES.parent,
         input=str(page.evaluate(PIXELS)),
         capture_output=True,

@@ -13,7 +13,7 @@ from tests.studio.test_page_robot import running, value
 from tests.support.studio import in_phase, write
 from tiniscript import compile, robots
 from tiniscript.studio.playing import play, ready
-from tiniscript.studio.recordings import REAL, Row, head, read, written
+from tiniscript.studio.recordings import REAL, Row, decode, encode, head
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -67,7 +67,7 @@ def told(page: Page, said: str) -> None:
 
 def real(*rows: tuple[int, str], text: str = LOOKS) -> str:
     first = head(REAL, text, robots.load("tinibot"), compile(text).checksum)
-    return written(first, [Row(*row) for row in rows], rows[-1][0])
+    return encode(first, [Row(*row) for row in rows], rows[-1][0])
 
 
 def opened(page: Page, data: bytes | str, file: Path) -> None:
@@ -123,7 +123,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     in_phase(page, "ended")
     kept(page)
     data = saved(page, 0)
-    recording = read(data)
+    recording = decode(data)
     assert any(row.pressed is not None and row.pressed.keys for row in recording.rows)
     played = play(ready(recording)).parting
     assert played is not None and (played.what, played.agreed) == (
@@ -133,7 +133,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     opened(page, data, tmp_path / "run.tsr")
     told(page, f"The virtual robot did exactly the same again. Rows: {played.agreed}.")
     kept(page)
-    assert read(saved(page, 0)).rows == recording.rows
+    assert decode(saved(page, 0)).rows == recording.rows
     page.click("#runs_close")
 
 
@@ -158,7 +158,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     told(page, "Line 5: the robot says 6 after 0.5 s, the virtual one 5 after")
     names = kept(page)
     assert names[0].startswith("Run ") and "real robot" in names[0]
-    assert [row.event for row in read(saved(page, 0)).rows] == [event for _, event in changed]
+    assert [row.event for row in decode(saved(page, 0)).rows] == [event for _, event in changed]
     page.click("#runs_close")
     text = "SI|X = DISTANCE;\nSHOW(X)"
     opened(page, real((20, "SHOW 3"), text=text), tmp_path / "run.tsr")

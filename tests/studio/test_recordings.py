@@ -11,8 +11,8 @@ import pytest
 from tests.studio.runs_again import differs, recorded
 from tiniscript import compile, robots
 from tiniscript.studio import recordings
-from tiniscript.studio.playing import Parting, Played, play, ready
-from tiniscript.studio.recordings import BadRecording, Row, Rows, head, read, written
+from tiniscript.studio.playing import Parting, PlayedRun, play, ready
+from tiniscript.studio.recordings import BadRecording, Row, Rows, decode, encode, head
 
 LOOKS = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
 LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 8"), (2061, "DONE"))
@@ -28,12 +28,12 @@ def first(text: str = LOOKS, of: str = recordings.REAL, **more: Any) -> str:
 def file(*events: tuple[int, str], text: str = LOOKS, **more: Any) -> bytes:
     rows = [Row(*event) for event in events]
     end_ms = rows[-1].ms if rows else 0
-    return written(first(text, **more), rows, end_ms).encode()
+    return encode(first(text, **more), rows, end_ms).encode()
 
 
 def parting(*events: tuple[int, str], text: str = LOOKS) -> Parting:
     is_by_button = text.startswith("SB|")
-    played = play(ready(read(file(*events, text=text, is_by_button=is_by_button))))
+    played = play(ready(decode(file(*events, text=text, is_by_button=is_by_button))))
     assert played.parting is not None
     return played.parting
 
@@ -138,7 +138,7 @@ def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
 def test_the_virtual_robot_runs_no_longer_than_what_is_compared(
     text: str, events: tuple[tuple[int, str], ...]
 ) -> None:
-    played = play(ready(read(file(*events, text=text, is_by_button=True))))
+    played = play(ready(decode(file(*events, text=text, is_by_button=True))))
     assert played.parting is not None and played.parting.what == "same"
     assert played.robot.now_ms < 8700
 
@@ -152,7 +152,9 @@ def test_a_number_that_no_sensor_reads_is_as_near_as_it_can() -> None:
 def test_a_program_that_means_something_else_now_is_not_played() -> None:
     for text in ("SHOW(1)", "SHOW("):
         with pytest.raises(BadRecording, match="other_program"):
-            ready(read(file(*LINES).replace(json.dumps(LOOKS).encode(), json.dumps(text).encode())))
+            ready(
+                decode(file(*LINES).replace(json.dumps(LOOKS).encode(), json.dumps(text).encode()))
+            )
 
 
 # -- files of anybody -----------------------------------------------------------------------------
@@ -198,7 +200,7 @@ VIRTUAL = {"of": recordings.VIRTUAL}
 )  # fmt: skip
 def test_files_of_anybody_are_refused_with_a_reason(data: bytes, reason: str, line: int) -> None:
     with pytest.raises(BadRecording) as refused:
-        read(data)
+        decode(data)
     assert (refused.value.reason, refused.value.line) == (reason, line)
 
 
@@ -218,7 +220,7 @@ def test_a_file_with_any_change_is_refused_or_can_be_played() -> None:
             )
             data[at : at + rng.randint(0, 4)] = piece
         try:
-            recording = read(bytes(data))
+            recording = decode(bytes(data))
         except BadRecording as bad:
             outcomes.add(bad.reason)
             continue
@@ -232,9 +234,9 @@ def test_a_long_recording_ends_before_its_file_is_too_large() -> None:
     rows = Rows()
     added = [rows.add(Row(ms, f"READ DISTANCE {ms % 400}.5")) for ms in range(100_000)]
     assert rows.is_full and added == sorted(added, reverse=True)
-    data = written(first(), rows.rows, rows.rows[-1].ms).encode()
+    data = encode(first(), rows.rows, rows.rows[-1].ms).encode()
     assert len(data) < recordings.MOST_BYTES
-    assert read(data).rows == tuple(rows.rows)
+    assert decode(data).rows == tuple(rows.rows)
     short = Rows()
     assert short.add(Row(recordings.MOST_MS, "SHOW 1"))
     assert not short.add(Row(recordings.MOST_MS + 1, "SHOW 1"))
@@ -245,7 +247,7 @@ def test_a_long_recording_ends_before_its_file_is_too_large() -> None:
 
 def test_each_row_that_is_another_one_is_told() -> None:
     data, rows = recorded(3)
-    assert play(ready(read(data))).parting == Parting("again", len(rows))
+    assert play(ready(decode(data))).parting == Parting("again", len(rows))
     lines = data.decode().splitlines()
     for k, row in enumerate(rows):
         if k % max(1, len(rows) // 10):
@@ -253,7 +255,7 @@ def test_each_row_that_is_another_one_is_told() -> None:
         at = next(n for n, line in enumerate(lines) if line == recordings.line(row))
         for changed in ([recordings.line(Row(row.ms, "BEEP 1 1"))], []):
             other = "\n".join((*lines[:at], *changed, *lines[at + 1 :]))
-            there = play(ready(read(other.encode()))).parting
+            there = play(ready(decode(other.encode()))).parting
             assert there is not None and there.what == "otherwise" and there.agreed <= k
 
 
@@ -264,7 +266,7 @@ def test_a_run_is_the_same_again(number: int) -> None:
 
 def test_a_played_run_takes_nothing_of_who_looks_on() -> None:
     data, rows = recorded(5)
-    played = Played(ready(read(data)))
+    played = PlayedRun(ready(decode(data)))
     while not played.is_over:
         played.press(63, 100, 100)
         played.push()

@@ -13,7 +13,7 @@ from tools.builds import screenshot
 @pytest.mark.parametrize("scene", screenshot.SCENES)
 @pytest.mark.parametrize("language", screenshot.LANGUAGES)
 def test_a_picture_has_words_of_the_page_alone_and_is_shown(language: str, scene: str) -> None:
-    assert screenshot.stale(language, scene) == ""
+    assert screenshot.why_stale(language, scene) == ""
     with Image.open(screenshot.picture(language, scene)) as image:
         assert image.size == (screenshot.SIZE["width"], screenshot.SIZE["height"])
         assert len(json.loads(image.info[screenshot.KEPT])) > 12

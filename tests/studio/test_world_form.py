@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.texts import LANGUAGES
 from tiniscript.lessons import catalogue
-from tiniscript.lessons.variation import varied
+from tiniscript.lessons.variation import vary
 from tiniscript.studio import worker
 from tiniscript.studio.world_form import form_of, limits, toml_of
 from tiniscript.virtual import worlds
@@ -29,7 +29,7 @@ def is_near(one: Any, other: Any) -> bool:
 
 def shipped() -> list[World]:
     lessons = [catalogue.load(folder) for folder in catalogue.folders()]
-    return [*map(worlds.load, worlds.names()), *(varied(lesson, 3) for lesson in lessons)]
+    return [*map(worlds.load, worlds.names()), *(vary(lesson, 3) for lesson in lessons)]
 
 
 def test_the_text_of_a_form_is_the_same_world() -> None:

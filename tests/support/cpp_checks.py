@@ -44,11 +44,11 @@ from tiniscript.bytecode.image import (
     TASKS,
     ImageRefused,
     pack,
-    sealed,
     unpack,
+    with_checksum,
 )
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ESCAPED, FAULTS
-from tiniscript.bytecode.verify import Refused, loaded, verify
+from tiniscript.bytecode.verify import Refused, load_image, verify
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.runner import MachineOf
 from tiniscript.vm.state import DONE, FAULT, WAITING
@@ -378,7 +378,7 @@ def short_headers() -> Iterator[bytes]:
     """Yield images whose headers are too short by each number of bytes, with all else in order."""
     whole = pack("SI", 0, b"")
     for length in range(HEADER_BYTES):
-        yield sealed(whole[:5] + bytes([length]) + whole[6:])
+        yield with_checksum(whole[:5] + bytes([length]) + whole[6:])
 
 
 def check_images(machine: Process, seed: int, count: int) -> None:
@@ -408,7 +408,7 @@ def check_whole_images(machine: Process, seed: int, count: int) -> None:
     seen = set()
     for image, kit in images_of_programs(seed, count):
         for robot in (kit, changed_kit(rng, kit)):
-            ours = refusal_of(lambda data=image, kit=robot: loaded(data, kit))  # type: ignore[misc]
+            ours = refusal_of(lambda data=image, kit=robot: load_image(data, kit))  # type: ignore[misc]
             theirs = refusal_of(lambda data=image, kit=robot: machine.run(data, kit, senses))  # type: ignore[misc]
             assert ours == theirs, f"{image.hex(' ')}: {ours!r}, not {theirs!r}"
             seen.add(ours.partition(" ")[2].partition(" ")[0])

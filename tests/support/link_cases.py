@@ -30,21 +30,21 @@ from tests.machines.link import CppLink, Step
 from tests.support.casefile import ROOT
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
     FIRST_EVENT,
     LARGE_WINDOW,
     Malformed,
-    read,
-    written,
+    decode_payload,
+    encode_payload,
 )
 from tiniscript.link.receiver import LARGE_PACKET, SMALL_PACKET, Receiver
 from tiniscript.link.requests import OK
 from tiniscript.link.sender import Sender
 from tiniscript.link.session import Session
-from tiniscript.link.sharing.protocol import of_event
+from tiniscript.link.sharing.protocol import event_fields
 from tiniscript.link.statuses import name_of
 
 STEP_MS = 10
@@ -209,7 +209,7 @@ def meaning(packet: bytes) -> str:
         return ""
     if body[0] >= 0x41 or re.match(rb"[\r\n]*[ -~](?:[ -~\r\n]|\Z)", body):  # no frame begins so
         return repr(body.decode("latin-1"))
-    frame = decoded(body)
+    frame = decode_frame(body)
     return "damaged" if frame is None else frame_text(frame)
 
 
@@ -231,7 +231,7 @@ def frame_text(frame: Frame) -> str:
     if fields is None:
         return " ".join([*words, payload.hex(" ")]).strip()
     try:
-        values = read(fields, payload)
+        values = decode_payload(fields, payload)
     except Malformed:
         return " ".join([*words, "with a payload that does not fit"])
     return " ".join([*words, *(f"{name}={shown(value)}" for name, value in values.items())])
@@ -285,7 +285,9 @@ class SessionSide:
         self.session.receive(data, now_ms)
 
     def said(self) -> list[str]:
-        rows = [_said("tells " + event.name, of_event(event)) for event in self.session.events()]
+        rows = [
+            _said("tells " + event.name, event_fields(event)) for event in self.session.events()
+        ]
         for request in [
             pending_request for pending_request in self.pending if pending_request.outcome
         ]:
@@ -329,9 +331,9 @@ class HandSender:
             for field in message.request
             if field.name in texts
         }
-        payload = written(message.request, values)
+        payload = encode_payload(message.request, values)
         self.is_hello = name == "HELLO"
-        self.data = encoded(Frame(message.number, int(seq), int(epoch), payload))
+        self.data = encode_frame(Frame(message.number, int(seq), int(epoch), payload))
 
     def poll(self, now_ms: int) -> bytes:
         data, self.data = self.data, b""
@@ -452,7 +454,7 @@ def packets_of(
             continue
         row = f"{'text' if packet.is_text else 'frame'} {packet.length} {packet.data.hex(' ')}"
         if not packet.is_text:
-            row += " damaged" if decoded(packet.data) is None else " whole"
+            row += " damaged" if decode_frame(packet.data) is None else " whole"
         rows.append(row)
         left = held + 1
         if not held:

@@ -9,14 +9,14 @@ from tests.support.needs import need
 from tests.support.waiting import HANGS_S
 from tiniscript.studio.building import SOURCES
 from tools import CannotMake
-from tools.builds.studio import found_tools
+from tools.builds.studio import find_tools
 
 
 def in_node(script: Path, *words: str, given: str = "") -> list[str]:
     """Run a script with the folder of the page's sources and these words; return the lines that it
     prints. It reads `given` on its standard input."""
     try:
-        node = found_tools().node
+        node = find_tools().node
     except CannotMake as why:
         need(str(why))
     command = [*node, str(script), str(SOURCES / "src"), *words]

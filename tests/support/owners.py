@@ -10,9 +10,9 @@ import pytest
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.images import image_of
 from tiniscript import robots
-from tiniscript.link.authority import KeyRing, RobotKey, whose
+from tiniscript.link.authority import KeyRing, RobotKey, ownership_of
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, STATUS_NAMES
 from tiniscript.link.session import Session
 
@@ -47,7 +47,7 @@ class Keys(KeyRing):
         self.found = change(self.found)
         return True
 
-    def made(self, robot: int, which: int, name: str) -> RobotKey | None:
+    def create_pending_key(self, robot: int, which: int, name: str) -> RobotKey | None:
         if self.is_full:
             return None
         key = RobotKey(robot, which, bytes([self.next] * 16), name, True)
@@ -104,9 +104,9 @@ class Owned:
 
     def answer(self, frame: Frame | bytes) -> Frame | None:
         """Return what the robot answers a frame, or bytes of one."""
-        data = frame + b"\0" if isinstance(frame, bytes) else encoded(frame)
+        data = frame + b"\0" if isinstance(frame, bytes) else encode_frame(frame)
         found = [part for part in self.robot.wait(20, b"\0" + data).split(b"\0") if part]
-        return decoded(found[0]) if found else None
+        return decode_frame(found[0]) if found else None
 
     def asked(self, session: Session, name: str, payload: bytes) -> bytes:
         """Return what the robot answers the next frame of a session, which needs no seal."""
@@ -144,7 +144,7 @@ class Owned:
 def owner_of(table: Owned, session: Session) -> str:
     assert table.outcome(session, session.hello()) == "OK"
     assert session.robot
-    return whose(session.robot)
+    return ownership_of(session.robot)
 
 
 def state_of(table: Owned, session: Session) -> int:

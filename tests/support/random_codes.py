@@ -16,7 +16,7 @@ from tests.support.kits import KITS
 from tiniscript import compile_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.limits import TASKS
-from tiniscript.bytecode.image import HEADER_BYTES, pack, sealed
+from tiniscript.bytecode.image import HEADER_BYTES, pack, with_checksum
 from tiniscript.bytecode.opcodes import BY_NAME, UNO_OPS, Op
 
 _NEAR = (0, 1, 2, 3, 5, 499, 500, 501, 999, 1000, 1001, 1499, 1500, 1501, 2500, 46_340, 46_341,
@@ -362,4 +362,4 @@ def changed_image(rng: random.Random, data: bytes) -> bytes:
     elif rng.random() < 0.2:
         image += rng.randbytes(rng.randrange(3))
     is_mended = rng.random() < 0.8 and len(image) >= HEADER_BYTES
-    return sealed(bytes(image)) if is_mended else bytes(image)
+    return with_checksum(bytes(image)) if is_mended else bytes(image)

@@ -111,7 +111,7 @@ class RobotFleet:
 @contextmanager
 def known_fleet(kits: Sequence[Kit]) -> Iterator[RobotFleet]:
     """Have robots whose ports are remembered, and no other port: each would be waited for."""
-    with mock.patch.object(ports, "listed", list), RobotFleet(kits) as fleet:
+    with mock.patch.object(ports, "list_ports", list), RobotFleet(kits) as fleet:
         for pupil in fleet.pupils:
             known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
         yield fleet

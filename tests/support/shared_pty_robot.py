@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
 from tiniscript.link.port_connection import PortConnection
-from tiniscript.link.ports import opened
+from tiniscript.link.ports import open_port
 from tiniscript.link.session import Session
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.server import Server
@@ -18,7 +18,7 @@ class Shared:
 
     def __enter__(self) -> tuple[PtyRobot, Registration]:
         self.pty_robot = PtyRobot(KIT)
-        device = opened(self.pty_robot.port, 9600)
+        device = open_port(self.pty_robot.port, 9600)
         self.line = PortConnection(device, Session(1, 9600, KIT.fingerprint))
         self.server = Server(self.line, self.pty_robot.port, 9600, "link")
         return self.pty_robot, self.server.registration

@@ -6,7 +6,7 @@ real one is behind `tests/support/pty_robot.py`.
 
 from __future__ import annotations
 
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -15,7 +15,7 @@ from tiniscript.link.messages import (
     RESETS,
     STATES,
     STATUSES,
-    written,
+    encode_payload,
 )
 from tiniscript.link.requests import OK
 from tiniscript.robots import load
@@ -141,7 +141,7 @@ class Firmware(Nobody):
         said = b""
         while b"\0" in self._line:
             packet, _, self._line = self._line.partition(b"\0")
-            frame = decoded(packet) if packet else None
+            frame = decode_frame(packet) if packet else None
             if frame is not None and not frame.is_reply:
                 said += self._reply(frame)
         return said
@@ -161,13 +161,13 @@ class Firmware(Nobody):
             payload = bytes([self.refuses[0]]) + self.refuses[1].to_bytes(2, "little")
         elif message.name in ("HELLO", "STATUS", "PING"):
             known = {**self.hello, **self.counts}
-            payload += written(
+            payload += encode_payload(
                 message.reply,
                 {field.name: known[field.name] for field in message.reply if field.name in known},
             )
         else:
             payload = bytes([STATUSES["UNKNOWN_MESSAGE"], 0, 0])
-        return b"\0" + encoded(Frame(frame.number, frame.seq, 7, payload, is_reply=True))
+        return b"\0" + encode_frame(Frame(frame.number, frame.seq, 7, payload, is_reply=True))
 
 
 QUESTIONS = {BY_NAME[name].number for name in ("HELLO", "STATUS", "PING", "TRIM")}

@@ -43,7 +43,7 @@ class SimulatedWire(Wire):
         self.sent.append((self.baud, data))
         self._there += garbled(data, self.baud, self._speed())
 
-    def heard(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
+    def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
         if self.is_gone:
             raise OSError("gone")
         found, left = b"", wait_ms

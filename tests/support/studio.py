@@ -49,7 +49,7 @@ UPLOADS = 10  # after so many stops in a row the computer is not to blame
 
 def missing() -> str:
     """Return why the studio's page cannot be opened here, or nothing."""
-    return missing_browser() or studio.stale()
+    return missing_browser() or studio.why_stale()
 
 
 def missing_browser() -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import MESSAGES, SEALED_PAYLOAD_BYTES
 from tiniscript.link.seal import Seal
 
@@ -25,12 +25,12 @@ class Thief:
              "forged", "sealed by another key")
         )  # fmt: skip
         mine = chance.choice(self.there)
-        frame = decoded(mine)
+        frame = decode_frame(mine)
         assert frame
         if how == "replayed":
             return how, mine
         if how == "reflected":
-            back = decoded(chance.choice(self.back))
+            back = decode_frame(chance.choice(self.back))
             return how, wire_of(back._replace(is_reply=False)) if back else mine
         if how == "other session":
             return how, chance.choice(self.old)
@@ -62,8 +62,8 @@ class Thief:
             return how, wire_of(asked._replace(payload=whole, is_sealed=True))
         seal = Seal(chance.randbytes(16))
         seal.sent = 10_000
-        return how, wire_of(seal.closed(asked))
+        return how, wire_of(seal.seal_frame(asked))
 
 
 def wire_of(frame: Frame) -> bytes:
-    return encoded(frame)[:-1]
+    return encode_frame(frame)[:-1]

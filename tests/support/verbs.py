@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tiniscript.cli import options
-from tiniscript.cli.texts.options import of_verb
-from tiniscript.cli.texts.verbs import COMMANDS, typed
+from tiniscript.cli.texts.options import options_of
+from tiniscript.cli.texts.verbs import COMMANDS, command_words
 
 
 def parsers() -> dict[str, options.Options]:
@@ -14,8 +14,8 @@ def parsers() -> dict[str, options.Options]:
 
 def words_of(command: str) -> list[str]:
     """Return what is typed for a command; one that a value chooses has that still to come."""
-    flags = {flag for option in of_verb(command) if option.kind for flag in option.flags.split()}
-    return [word for word in typed(command).split() if word not in flags]
+    flags = {flag for option in options_of(command) if option.kind for flag in option.flags.split()}
+    return [word for word in command_words(command).split() if word not in flags]
 
 
 def values_of(parser: options.Options) -> dict[str, str]:

@@ -10,7 +10,7 @@ from tiniscript import Compiled, compile_text, robots
 from tiniscript.base.source import Source
 from tiniscript.library.compiling import compile_source
 from tiniscript.syntax.checksums import checksum_of, with_checksum
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 
 TINIBOT = robots.load("tinibot")
 LINE = "SI|F(2, 80)"
@@ -108,5 +108,5 @@ def test_in_a_comment_it_is_a_sign_like_others() -> None:
 
 def test_a_formatted_text_has_no_checksums_for_it_is_another_text() -> None:
     rows = [with_checksum("s // stop"), "// ~5", with_checksum("f(1,50)")]
-    text = formatted(Source("\n".join(rows)))
+    text = format_source(Source("\n".join(rows)))
     assert text == "S;  // stop\n// ~5\nF(1, 50);\n"

@@ -19,7 +19,7 @@ from tiniscript.base import kit
 from tiniscript.base.source import Source
 from tiniscript.base.words import ALIASES
 from tiniscript.diagnostics import codes
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 from tiniscript.syntax.lexer import END, NEWLINE, scan
 from tiniscript.syntax.parser import parse
 
@@ -28,7 +28,7 @@ PROGRAMS_PER_CHUNK = 150
 
 
 def after(text: str) -> str:
-    return formatted(Source(text))
+    return format_source(Source(text))
 
 
 def has_mistakes(text: str) -> bool:
@@ -308,7 +308,7 @@ def test_work_grows_with_the_text_and_no_faster(unit: str) -> None:
         before = sys.getprofile()
         sys.setprofile(called)
         try:
-            formatted(source)
+            format_source(source)
         finally:
             sys.setprofile(before)
         return count

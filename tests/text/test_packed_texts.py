@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tools.generate.packed_texts import DEEPEST, END, FIRST_LETTER, Pair, packed, unpacked
+from tools.generate.packed_texts import DEEPEST, END, FIRST_LETTER, Pair, pack, unpack
 from tools.generate.remark_tables import rows
 
 
@@ -12,8 +12,8 @@ from tools.generate.remark_tables import rows
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_what_a_robot_says_comes_back(language: str, is_small: bool) -> None:
     said = rows(language, is_small)
-    data = packed(said)
-    assert unpacked(data) == said
+    data = pack(said)
+    assert unpack(data) == said
     assert data.size < 0.75 * sum(len(text) + 1 for text in said)
 
 
@@ -33,13 +33,13 @@ def test_what_a_small_robot_never_says() -> None:
     [[""], ["", "A", ""], ["AAAAAAA", "AAA"], ["~"], ["abc" * 20, "bcab" * 9], ["x" * 200, "|}"]],
 )
 def test_texts_come_back(texts: list[str]) -> None:
-    assert unpacked(packed(texts)) == texts
+    assert unpack(pack(texts)) == texts
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_pairs_in_pairs_are_not_too_deep(language: str) -> None:
     """The robot's stack holds a call for each. No pair has an end."""
-    data = packed(rows(language))
+    data = pack(rows(language))
 
     def depth(code: int) -> int:
         return 0 if code >= FIRST_LETTER else 1 + max(map(depth, pair_of(code)))

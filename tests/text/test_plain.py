@@ -25,7 +25,7 @@ from tiniscript.bytecode.opcodes import BY_NAME, OPS
 from tiniscript.bytecode.verify import verify
 from tiniscript.codegen.text.line import PlainCode, plain_code
 from tiniscript.robots.text_levels import CODE_BYTES
-from tiniscript.semantics.task_copies import separated
+from tiniscript.semantics.task_copies import copy_defs_per_task
 
 TINIBOT, GRABBER = robots.load("tinibot").kit, robots.load("grabber").kit
 # what is for the optimising compiler alone: `docs/develop/text.md` has none of it
@@ -212,5 +212,7 @@ def test_programs_of_all_documents_do_the_same_in_plain_code() -> None:
         robot, senses = robot_and_senses(case)
         found = compiled(case)
         assert found.program is not None
-        if separated(found.program) == found.program:  # no robot that reads text has copies of DEFs
+        if (
+            copy_defs_per_task(found.program) == found.program
+        ):  # no robot that reads text has copies of DEFs
             check_same(found, robot.kit, senses)

@@ -30,7 +30,7 @@ from tiniscript.bytecode.verify import verify
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.codegen.text.memory import Reader as Model
 from tiniscript.diagnostics.codes import LEVEL_VALUES
-from tiniscript.library.compiling import analyzed
+from tiniscript.library.compiling import analyze
 from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD
 from tiniscript.syntax.lexer import scan
@@ -60,7 +60,7 @@ def reader_of(kit: Kit, room: int = LARGEST_ROOM) -> TextReader:
 def is_right(data: bytes, kit: Kit) -> bool:
     """Whether the compiler takes these bytes for a program."""
     try:
-        return analyzed(decode(data), kit).is_right  # what it says of a wrong one takes longest
+        return analyze(decode(data), kit).is_right  # what it says of a wrong one takes longest
     except Unreadable:
         return False
 

@@ -54,7 +54,7 @@ def texts() -> list[bytes]:
 @pytest.mark.skipif(bool(REASON), reason=REASON or "there is a chip")
 def test_the_chip_says_the_same() -> None:
     reader = TextReader(KIT, ROOM, NO_DEFS)
-    program = avr_bench.built("reader", avr_bench.SOURCES, "-Dtiniscript_with_remote")
+    program = avr_bench.build("reader", avr_bench.SOURCES, "-Dtiniscript_with_remote")
     head = pack("<HH", ROOM, len(kit_words(KIT))) + kit_words(KIT)
     request, expected, compared = head, list[list[int]](), 0
     for text in [*texts(), b""]:

@@ -20,7 +20,7 @@ from tiniscript.bytecode.image import GO, TASKS, unpack
 from tiniscript.bytecode.opcodes import BY_CODE, ESCAPE
 from tiniscript.cli.robot.event_printer import fault_sentence
 from tiniscript.link.messages import SAVED_STORED, STATUSES, TEXT_LEVEL, TEXT_LEVELS
-from tiniscript.robots.kinematics import START, moved
+from tiniscript.robots.kinematics import START, move_pose
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import wheels
 from tiniscript.virtual.robot import Settings, VirtualRobot
@@ -525,8 +525,8 @@ def test_a_simulated_body_goes_and_turns_as_its_kit_says(name: str) -> None:
     go_ms = profile.kit.go_ms(20_000, 60, turns=False)
     turn_ms = profile.kit.go_ms(90_000, 60, turns=True)
     assert go_ms is not None and turn_ms is not None
-    assert moved(profile.body, START, 60, 60, go_ms).x_cm == pytest.approx(20, abs=0.05)
-    assert moved(profile.body, START, 60, -60, turn_ms).heading == pytest.approx(-90, abs=0.3)
+    assert move_pose(profile.body, START, 60, 60, go_ms).x_cm == pytest.approx(20, abs=0.05)
+    assert move_pose(profile.body, START, 60, -60, turn_ms).heading == pytest.approx(-90, abs=0.3)
 
 
 @pytest.mark.parametrize(("text", "needs"), [(ALONE, GO), (BESIDE, GO | TASKS), ("W(0.1)", 0)])

@@ -11,10 +11,10 @@ import pytest
 from tests.support.virtual_robot import floor
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
-from tiniscript.robots.kinematics import Pose, moved
+from tiniscript.robots.kinematics import Pose, move_pose
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.driving import TOUCH_CM, Driving, Hull
-from tiniscript.virtual.geometry import Point, Segment, between, crosses, nearest, seen
+from tiniscript.virtual.geometry import Point, Segment, crosses, gap_between, nearest, nearest_seen
 from tiniscript.virtual.sensing import Sensing
 from tiniscript.virtual.world import World
 
@@ -38,8 +38,8 @@ def test_the_nearest_point_is_inside_or_an_end() -> None:
 def test_segments_cross_or_have_a_distance() -> None:
     assert crosses(ACROSS, Segment(Point(0, 0), Point(20, 0)))
     assert not crosses(ACROSS, Segment(Point(0, 0), Point(9, 0)))
-    assert between(ACROSS, Segment(Point(0, 0), Point(20, 0)))[0] == 0
-    assert between(ACROSS, Segment(Point(0, 0), Point(6, 3))) == (4, Point(10, 3), Point(6, 3))
+    assert gap_between(ACROSS, Segment(Point(0, 0), Point(20, 0)))[0] == 0
+    assert gap_between(ACROSS, Segment(Point(0, 0), Point(6, 3))) == (4, Point(10, 3), Point(6, 3))
 
 
 @pytest.mark.parametrize(
@@ -54,10 +54,10 @@ def test_segments_cross_or_have_a_distance() -> None:
     ],
 )
 def test_a_cone_sees_the_nearest_point_inside(heading: float, half: float, found: float) -> None:
-    least = seen([ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
+    least = nearest_seen([ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
     assert least == pytest.approx(found)
     for y in (-5, 5):  # what ends on the border
-        assert seen([Segment(Point(10, 0), Point(10, y))], Point(0, 0), 0, 0) == 10
+        assert nearest_seen([Segment(Point(10, 0), Point(10, y))], Point(0, 0), 0, 0) == 10
 
 
 # -- driving --------------------------------------------------------------------------------------
@@ -75,7 +75,7 @@ def test_where_nothing_is_in_the_way_the_way_is_that_of_the_wheels() -> None:
     for left, right, duration_ms in ways:
         found.set_motors(now_ms, left, right)
         now_ms += duration_ms
-        pose = moved(TINIBOT.body, pose, left, right, duration_ms)
+        pose = move_pose(TINIBOT.body, pose, left, right, duration_ms)
         assert found.go_on(now_ms) == pytest.approx(pose, abs=1e-6)
     assert found.bumps == 0
 

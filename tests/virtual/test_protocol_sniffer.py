@@ -15,8 +15,8 @@ from tests.virtual.test_simulator import PING, received, until, until_answered, 
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
-from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, PAYLOAD_BYTES, RUN, written
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
+from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, PAYLOAD_BYTES, RUN, encode_payload
 from tiniscript.link.session import Session
 from tiniscript.virtual import transports as limits
 from tiniscript.virtual.protocol_sniffer import LONGEST, is_for_robot
@@ -40,7 +40,7 @@ def tls_hello() -> bytes:
 
 def frame(name: str, epoch: int = 0, seq: int = 1, **values: int | bytes) -> bytes:
     message = BY_NAME[name]
-    return encoded(Frame(message.number, seq, epoch, written(message.request, values)))
+    return encode_frame(Frame(message.number, seq, epoch, encode_payload(message.request, values)))
 
 
 def program() -> bytes:
@@ -52,7 +52,7 @@ def program() -> bytes:
     versions = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR}
     hello = b"\0" + frame("HELLO", **versions, kit=kit.fingerprint, nonce=9)
     said = robot_in(floor()).step(500, hello)
-    epochs = {each.epoch for each in map(decoded, said.split(b"\0")) if each is not None}
+    epochs = {each.epoch for each in map(decode_frame, said.split(b"\0")) if each is not None}
     code = unpack(compile_text("SI|F(5,80)", kit).image).code
     return hello + frame("LIVE", epochs.pop(), 2, mode=RUN, code=code)
 
@@ -106,7 +106,7 @@ def test_all_frames_of_a_computer_are_for_a_robot() -> None:
         number = chance.choice(numbers)
         if number == BY_NAME["STATUS"].number:
             payload = b""
-        data = encoded(Frame(number, chance.randrange(256), chance.randrange(256), payload))
+        data = encode_frame(Frame(number, chance.randrange(256), chance.randrange(256), payload))
         firsts.append(b"\0" + data)
     for data in firsts:
         assert is_for_robot(data) is True, data.hex()

@@ -82,7 +82,7 @@ def does(talk: Talk, text: str) -> Did:
     robot.take_events()
     assert talk.upload(text).status == 0
     talk.wait(RUNS_MS)
-    state = robot.fault, robot.is_running, robot.ended_ms is None, robot.held
+    state = robot.fault, robot.is_running, robot.ended_ms is None, robot.saved_state
     return Did(trace(robot.take_events()), state, robot.pose, robot.actuators)
 
 

@@ -53,7 +53,7 @@ class Desk:
                 if event.name == "DONE":
                     return found
                 if isinstance(event, ShownEvent):
-                    show = self.finder.of(event)
+                    show = self.finder.show_of(event)
                     found.append((event.value // 1000, "" if show is None else show.text))
         return found
 

@@ -8,12 +8,12 @@ from collections.abc import Callable
 
 import pytest
 
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.virtual import transports as limits
 from tiniscript.virtual.simulator import FULL_BYTES, HEARTBEAT_MS, SILENT_S, Heartbeat, Simulator
 
-PING = b"\0" + encoded(Frame(BY_NAME["PING"].number, 1, 0))
+PING = b"\0" + encode_frame(Frame(BY_NAME["PING"].number, 1, 0))
 REST = b"the rest"
 TURNS = 3000  # far more than anything here takes
 

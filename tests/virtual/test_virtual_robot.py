@@ -14,7 +14,7 @@ from tests.support.virtual_robot import Talk, floor, robot_in, trace
 from tiniscript import compile_text, robots
 from tiniscript.base.trace import Ending, Senses
 from tiniscript.bytecode.image import pack, unpack
-from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
+from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, ownership_of
 from tiniscript.link.messages import (
     KEY_OWNER,
     LARGE_FRAME,
@@ -193,7 +193,7 @@ def test_a_saved_program_is_there_after_a_power_cycle() -> None:
     talk = Talk(robot)
     talk.upload("SB|F(0.1, 50)", runs=False)
     talk.wait(300)
-    assert robot.held == "STORED"
+    assert robot.saved_state == "STORED"
     memory = robot.memory
     robot.power_cycle()
     robot.step(robot.now_ms + 300)
@@ -217,7 +217,7 @@ def test_a_byte_that_is_saved_takes_its_time() -> None:
     talk.upload("SB|F(0.1, 50)", runs=False)
     talk.wait(300)
     talk.upload("SB|B(0.2, 70)", runs=False)
-    assert robot.held == "SAVING"
+    assert robot.saved_state == "SAVING"
     robot.step(robot.now_ms + 20)
     robot.power_cycle()
     robot.step(robot.now_ms + 300)
@@ -348,7 +348,7 @@ def test_it_runs_a_long_live_line() -> None:
 def owner_of(talk: Talk) -> str:
     talk.until(talk.session.hello())
     assert talk.session.robot
-    return whose(talk.session.robot)
+    return ownership_of(talk.session.robot)
 
 
 @pytest.mark.parametrize(("held_ms", "status"), [(HOLD_MS, "OK"), (PUSH_MS, "HOLD_BUTTON")])

@@ -21,7 +21,7 @@ from tiniscript.bytecode.disassembly import assemble, disassemble
 from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.bytecode.verify import verify
 from tiniscript.diagnostics.rendering import as_text, message
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 
 BATCH = 125
 PUSH32_BYTES = BY_NAME["PUSH32"].size
@@ -61,9 +61,9 @@ def check_program(seed: int) -> None:
     # a calculated constant of 32 bits may take more than the short ones that it is made of
     assert len(short.code) <= len(plain.code) + PUSH32_BYTES
     assert assemble(disassemble(short.code)) == short.code
-    laid_out = formatted(Source(text))
+    laid_out = format_source(Source(text))
     assert compile_text(laid_out, kit).image == short.image, f"seed {seed}, formatted:\n{text}"
-    assert formatted(Source(laid_out)) == laid_out
+    assert format_source(Source(laid_out)) == laid_out
 
 
 def check_broken(seed: int) -> None:

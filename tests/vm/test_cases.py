@@ -13,7 +13,7 @@ from tiniscript.bytecode.disassembly import assemble, disassemble
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.codegen.text.line import line_of, plain_code
 from tiniscript.diagnostics.rendering import as_text, message
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 
 CASES = all_cases()
 
@@ -86,7 +86,7 @@ def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
 
 @pytest.mark.parametrize("case", having("tiniscript", "formatted"))
 def test_formatted(case: Case, request: pytest.FixtureRequest) -> None:
-    expect(case, "formatted", formatted(compiled(case).source), request)
+    expect(case, "formatted", format_source(compiled(case).source), request)
 
 
 def disassemblies_alone() -> list[pytest.ParameterSet]:

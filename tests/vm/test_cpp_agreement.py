@@ -45,9 +45,17 @@ from tests.vm.test_cases import disassemblies_alone
 from tiniscript import compile_text
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.disassembly import assemble
-from tiniscript.bytecode.image import EVERYTHING, GO, HEADER_BYTES, REFUSALS, TASKS, pack, sealed
+from tiniscript.bytecode.image import (
+    EVERYTHING,
+    GO,
+    HEADER_BYTES,
+    REFUSALS,
+    TASKS,
+    pack,
+    with_checksum,
+)
 from tiniscript.bytecode.opcodes import BY_NAME, NEEDS_GO, OPS
-from tiniscript.bytecode.verify import RULES, loaded
+from tiniscript.bytecode.verify import RULES, load_image
 from tiniscript.vm.tasks import machine_of
 
 BATCH = 12_500
@@ -288,8 +296,8 @@ def test_needs_count_and_not_the_minor_version() -> None:
             for needs in (bit, 0):
                 changed = bytearray(whole)
                 changed[3], changed[14] = minor, needs
-                image = sealed(bytes(changed))
-                ours = cpp_checks.refusal_of(partial(loaded, image, KIT))
+                image = with_checksum(bytes(changed))
+                ours = cpp_checks.refusal_of(partial(load_image, image, KIT))
                 theirs = cpp_checks.refusal_of(partial(host().run, image, KIT, Senses()))
                 want = "OTHER_VERSION" if minor > 1 else "" if needs else "UNKNOWN_OPCODE"
                 assert ours == theirs and want in ours and bool(want) == bool(ours), (text, minor)
@@ -302,7 +310,7 @@ def test_long_images() -> None:
         for header_length in (HEADER_BYTES, 0xFF):
             head = bytearray(longest[:HEADER_BYTES])
             head[5], head[8:10] = header_length, struct_pack("<H", length)
-            image = sealed(bytes(head) + bytes(header_length - HEADER_BYTES + length))
+            image = with_checksum(bytes(head) + bytes(header_length - HEADER_BYTES + length))
             images = [image, image[:-1], image + b"x"]
             said = host().refusals(images)
             assert said == [cpp_checks.python_refusal(image) for image in images]

@@ -72,7 +72,7 @@ def chip(seed: int, blocks: int, detailed: int = NO_BLOCK) -> list[str]:
     codes = [BY_NAME[name].code for name in OPERATIONS]
     request = pack("<IHHH", seed, blocks, BLOCK, detailed)
     request += bytes((len(codes), *codes, len(EDGES))) + pack(f"<{len(EDGES)}i", *EDGES)
-    return avr_bench.run(avr_bench.built("arithmetic"), request)
+    return avr_bench.run(avr_bench.build("arithmetic"), request)
 
 
 def checksum(block: Sequence[Operation]) -> int:

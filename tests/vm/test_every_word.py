@@ -38,8 +38,8 @@ from tiniscript.base.words import (
     Argument,
     Word,
 )
-from tiniscript.codegen.sketch.writing import lacks, sketch_of
-from tiniscript.syntax.formatter import formatted
+from tiniscript.codegen.sketch.writing import missing_feature, sketch_of
+from tiniscript.syntax.formatter import format_source
 
 ROBOT = with_wide_kit()
 KIT = ROBOT.kit
@@ -64,13 +64,13 @@ def check(text: str) -> bool:
         for run in (run_python, run_host):
             got = run(image, KIT, SENSES)
             assert same(want, got), f"{text}\n{got}not\n{want}"
-    assert compile_text(formatted(Source(text)), KIT).image == compiled.image, text
+    assert compile_text(format_source(Source(text)), KIT).image == compiled.image, text
     blocks.check(text, KIT)
     check_line(text, KIT)
     check_program(text.encode(), KIT, SENSES)
     program = compiled.program
     assert program is not None
-    if lacks(program, KIT) is None:
+    if missing_feature(program, KIT) is None:
         assert sketch_of(compiled.source, program, ROBOT, "en")
     return True
 

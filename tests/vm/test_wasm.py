@@ -44,7 +44,7 @@ def test_the_module_is_made_from_these_sources(tmp_path: Path) -> None:
     for module in wasm.MODULES:  # which were made here, or somewhere else again
         kept = (ROOT / module.path).read_bytes()
         stale = f"{module.path} is stale. Run: {wasm.COMMAND}"
-        assert wasm.built(copy, module) == kept, stale
+        assert wasm.build(copy, module) == kept, stale
 
 
 @needs_zig
@@ -63,8 +63,8 @@ def test_another_machine_is_another_module(
     source.write_text(text.replace("kLateMs = 20", "kLateMs = 21"), encoding="utf-8")
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     monkeypatch.setattr(wasm, "ROOT", tmp_path)
-    built = cache(wasm.built)  # the same each time, as the test before this one says
-    monkeypatch.setattr(wasm, "built", built)
+    built = cache(wasm.build)  # the same each time, as the test before this one says
+    monkeypatch.setattr(wasm, "build", built)
     assert wasm.main(["--check"]) == 1
     output = capsys.readouterr().err
     assert output.count("stale. Run: python -m tools.builds.wasm") == len(modules)

@@ -43,7 +43,7 @@ MORE = {
 
 
 @lru_cache(maxsize=8)
-def built(name: str, sources: Path = SOURCES, *more: str, chip: str = CHIP) -> bytes:
+def build(name: str, sources: Path = SOURCES, *more: str, chip: str = CHIP) -> bytes:
     """Return `bench/NAME.cpp` with the machine of `sources`, an ELF file; `more` are flags."""
     code = [
         sources / "extras" / "bench" / f"{name}.cpp",

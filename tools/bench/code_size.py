@@ -15,7 +15,7 @@ from typing import NamedTuple
 from tests.support.casefile import documents, read
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
-from tiniscript.semantics.ir import every
+from tiniscript.semantics.ir import all_statements
 from tools import ROOT
 
 CASES = ROOT / "tests" / "cases"
@@ -68,7 +68,7 @@ def measure() -> Measured:
         assert compiled.program is not None
         programs += 1
         statements += len(compiled.program.procedures) + len(compiled.program.tasks)
-        statements += sum(1 for _ in every(compiled.program))
+        statements += sum(1 for _ in all_statements(compiled.program))
         code_bytes += len(compiled.code)
         opcodes.update(row.op.name for row in rows(compiled.code) if row.op)
     return Measured(programs, statements, code_bytes, opcodes)

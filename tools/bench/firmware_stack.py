@@ -25,7 +25,7 @@ from tiniscript.robots.text_levels import NO_TEXT, level_of
 from tools.uno import CYCLES_PER_MS, HERTZ, Stack, Uno
 
 LEAST_FREE = 150  # bytes
-FREE_FROM = "_end"  # the symbol after all variables
+HEAP_START_SYMBOL = "_end"  # the symbol after all variables
 RAM = 0x800000  # where avr-nm begins to count it
 BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
 CALLS = 8  # at once
@@ -58,22 +58,22 @@ def measure(firmware: Path, robot: Robot, board: str) -> Stack:
         firmware, board=BOARDS[board], baud=baud, tells_sleep=False, watches_stack=True
     ) as uno:
         surround(uno, robot)
-        wear_out(connected(uno, robot, keys=Keys()), robot)
-        return uno.stack(free_from(firmware))
+        wear_out(connect(uno, robot, keys=Keys()), robot)
+        return uno.stack(heap_start(firmware))
 
 
-def connected(uno: Uno, robot: Robot, baud: int = 0, keys: Keys | None = None) -> Wired:
+def connect(uno: Uno, robot: Robot, baud: int = 0, keys: Keys | None = None) -> Wired:
     """Let a board begin, and put a session at its line, with the robot's baud if none is given."""
     uno.run_ms(300)
     session = Session(1, baud or robot.board.baud, robot.kit.fingerprint, keys=keys)
     return Wired(uno, session)
 
 
-def free_from(firmware: Path) -> int:
+def heap_start(firmware: Path) -> int:
     """Return the first address of the RAM that only the stack uses."""
     text = subprocess.run(["avr-nm", firmware], capture_output=True, text=True, check=True).stdout
     rows = (row.split() for row in text.splitlines())
-    (address,) = [row[0] for row in rows if row[-1] == FREE_FROM]
+    (address,) = [row[0] for row in rows if row[-1] == HEAP_START_SYMBOL]
     return int(address, 16) - RAM
 
 
@@ -93,9 +93,9 @@ def pin(robot: Robot, number: int) -> str:
 def wear_out(wired: Wired, robot: Robot) -> None:
     uno, session, kit = wired.uno, wired.session, robot.kit
     button = pin(robot, robot.board.start_button)
-    must(wired, session.hello())
-    must(wired, session.name(b"sixteen letters!"))
-    must(wired, session.upload(longest(kit, robot.board.program_bytes)))
+    require_ok(wired, session.hello())
+    require_ok(wired, session.name(b"sixteen letters!"))
+    require_ok(wired, session.upload(longest_program(kit, robot.board.program_bytes)))
     noise = random.Random(1)
     for _ in range(30):  # while it drives, measures, plays, shows and is saved
         uno.send(noise.randbytes(20) + b"\0")
@@ -104,15 +104,15 @@ def wear_out(wired: Wired, robot: Robot) -> None:
     wired.run(300)
     uno.send(bytes(8))  # stopped in the interrupt
     wired.run(600)
-    must(wired, session.status())
-    must(wired, session.fetch())
-    must(wired, session.start())
+    require_ok(wired, session.status())
+    require_ok(wired, session.fetch())
+    require_ok(wired, session.start())
     wired.run(500)
     uno.run_ms(1300)  # and nobody is there any more
     wired.run(500)
-    must(wired, session.live(image_of(DIVIDES_BY_ZERO, kit).code))
+    require_ok(wired, session.live(image_of(DIVIDES_BY_ZERO, kit).code))
     wired.run(500)
-    must(wired, session.upload(longest(kit, robot.board.program_bytes), runs=False))
+    require_ok(wired, session.upload(longest_program(kit, robot.board.program_bytes), runs=False))
     wired.run(2500)  # it is saved
     claim(wired, button)
     if level_of(robot.board.chip, robot.board.discs is not None) is NO_TEXT:
@@ -132,10 +132,10 @@ def claim(wired: Wired, button: str) -> None:
     request = wired.session.claim(KEY_OWNER)
     wired.run(300)
     wired.uno.press(button, 2200)
-    must(wired, request)
-    must(wired, wired.session.identify())
-    must(wired, wired.session.trim())
-    must(wired, wired.session.disown(KEY_OWNER))
+    require_ok(wired, request)
+    require_ok(wired, wired.session.identify())
+    require_ok(wired, wired.session.trim())
+    require_ok(wired, wired.session.disown(KEY_OWNER))
 
 
 def type_deep(uno: Uno, kit: Kit) -> None:
@@ -144,11 +144,11 @@ def type_deep(uno: Uno, kit: Kit) -> None:
     Raises RuntimeError where one is not done.
     """
     uno.run_ms(4000)
-    before = len(uno.sent)
+    before = len(uno.sent_bytes)
     for text in TYPED:
         uno.send(text.encode())
         uno.run_ms(2 * len(text) + 400)
-    sentence = bytes(byte.value for byte in uno.sent[before:]).decode("latin-1")
+    sentence = bytes(byte.value for byte in uno.sent_bytes[before:]).decode("latin-1")
     for answer in ANSWERS:
         if answer not in sentence:
             raise RuntimeError(f"the robot has not said {answer} but {sentence}")
@@ -159,7 +159,7 @@ def drive_a_way(wired: Wired, robot: Robot) -> None:
     fault. Just before a byte comes an edge of the one, and in its interrupt one of the other.
     """
     text = "F(100 CM, 60) UNTIL(DISTANCE < 1)"
-    must(wired, wired.session.live(image_of(text, robot.kit).code))
+    require_ok(wired, wired.session.live(image_of(text, robot.kit).code))
     discs = robot.board.discs
     assert discs
     uno, bit = wired.uno, HERTZ / robot.board.baud
@@ -172,16 +172,16 @@ def drive_a_way(wired: Wired, robot: Robot) -> None:
     wired.run(1500)
 
 
-def must(wired: Wired, request: PendingRequest[Any]) -> None:
+def require_ok(wired: Wired, request: PendingRequest[Any]) -> None:
     status = wired.until(request)
     if status != 0:
         raise RuntimeError(f"the robot has answered {status}")
 
 
-def longest(kit: Kit, room: int) -> Image:
+def longest_program(kit: Kit, room: int) -> Image:
     """Return a program that fills a robot, goes as deep as one can, and uses all that there is."""
     more = 0
-    while len((larger := image_of(deep(kit, more + 1), kit)).code) <= room:
+    while len((larger := image_of(deep_program_text(kit, more + 1), kit)).code) <= room:
         more += 1
         image = larger
     return image
@@ -200,7 +200,7 @@ def all_devices(kit: Kit) -> list[str]:
     return [*reads, *sets]
 
 
-def deep(kit: Kit, more: int) -> str:
+def deep_program_text(kit: Kit, more: int) -> str:
     lines = ["X = 0; Y = 0", "DEF D1", *all_devices(kit)]
     lines += ["BEEP(0.02, 440 + X)", "SHOW(X * 1.5 / 7)", "END_DEF"]
     for number in range(2, CALLS + 1):

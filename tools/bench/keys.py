@@ -18,7 +18,7 @@ from tiniscript.link.messages import HOLD_MS
 from tiniscript.link.remote import GAP_MS, NOTHING, Pressed
 from tools import ROOT
 from tools.bench import page
-from tools.bench.firmware_stack import connected, must
+from tools.bench.firmware_stack import connect, require_ok
 from tools.bench.link import KIT, MOTORS, ROBOT, on_each_baud
 from tools.uno import CYCLES_PER_MS, Uno
 
@@ -52,9 +52,9 @@ class Hand:
         """Switch it on, and send it a program that reads a stick."""
         self._chance = random.Random(1)
         self._board = Uno(firmware, baud=baud, tells_sleep=False)
-        self._wired = connected(self._board, robots.load(ROBOT), baud)
-        must(self._wired, self._wired.session.hello())
-        must(self._wired, self._wired.session.upload(image_of(text, KIT)))
+        self._wired = connect(self._board, robots.load(ROBOT), baud)
+        require_ok(self._wired, self._wired.session.hello())
+        require_ok(self._wired, self._wired.session.upload(image_of(text, KIT)))
 
     def __enter__(self) -> Hand:
         return self
@@ -120,8 +120,8 @@ def print_figures(found: dict[int, list[list[float]]], _: Path) -> bool:
     """Print the figures, half and the slowest of each; return whether they are kept."""
     by_row = zip(*found.values(), strict=True)
     page.show("keys", [
-        (row, *(f"{statistics.median(ms):{form}} and {max(ms):{form}} ms" for ms in its))
-        for row, form, its in zip(ROWS, FORMS, by_row, strict=True)
+        (row, *(f"{statistics.median(ms):{form}} and {max(ms):{form}} ms" for ms in figures))
+        for row, form, figures in zip(ROWS, FORMS, by_row, strict=True)
     ])  # fmt: skip
     return all(is_kept(baud, *rows) for baud, rows in found.items())
 

@@ -54,7 +54,7 @@ class Wire:
             self._free_ms += self._byte_ms
             self._queue.append((self._free_ms + self._late_ms, byte))
 
-    def arrived(self, now_ms: int) -> bytes:
+    def receive(self, now_ms: int) -> bytes:
         result = bytearray()
         while self._queue and self._queue[0][0] <= now_ms:
             result.append(self._queue.popleft()[1])
@@ -68,7 +68,7 @@ def program(code_bytes: int) -> Image:
     return unpack(pack("SI", 0, moves + bytes([BY_NAME["STOP"].code]) * rest))
 
 
-def uploaded(
+def upload(
     robot: HostFirmware, kit: int, code_bytes: int, baud: int = BAUD,
 ) -> Took:  # fmt: skip
     """Upload a program to a robot that has just begun. Raises RuntimeError where it is not done."""
@@ -88,8 +88,8 @@ def uploaded(
             sent_bytes += len(data)
         there.send(data, now_ms)
         now_ms += 1
-        back.send(robot.step(there.arrived(now_ms)), now_ms)
-        session.receive(back.arrived(now_ms), now_ms)
+        back.send(robot.step(there.receive(now_ms)), now_ms)
+        session.receive(back.receive(now_ms), now_ms)
         if now_ms > MOST_MS:
             raise RuntimeError("the upload has no end")
     if request.outcome.status != OK:
@@ -110,7 +110,7 @@ def main() -> int:
     for code_bytes in (240, 1900, profile.board.program_bytes):
         robot = Esp32Robot(profile)
         robot.wait(300)
-        took = uploaded(robot, profile.kit.fingerprint, code_bytes)
+        took = upload(robot, profile.kit.fingerprint, code_bytes)
         robot.close()
         print(f"| {took.code_bytes} | {took.frames} | {took.sent_bytes} | {took.took_ms} ms "
               f"| {took.times:.2f} |")  # fmt: skip

@@ -20,7 +20,7 @@ from tiniscript import robots
 from tools import ROOT, uno
 from tools.bench import firmware_size, page, stops
 from tools.bench.compiler import PROGRAMS
-from tools.bench.firmware_stack import connected, must
+from tools.bench.firmware_stack import connect, require_ok
 from tools.uno import CYCLES_PER_MS, Uno
 
 PROJECT = ROOT / "vm_arduino"
@@ -61,13 +61,13 @@ class Figures(NamedTuple):
     stop: stops.Slowest
 
 
-def copied(project: Path) -> Path:
+def copy_project(project: Path) -> Path:
     return Path(shutil.copytree(PROJECT, project, ignore=shutil.ignore_patterns(".pio", "own.h")))
 
 
-def built(baud: int, folder: Path) -> Path:
+def build(baud: int, folder: Path) -> Path:
     """Return the firmware for a baud. Raises RuntimeError with the log."""
-    project = copied(folder / f"vm_arduino_{baud}")
+    project = copy_project(folder / f"vm_arduino_{baud}")
     kits = project / "src" / "boards" / "kits"
     header = (kits / "tinibot.h").read_text(encoding="utf-8")
     own, count = re.subn(r"kBaud = \d+;", f"kBaud = {baud};", header)
@@ -91,15 +91,15 @@ def first_move(board: Uno, since: int) -> int:
 
 def measure(firmware: Path, baud: int) -> Figures:
     with Uno(firmware, baud=baud) as board:
-        wired = connected(board, robots.load(ROBOT), baud)
-        must(wired, wired.session.hello())
-        start_ms = max(started(wired, 300 + k)[0] for k in range(UPLOADS))
-        live_us = max(started(wired, 300 + k, is_live=True)[1] for k in range(UPLOADS))
+        wired = connect(board, robots.load(ROBOT), baud)
+        require_ok(wired, wired.session.hello())
+        start_ms = max(measure_start(wired, 300 + k)[0] for k in range(UPLOADS))
+        live_us = max(measure_start(wired, 300 + k, is_live=True)[1] for k in range(UPLOADS))
     stop = stops.slowest(firmware, robots.load(ROBOT), "uno", baud)
     return Figures(start_ms, live_us, stop)
 
 
-def started(wired: Wired, wait_ms: int, *, is_live: bool = False) -> tuple[float, float]:
+def measure_start(wired: Wired, wait_ms: int, *, is_live: bool = False) -> tuple[float, float]:
     """Return ms from a frame's first start bit and us from its end to the pins.
 
     The frame is PROGRAM, or LIVE, which nothing runs before.
@@ -107,12 +107,12 @@ def started(wired: Wired, wait_ms: int, *, is_live: bool = False) -> tuple[float
     board, session = wired.uno, wired.session
     image = image_of(SHORT, KIT)
     if is_live:
-        must(wired, session.clear())
+        require_ok(wired, session.clear())
     board.run_to(board.cycle + wait_ms * PHASE_CYCLES)
     began = board.cycle
-    must(wired, session.live(image.code) if is_live else session.upload(image))
+    require_ok(wired, session.live(image.code) if is_live else session.upload(image))
     moved = first_move(board, began)
-    heard = [byte for byte in board.received if byte.cycle <= moved]
+    heard = [byte for byte in board.received_bytes if byte.cycle <= moved]
     ends = [k for k, byte in enumerate(heard[:-1]) if byte.value == 0]
     frame = heard[ends[-1] + 1 :]
     session.stop(wired.now_ms)
@@ -136,7 +136,7 @@ def on_each_baud(
         return 2
     with tempfile.TemporaryDirectory() as name:
         try:
-            found = {baud: measure(built(baud, Path(name)), baud) for baud in BAUDS}
+            found = {baud: measure(build(baud, Path(name)), baud) for baud in BAUDS}
             return int(not are_kept(found, Path(name)))
         except RuntimeError as failed:
             print(failed, file=sys.stderr)
@@ -157,7 +157,7 @@ def print_figures(found: dict[int, Figures], folder: Path) -> bool:
         (ROWS[3], *(f"{figure.stop.median_us:.1f} µs" for figure in figures)),
         (ROWS[4], *(f"{figure.stop.together_us:.1f} µs" for figure in figures)),
     ])  # fmt: skip
-    others = others_stopped(folder)
+    others = measure_other_stops(folder)
     page.show("link", [
         (row, f"{others[name].us:.1f} µs", f"{others[name].together_us:.1f} µs")
         for name, row in OTHERS.items()
@@ -165,12 +165,12 @@ def print_figures(found: dict[int, Figures], folder: Path) -> bool:
     late = [name for name, stop in others.items() if stop.us > STOP_US]
     if late:
         print(f"stops later than after {STOP_US} µs: {', '.join(late)}", file=sys.stderr)
-    return not late and all(is_kept(baud, its) for baud, its in found.items())
+    return not late and all(is_kept(baud, figure) for baud, figure in found.items())
 
 
-def others_stopped(folder: Path) -> dict[str, stops.Slowest]:
+def measure_other_stops(folder: Path) -> dict[str, stops.Slowest]:
     """Return the slowest stops of the other sketches, by environment, each at its robot's baud."""
-    project = copied(folder / "vm_arduino")
+    project = copy_project(folder / "vm_arduino")
     result = {}
     for name in (*OTHERS, *UNSHOWN):
         sketch = firmware_size.measure(name, project)

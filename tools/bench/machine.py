@@ -24,7 +24,7 @@ ROWS = ("TiniScript", "TiniScript, in the shipped sketch")
 def count(code: bytes, readings: Sequence[int], budget: int, *more: str) -> tuple[list[int], int]:
     """Return the values that the chip shows, and the cycles in `tick` in all."""
     request = pack(f"<BB{len(readings)}iH", budget, len(readings), *readings, len(code)) + code
-    text = avr_bench.run(avr_bench.built("cycles", avr_bench.SOURCES, *more), request)
+    text = avr_bench.run(avr_bench.build("cycles", avr_bench.SOURCES, *more), request)
     *shown, cycles, status = (line.split() for line in text)
     if status != ["STATUS", str(DONE)]:
         raise RuntimeError(f"the program did not end, or a tick was too long: {text[-5:]}")
@@ -59,7 +59,7 @@ def cycles() -> None:
         matches = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
         sketch = [f"{item:,.0f}" for item in matches]
     rows = zip(ROWS, (alone, sketch), strict=True)
-    page.show("machine", [(row, "thousandths", *its) for row, its in rows])
+    page.show("machine", [(row, "thousandths", *figures) for row, figures in rows])
     for why in filter(None, (avr_bench.missing(), uno.missing())):
         print(f"\n{why}")
 

@@ -37,7 +37,7 @@ def cells(row: str) -> list[str]:
     return [part.strip().replace("\\|", "|") for part in re.split(r"(?<!\\)\|", row)[1:-1]]
 
 
-def written(row: Sequence[str]) -> str:
+def format_row(row: Sequence[str]) -> str:
     return "".join(f"| {cell.replace('|', chr(92) + '|')} " for cell in row) + "|"
 
 
@@ -62,7 +62,7 @@ def show(name: str, found: Sequence[Sequence[str]], which: int = 0, keys: int = 
     Raises LookupError for a row that the page lacks, ValueError for one with more cells or fewer.
     """
     table = tables(name)[which]
-    placed = sorted((table.row_of(row[:keys]), written(row)) for row in found)
+    placed = sorted((table.row_of(row[:keys]), format_row(row)) for row in found)
     for place, row in placed:
         if len(cells(row)) != len(cells(table.rows[place])):
             raise ValueError(f"{PAGE.name} has other columns than {row}")

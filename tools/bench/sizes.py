@@ -226,12 +226,12 @@ def size(name: str, chip: str = AVR) -> Size:
     On the AVR the stack comes on top.
     """
     part = PARTS[name]
-    with_it, without = (_built(part, part.always + use, chip) for use in (part.use, ""))
+    with_it, without = (_build(part, part.always + use, chip) for use in (part.use, ""))
     return Size(with_it.flash - without.flash, with_it.ram - without.ram)
 
 
 @lru_cache
-def _built(part: Part, use: str, chip: str) -> Size:
+def _build(part: Part, use: str, chip: str) -> Size:
     program = part.program.replace("USE", use)
     if chip != AVR:
         return Size(*chips.size(EMULATED[chip], program, *part.folders))
@@ -240,15 +240,15 @@ def _built(part: Part, use: str, chip: str) -> Size:
     with tempfile.TemporaryDirectory() as folder:
         source, made = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(program, encoding="utf-8")
-        _finished(
+        _finished_code(
             "avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(made)
         )
-        sentence = _finished("avr-size", str(made))
+        sentence = _finished_code("avr-size", str(made))
     text, data, bss = (int(word) for word in sentence.splitlines()[1].split()[:3])
     return Size(text + data, data + bss)
 
 
-def _finished(*command: str) -> str:
+def _finished_code(*command: str) -> str:
     ran = subprocess.run(command, capture_output=True, text=True)
     if ran.returncode != 0:
         raise RuntimeError(f"{command[0]} fails:\n{ran.stderr[:4000]}")

@@ -14,7 +14,7 @@ from pathlib import Path
 from tests.machines.wired import Wired
 from tests.support.images import image_of
 from tiniscript import robots
-from tools.bench.firmware_stack import connected, must, pin
+from tools.bench.firmware_stack import connect, pin, require_ok
 from tools.bench.workloads import Work, check
 from tools.uno import Uno
 
@@ -44,7 +44,7 @@ def text_of(work: Work, has_loop: bool = True) -> str:
 def per_iteration(firmware: Path, work: Work) -> float:
     """Return the cycles of one time around the loop of a work. Raises WrongResult."""
     with Uno(firmware, baud=ROBOT.board.baud, tells_sleep=False) as board:
-        wired = connected(board, ROBOT)
+        wired = connect(board, ROBOT)
         if work.readings:
             board.analog(SENSOR_PIN, work.readings[0])
         with_loop, shown = _cycles(wired, text_of(work))
@@ -60,7 +60,7 @@ def _cycles(wired: Wired, text: str) -> tuple[int, list[object]]:
     image = image_of(text, ROBOT.kit)
     session.events()
     since = len(board.events)
-    must(wired, session.upload(image, saves=False, is_detached=True))
+    require_ok(wired, session.upload(image, saves=False, is_detached=True))
     if board.pins[motor].state == "pwm":
         board.run_until(motor, "low", WORK_MS)
     wired.run(SHOW_MS)

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from tests.support.images import image_of
 from tiniscript.base.kit import Kit
 from tiniscript.robots.profile import Robot
-from tools.bench.firmware_stack import BOARDS, SEEN_BITS, all_devices, connected, must, pin
+from tools.bench.firmware_stack import BOARDS, SEEN_BITS, all_devices, connect, pin, require_ok
 from tools.uno import CYCLES_PER_MS, HERTZ, Masked, Uno
 
 TEXT = b"// nobody reads that\n", b"// nor this line, which nobody ends"
@@ -82,9 +82,9 @@ class Busy:
         self._level = False  # of the discs
         for name in self._discs:
             self.chip.drive(name, self._level)
-        self._wired = connected(self.chip, robot, baud)
-        must(self._wired, self._wired.session.hello())
-        must(self._wired, self._wired.session.upload(image_of(busy(robot.kit), robot.kit)))
+        self._wired = connect(self.chip, robot, baud)
+        require_ok(self._wired, self._wired.session.hello())
+        require_ok(self._wired, self._wired.session.upload(image_of(busy(robot.kit), robot.kit)))
 
     def __enter__(self) -> Busy:
         return self
@@ -103,8 +103,8 @@ class Busy:
     def stop(self, place: Place) -> int:
         """Return the cycles of a stop whose last byte comes at a place."""
         chip, session = self.chip, self._wired.session
-        must(self._wired, session.clear())
-        must(self._wired, session.start())
+        require_ok(self._wired, session.clear())
+        require_ok(self._wired, session.start())
         chip.run_ms(QUIET_MS)  # nothing of the session is on the wire any more
         text = TEXT[place.at // FINE % len(TEXT)]
         if place.echo is not None:  # which the robot waits for only after a ping
@@ -144,7 +144,7 @@ class Busy:
     def together(self) -> int:
         """Return the cycles of a stop before which all comes that may: once, at its longest."""
         received = RECEIVED[self.chip.board]
-        spans = [item for item in self.chip.masked() if item.vector != received]
+        spans = [item for item in self.chip.longest_masked() if item.vector != received]
         entries = {span.vector: span.cycles for span in spans if _is_before(span, received)}
         before = max(
             span.cycles + sum(entries[vector] for vector in entries if vector != span.vector)
@@ -177,10 +177,10 @@ def slowest(firmware: Path, robot: Robot, board: str, baud: int) -> Slowest:
         if stopped.has_discs:
             for place in with_edges([center]):
                 stopped.stop(place)
-        return summed_up(stopped)
+        return sum_up(stopped)
 
 
-def summed_up(stopped: Busy) -> Slowest:
+def sum_up(stopped: Busy) -> Slowest:
     item = sorted(stopped.cycles)
     return Slowest(
         len(item), *map(_microseconds, (item[-1], item[len(item) // 2], stopped.together()))

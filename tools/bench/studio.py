@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 from tests.support import studio
 from tiniscript.studio import serving
 from tools.bench import page as page_of_figures
-from tools.builds.studio import PAGE, found_tools, size_rows
+from tools.builds.studio import PAGE, find_tools, size_rows
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -125,8 +125,8 @@ def main() -> None:
         studio.served() as server,
         studio.browser(driver, is_whole=True) as browser,
     ):
-        for rows in (_measured, _time_to_move, _drawing_cost):
-            matches += [(ROWS[name], *its) for name, *its in rows(browser, server.address)]
+        for rows in (_measure, _time_to_move, _drawing_cost):
+            matches += [(ROWS[name], *cells) for name, *cells in rows(browser, server.address)]
         slowest_ms = _stopped_ms(browser)
     with studio.served(_packed_files()) as server:
         rated = _lighthouse_scores(server.address).values()
@@ -138,15 +138,15 @@ def main() -> None:
         sys.exit(f"STOP ALL left the page after {slowest_ms:.0f} ms")
 
 
-def _measured(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
+def _measure(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
     visits = []
     for _ in range(VISITS):
-        with _visited(browser, address) as page:
+        with _visit(browser, address) as page:
             visits.append((page.evaluate("usable_ms"), _processor_s(page)))
     usable_ms, used_s = map(min, zip(*visits, strict=True))
     yield "usable", f"{usable_ms / 1000:.2f} s", "1 s"
     yield "compiled", f"{used_s:.2f} s", "2.5 s"
-    with _visited(browser, address) as page:
+    with _visit(browser, address) as page:
         each_ms = _typed_ms(page, False)
         yield "letter", f"{each_ms:.1f} ms", "16 ms"
         button_ms = _typed_ms(page, True) - each_ms
@@ -274,7 +274,7 @@ def _processor_s(page: Page) -> float:
 
 
 @contextmanager
-def _visited(browser: Browser, address: str) -> Iterator[Page]:
+def _visit(browser: Browser, address: str) -> Iterator[Page]:
     """A page of a new visitor whose program has been compiled."""
     context = browser.new_context(viewport={"width": 1366, "height": 768}, service_workers="block")
     page = context.new_page()
@@ -305,7 +305,7 @@ def _packed_files() -> dict[str, serving.File]:
 
 def _lighthouse_scores(address: str) -> dict[str, float]:
     """Return the median points of each of Lighthouse's categories."""
-    tools = found_tools()
+    tools = find_tools()
     call = [*tools.npm, "exec", "--yes", "--ignore-scripts", LIGHTHOUSE, "--", address,
             "--preset=desktop", "--quiet", "--output=json", f"--only-categories={','.join(RATED)}",
             f"--chrome-flags=--headless=new {' '.join(studio.WHOLE)}"]  # fmt: skip

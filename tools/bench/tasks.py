@@ -24,7 +24,7 @@ from tiniscript import robots
 from tiniscript.flash import building
 from tools import uno
 from tools.bench import avr_bench, firmware_size, page
-from tools.bench.firmware_stack import connected, must
+from tools.bench.firmware_stack import connect, require_ok
 from tools.bench.machine import BUDGET, count
 from tools.bench.sketch_cycles import SENSOR_PIN
 from tools.uno import CYCLES_PER_MS, Uno
@@ -102,9 +102,9 @@ def jitter_ms(firmware: Path, others: int) -> float:
         firmware, names=names, eeprom=Path(folder) / "eeprom",
         baud=ROBOT.board.baud, resets_on_open=False,
     ) as board:  # fmt: skip
-        wired = connected(board, ROBOT)
+        wired = connect(board, ROBOT)
         image = image_of(text, ROBOT.kit)
-        must(wired, wired.session.upload(image, saves=False, is_detached=True))
+        require_ok(wired, wired.session.upload(image, saves=False, is_detached=True))
         at_ms: list[float] = []
         for number in range(LOOKS):
             board.run_ms(LOOK_MS * number / LOOKS + 0.3)

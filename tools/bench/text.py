@@ -21,14 +21,14 @@ TRIES = 20  # the main loop is elsewhere each time: the slowest counts
 MUST_MS = 5.0  # for the short line
 
 
-def typed(board: Uno, line: str, wait: int) -> float:
+def typed_line_ms(board: Uno, line: str, wait: int) -> float:
     """Return the ms from the last byte of a line, its end, to the pins."""
     board.run_to(board.cycle + wait * PHASE_CYCLES)
     began = board.cycle
     board.send(line.encode() + b"\n")
     board.run_ms(3 * len(line) + 200)
     at = first_move(board, began)
-    heard = [byte for byte in board.received if began <= byte.began and byte.cycle <= at]
+    heard = [byte for byte in board.received_bytes if began <= byte.began and byte.cycle <= at]
     if len(heard) != len(line) + 1:
         raise RuntimeError(f"the robot moved after {len(heard)} of {len(line) + 1} bytes")
     board.send(b"S\n")
@@ -37,7 +37,7 @@ def typed(board: Uno, line: str, wait: int) -> float:
 
 
 def slowest(board: Uno, line: str) -> float:
-    return max(typed(board, line, 300 + k) for k in range(TRIES))
+    return max(typed_line_ms(board, line, 300 + k) for k in range(TRIES))
 
 
 def measure(firmware: Path, baud: int) -> list[float]:
@@ -53,8 +53,8 @@ def main() -> int:
 def print_figures(found: dict[int, list[float]], _: Path) -> bool:
     """Print the figures; return whether the short line's are kept."""
     by_line = zip(*found.values(), strict=True)
-    page.show("text", [(row, *(f"{ms:.2f} ms" for ms in its))
-                       for row, its in zip(ROWS, by_line, strict=True)])  # fmt: skip
+    page.show("text", [(row, *(f"{ms:.2f} ms" for ms in figures))
+                       for row, figures in zip(ROWS, by_line, strict=True)])  # fmt: skip
     return all(short_ms <= MUST_MS for short_ms, _ in found.values())
 
 

@@ -57,12 +57,12 @@ class Bench:
             command, env=self.environ, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
         )
 
-    def nothing_ms(self) -> float:
+    def measure_nothing_ms(self) -> float:
         begin_s = time.perf_counter()
         subprocess.run([sys.executable, "-c", "pass"], env=self.environ, check=True)
         return (time.perf_counter() - begin_s) * 1000
 
-    def moves_ms(self) -> float:
+    def measure_move_ms(self) -> float:
         """Return the time from the start of an upload to motion."""
         if self.start("stop").wait():
             raise RuntimeError("the robot did not stop")
@@ -80,8 +80,8 @@ class Bench:
 
 def measure(bench: Bench, runs: int) -> tuple[float, float]:
     """Return the medians (ms) of an upload and of a process that does nothing, taken in turn."""
-    bench.moves_ms()  # what is cached is cached now
-    matches = [(bench.moves_ms(), bench.nothing_ms()) for _ in range(runs)]
+    bench.measure_move_ms()  # what is cached is cached now
+    matches = [(bench.measure_move_ms(), bench.measure_nothing_ms()) for _ in range(runs)]
     moves_ms, nothing_ms = (statistics.median(item) for item in zip(*matches, strict=True))
     return moves_ms, nothing_ms
 
@@ -93,7 +93,7 @@ def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
     with RobotFleet([robots.load("tinibot").kit] * count) as room:
         ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
 
-        def took_ms(verb: tuple[str, ...], moves: bool) -> float:
+        def measure_ms(verb: tuple[str, ...], moves: bool) -> float:
             begin_s = time.perf_counter()
             command = subprocess.Popen(
                 [sys.executable, "-m", "tiniscript", *verb, *ports], env=environ,
@@ -106,8 +106,8 @@ def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
             return took_s * 1000
 
         for _ in range(runs):
-            moving.append(took_ms(UPLOAD, True))
-            stopping.append(took_ms(("stop",), False))
+            moving.append(measure_ms(UPLOAD, True))
+            stopping.append(measure_ms(("stop",), False))
     return statistics.median(moving), statistics.median(stopping)
 
 

@@ -62,7 +62,7 @@ class Robot(Talk):
             robot.power_cycle()
         super().__init__(robot)
 
-    def driven(self, text: str) -> tuple[float, float, float]:
+    def drive(self, text: str) -> tuple[float, float, float]:
         """Return how far a program leads ahead and aside, and how far it turns, to the left."""
         before = self.robot.pose
         self.upload(text, is_detached=True)
@@ -84,10 +84,10 @@ class Robot(Talk):
         self.until(self.session.trim(trim.data()))
         matches = []
         for power in (40, 80):
-            ahead, _, _ = self.driven(f"F(2, {power})")
+            ahead, _, _ = self.drive(f"F(2, {power})")
             matches.append(round(ahead / TAPE_CM) * TAPE_CM / 2)
         for power in (40, 80):
-            _, _, turned = self.driven(f"R(1, {power})")
+            _, _, turned = self.drive(f"R(1, {power})")
             matches.append(round(abs(turned) / PROTRACTOR) * PROTRACTOR)
         self.until(self.session.trim(trim._replace(pace=Pace(*matches)).data()))
 
@@ -97,12 +97,12 @@ def off(seed: int, slip: float, how: str) -> tuple[float, float, float]:
     one = Robot(seed, slip, how == "discs")
     if how == "time, calibrated":
         one.calibrate(seed)
-    ahead, aside, _ = one.driven(GO)
-    _, _, turned = one.driven(TURN)
+    ahead, aside, _ = one.drive(GO)
+    _, _, turned = one.drive(TURN)
     return abs(ahead - 100), abs(aside), abs(turned + 360)
 
 
-def worst(values: Sequence[float]) -> float:
+def worst_wanted(values: Sequence[float]) -> float:
     """Return what WANTED of the values are within."""
     return sorted(values)[WANTED * len(values) // 100 - 1]
 
@@ -138,7 +138,7 @@ def flash() -> int:
 def main(seeds: int = SEEDS, is_uno: bool = False) -> int:
     if is_uno:
         firmware = measure(ENVIRONMENT).firmware
-        result = Off.of(
+        result = Off.summarise(
             "discs", [off_uno(firmware, seed, SLIPS[0]) for seed in range(1, seeds + 1)]
         )
         along, aside, turn = result.cells()
@@ -149,7 +149,7 @@ def main(seeds: int = SEEDS, is_uno: bool = False) -> int:
     rows = []
     for how, (row, slips) in SHOWN.items():
         for slip in slips:
-            result = Off.of(how, [off(seed, slip, how) for seed in range(1, seeds + 1)])
+            result = Off.summarise(how, [off(seed, slip, how) for seed in range(1, seeds + 1)])
             rows.append((row, f"{100 * slip:g} %", *result.cells(), result.within))
             is_good = is_good and (result.is_good or slip != SLIPS[0])
     page.show("ways", rows, keys=2)
@@ -164,13 +164,15 @@ class Off(NamedTuple):
     is_good: bool
 
     @classmethod
-    def of(cls, how: str, found: Sequence[tuple[float, float, float]]) -> Off:
+    def summarise(cls, how: str, found: Sequence[tuple[float, float, float]]) -> Off:
         limits = LIMITS[how]
         ways = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in found)
         turns = sum(item[2] <= limits[2] for item in found)
         within = f"{ways} and {turns}" if limits[0] < math.inf else "-"
         is_good = 100 * min(ways, turns) >= WANTED * len(found)
-        return cls(tuple(worst(column) for column in zip(*found, strict=True)), within, is_good)
+        return cls(
+            tuple(worst_wanted(column) for column in zip(*found, strict=True)), within, is_good
+        )
 
     def cells(self) -> tuple[str, str, str]:
         along, aside, turn = self.worst

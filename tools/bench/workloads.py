@@ -77,7 +77,7 @@ def code_of(work: Work) -> bytes:
 
 
 @lru_cache
-def expected(work: Work) -> tuple[int, ...]:
+def expected_values(work: Work) -> tuple[int, ...]:
     """Return the values that the machine in Python shows, in thousandths."""
     *events, ending = run(code_of(work), KIT, Senses(KIT, {SENSOR: work.thousandths}))
     assert isinstance(ending, Ending) and ending.what == "DONE", ending
@@ -91,5 +91,5 @@ def expected(work: Work) -> tuple[int, ...]:
 
 def check(machine: str, work: Work, shown: Sequence[object]) -> None:
     """Raise WrongResult where a machine does not say the same as the one in Python."""
-    if tuple(shown) != expected(work):
-        raise WrongResult(f"{machine}, work {work.name}: {shown}, not {expected(work)}")
+    if tuple(shown) != expected_values(work):
+        raise WrongResult(f"{machine}, work {work.name}: {shown}, not {expected_values(work)}")

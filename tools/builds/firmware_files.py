@@ -21,7 +21,7 @@ from tiniscript.cli.firmware_build import on_boards
 from tiniscript.flash import building
 from tiniscript.flash.ready import FOLDER, NOTICE, name_of, title_of
 from tiniscript.library import install_advice
-from tiniscript.robots.profile import Robot, answered
+from tiniscript.robots.profile import Robot, answer_languages
 from tools import ROOT, CannotMake
 from tools.builds.platformio_offline import PROJECT, settings_for
 
@@ -44,12 +44,12 @@ tools/builds/firmware_files.py, which has made these, in TiniScript's source.
 """
 
 
-def shipped() -> list[Robot]:
+def shipped_robots() -> list[Robot]:
     """Return each shipped robot on each board that it fits, in each language."""
     return [
         robot
         for name in robots.names()
-        for language in answered()
+        for language in answer_languages()
         for robot in on_boards(name, language)
     ]
 
@@ -78,7 +78,7 @@ def build_all(target: Path, licence: Path) -> list[Path]:
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         new = Path(scratch) / "ready"
         new.mkdir()
-        paths = [build(robot, new) for robot in shipped()]
+        paths = [build(robot, new) for robot in shipped_robots()]
         (new / NOTICE).write_text(NOTICE_TEXT, encoding="utf-8")
         shutil.copy(licence, new / LICENCE_NAME)
         if target.exists():

@@ -94,7 +94,7 @@ def calls(disassembled: str, sections: list[Section]) -> list[Call]:
     return calls
 
 
-def far(order: list[int], among: list[Piece], all_calls: list[Call]) -> int:
+def count_far(order: list[int], among: list[Piece], all_calls: list[Call]) -> int:
     """Return how many calls lead far in an order."""
     begin = [0] * len(among)
     address = 0
@@ -107,7 +107,7 @@ def far(order: list[int], among: list[Piece], all_calls: list[Call]) -> int:
     )
 
 
-def moved(order: list[int], chance: random.Random) -> list[int]:
+def move_some(order: list[int], chance: random.Random) -> list[int]:
     """Return an order in which some neighbours lie elsewhere, or the other way round."""
     begin = chance.randrange(len(order))
     end = begin + chance.choice((1, 1, 1, 2, 3, 5, 8, 12))
@@ -119,14 +119,16 @@ def moved(order: list[int], chance: random.Random) -> list[int]:
     return rest[:begin] + some + rest[begin:]
 
 
-def best(among: list[Piece], all_calls: list[Call], tries: int, chance: random.Random) -> list[int]:
+def best_order(
+    among: list[Piece], all_calls: list[Call], tries: int, chance: random.Random
+) -> list[int]:
     """Search by simulated annealing."""
     order = result = list(range(len(among)))
-    now = least = far(order, among, all_calls)
+    now = least = count_far(order, among, all_calls)
     for number in range(tries):
         heat = 3.0 * (1 - number / tries) + 0.05
-        other = moved(order, chance)
-        count = far(other, among, all_calls)
+        other = move_some(order, chance)
+        count = count_far(other, among, all_calls)
         if count <= now or chance.random() < math.exp((now - count) / heat):
             order, now = other, count
             if now < least:
@@ -144,10 +146,10 @@ def main() -> int:
     command = ["avr-objdump", "-d", str(sketch.firmware)]
     completed = subprocess.run(command, capture_output=True, text=True, check=True)
     all_calls = calls(completed.stdout, sections)
-    order = best(among, all_calls, TRIES, random.Random(1))
+    order = best_order(among, all_calls, TRIES, random.Random(1))
     print(f"{sketch.flash:,} bytes before; calls that lead far: "
-          f"{far(list(range(len(among))), among, all_calls)} before, "
-          f"{far(order, among, all_calls)} then")  # fmt: skip
+          f"{count_far(list(range(len(among))), among, all_calls)} before, "
+          f"{count_far(order, among, all_calls)} then")  # fmt: skip
     text = SCRIPT.read_text(encoding="utf-8")
     before, after = text.index(BEGIN) + len(BEGIN), text.index(END)
     rows = "".join(f"    *({among[number].pattern})\n" for number in order)

@@ -91,7 +91,7 @@ def settings_for(project: Path, offline: bool) -> dict[str, str]:
     """Return the environment in which `pio` works, with everything made that it needs."""
     if importlib.util.find_spec("platformio") is None:
         raise CannotMake("PlatformIO is not installed. Try:  pip install platformio")
-    if why := needless(project, offline):
+    if why := why_needless(project, offline):
         say(f"nothing to do: {why}")
         return {}
     look_for_packages()
@@ -115,7 +115,7 @@ def say(text: str) -> None:
 # -- whether there is anything to do ------------------------------------------------------------
 
 
-def needless(project: Path, offline: bool) -> str:
+def why_needless(project: Path, offline: bool) -> str:
     """Return why PlatformIO needs no stand-ins here, or nothing."""
     platforms = Path(config_of(project).get("platformio", "platforms_dir")).resolve()
     if HOME in platforms.parents:
@@ -199,7 +199,7 @@ def refuse_others(project: Path) -> None:
             )
 
 
-def scons_wanted() -> tuple[str, str]:
+def wanted_scons() -> tuple[str, str]:
     """Return the version of the package tool-scons that PlatformIO wants, and that of SCons."""
     from platformio.dependencies import get_core_dependencies
 
@@ -248,12 +248,12 @@ PARTS = ("MAJOR", "MINOR", "PATCH")
 
 def stand_ins() -> Path:
     """Return the folder with the stand-ins; its name changes with all that they are made of."""
-    tool_version, scons_version = scons_wanted()
+    tool_version, scons_version = wanted_scons()
     scons = HOME / f"scons-{scons_version}"
     if not scons.exists():
         say(f"installing SCons {scons_version} from PyPI")
         make(scons, lambda new: install_scons(scons_version, new))
-    gcc_version = said_by(AVR_GCC, "-dumpversion")
+    gcc_version = query(AVR_GCC, "-dumpversion")
     arduino = re.search(r"^version=(\S+)", (ARDUINO / "platform.txt").read_text("utf-8"), re.M)
     arduino_version = arduino[1] if arduino else "0.0.0"
     key = hashlib.sha256(repr((tool_version, gcc_version, arduino_version)).encode())
@@ -315,7 +315,7 @@ def install_scons(version: str, folder: Path) -> None:
         raise CannotMake(f"pip could not install SCons {version}, the one that PlatformIO wants")
 
 
-def said_by(program: Path, option: str) -> str:
+def query(program: Path, option: str) -> str:
     return subprocess.run(
         [program, option], capture_output=True, text=True, check=True
     ).stdout.strip()

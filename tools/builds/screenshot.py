@@ -93,7 +93,7 @@ def main(arguments: list[str] | None = None) -> int:
             take(language, scene, picture(language, scene))
             print(f"wrote {picture(language, scene).relative_to(ROOT)}")
         return 0
-    wrong = [why for item in product(LANGUAGES, SCENES) if (why := stale(*item))]
+    wrong = [why for item in product(LANGUAGES, SCENES) if (why := why_stale(*item))]
     for why in wrong:
         print(f"screenshot: {why}", file=sys.stderr)
     return 1 if wrong else 0
@@ -344,7 +344,7 @@ def is_said(words: str) -> bool:
     return any(words in _shown_words(language) for language in languages())
 
 
-def stale(language: str, scene: str = "") -> str:
+def why_stale(language: str, scene: str = "") -> str:
     """Return why a picture is not one of this page, or nothing."""
     path = picture(language, scene)
     if not path.is_file():

@@ -25,7 +25,7 @@ from pathlib import Path
 from tiniscript.base.languages import SOURCE, about, languages, text
 from tools import ROOT, CannotMake
 from tools.builds import studio
-from tools.generate.built import built
+from tools.generate.built import build_all
 from tools.site import links, theme
 from tools.site.documents import FRONT, PARTS, Document, documents, sources
 from tools.site.pages import FILES, Place, Shelf, page, shelf
@@ -43,7 +43,7 @@ def main(words: Sequence[str] | None = None) -> int:
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         print(f"site: {folder} is there already, and is not empty.", file=sys.stderr)
         return 2
-    why = "" if options.no_studio else studio.stale()
+    why = "" if options.no_studio else studio.why_stale()
     if why:
         print(f"site: {why} Without it:  --no-studio", file=sys.stderr)
         return 2
@@ -68,7 +68,7 @@ def build(root: Path, folder: Path, has_studio: bool) -> None:
 
 
 def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
-    texts = built()
+    texts = build_all()
     result = documents(root, texts)
     on = shelf(root, result, texts)
     halves = halves_of(result)
@@ -92,7 +92,7 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     choice = choice.replace("STUDIO", link).replace("HALVES", rows)
     (folder / "index.html").write_text(choice, encoding="utf-8")
     (folder / ".nojekyll").touch()  # else some hosts leave out folders that begin with _
-    wrong = links.dead(folder)
+    wrong = links.dead_links(folder)
     if wrong:
         raise CannotMake("\n".join(wrong))
 

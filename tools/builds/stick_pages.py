@@ -19,11 +19,11 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from tiniscript import robots
-from tiniscript.base.languages import SOURCE, about, text, told_in
+from tiniscript.base.languages import SOURCE, about, text, translated_languages
 from tiniscript.lessons import catalogue
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.plan import plan_of
-from tools.generate.built import built
+from tools.generate.built import build_all
 from tools.site.documents import language_of, name_in, sources
 
 STYLE = """\
@@ -50,11 +50,13 @@ def make(root: Path, folder: Path) -> None:
     """Write all pages into a folder, with an index in each language."""
     pages = {path: path.read_text(encoding="utf-8")
              for path in (*root.glob("*.md"), *root.glob("docs/**/*.md"))}  # fmt: skip
-    pages |= {root / name: made for name, made in built().items() if name.endswith("command.md")}
+    pages |= {
+        root / name: made for name, made in build_all().items() if name.endswith("command.md")
+    }
     expected = {(root / name).resolve() for name in sources(root, POSTER).values()}
     titles: dict[str, str] = {}
     for source, markdown in pages.items():
-        body, title = rendered(markdown)
+        body, title = render(markdown)
         expected |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
         body = LINK.sub(partial(_to_page, folder=source.parent, documents=list(pages)), body)
         name = source.relative_to(root).as_posix()
@@ -67,9 +69,9 @@ def make(root: Path, folder: Path) -> None:
             shutil.copy(path, target)
         else:
             _write(target / "index.html", page(path.name, f"<p>{escape(path.name)}/</p>", SOURCE))
-    for language in told_in("documents", "stick/title"):
+    for language in translated_languages("documents", "stick/title"):
         for name in robots.names():
-            plan = plan_of(robots.load(name).speaking(language), language)
+            plan = plan_of(robots.load(name).with_language(language), language)
             _write(folder / "wiring" / f"{name}.{language}.html", html_of(plan))
         _write(folder / name_in(language, INDEX), _index(root, folder, language, titles))
 
@@ -83,7 +85,7 @@ def page(title: str, body: str, language: str) -> str:
     )
 
 
-def rendered(text: str) -> tuple[str, str]:
+def render(text: str) -> tuple[str, str]:
     """Return the HTML of a Markdown text, whose headings have names as on GitHub, and its title."""
     reader = MarkdownIt("commonmark", {"html": False}).enable("table")
     tokens = reader.parse(text)
@@ -124,7 +126,7 @@ def _index(root: Path, folder: Path, language: str, titles: dict[str, str]) -> s
     )
     others = " · ".join(
         f'<a href="{name_in(item, INDEX)}">{about(item).name}</a>'
-        for item in told_in("documents", "stick/title")
+        for item in translated_languages("documents", "stick/title")
         if item != language
     )
     rows = [f"<h1>{title}</h1>", f"<p>{others}</p>", f"<h2>{guides}</h2>", "<ul>"]

@@ -63,7 +63,7 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         if options.check or options.sizes:
-            why = stale(options.output)
+            why = why_stale(options.output)
             if why:
                 raise CannotMake(why)
         elif options.again:
@@ -80,7 +80,7 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def stale(page: Path = PAGE) -> str:
+def why_stale(page: Path = PAGE) -> str:
     """Return why the page that is there cannot be used, or nothing."""
     if not (page / STAMP).is_file():
         return f"the page is not built. Do that with:  {COMMAND}"
@@ -92,7 +92,7 @@ def stale(page: Path = PAGE) -> str:
 def build(page: Path = PAGE) -> None:
     """Build the page into a folder, which has nothing else then."""
     sources = building.digest()  # whoever changes one meanwhile builds again
-    tools = found_tools()
+    tools = find_tools()
     say(f"node {tools.version}")
     install(tools)
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
@@ -135,21 +135,23 @@ def put_own(page: Path) -> None:
     for name in COPIED:
         shutil.copyfile(SOURCES / "src" / name, page / Path(name).name)
     for code in languages():
-        for name, content in zip(said_in(code), (page_texts(code), messages(code)), strict=True):
+        for name, content in zip(
+            language_files(code), (page_texts(code), messages(code)), strict=True
+        ):
             whole = json.dumps(content, ensure_ascii=False, separators=(",", ":"))
             (page / name).write_text(whole, encoding="utf-8")
     html = (SOURCES / "src" / "index.html").read_text(encoding="utf-8")
-    html = html.replace("POLICY", POLICY).replace("COMING", coming())
+    html = html.replace("POLICY", POLICY).replace("COMING", coming_text())
     (page / "index.html").write_text(html, encoding="utf-8")
 
 
-def coming() -> str:
+def coming_text() -> str:
     """Return what the page says before a language is there: in each."""
     texts = [(code, page_texts(code)["page_waits"]) for code in languages()]
     return "".join(f'<span lang="{code}">{escape(str(text))}</span>' for code, text in texts)
 
 
-def said_in(language: str) -> tuple[str, str]:
+def language_files(language: str) -> tuple[str, str]:
     """Return the names of the files with what page and Python say in a language."""
     return f"texts.{language}.json", f"messages.{language}.json"
 
@@ -157,9 +159,9 @@ def said_in(language: str) -> tuple[str, str]:
 def build_again(page: Path) -> None:
     """Build the page's own files anew in a page that is there: for who changes no Python."""
     sources = building.digest()
-    tools = found_tools()
+    tools = find_tools()
     if not (page / STAMP).is_file():
-        raise CannotMake(stale(page))
+        raise CannotMake(why_stale(page))
     check_types(tools)
     for old in page.glob("*.js"):
         old.unlink()
@@ -207,8 +209,8 @@ def make_blockly() -> None:
     shutil.copyfile(BLOCKLY / "blockly.mjs", folder / "blockly.mjs")
 
 
-def found_tools() -> Tools:
-    tools = building.found_tools()
+def find_tools() -> Tools:
+    tools = building.find_tools()
     if tools is None:
         raise CannotMake(
             f"there is no node {building.OLDEST_NODE} or later. Install one:"
@@ -252,7 +254,7 @@ def offline(target: Path) -> None:
     whole = hashlib.sha256()
     for name in names:
         whole.update(f"{name}\0".encode() + hashlib.sha256((target / name).read_bytes()).digest())
-    said = {code: said_in(code) for code in languages()}
+    said = {code: language_files(code) for code in languages()}
     later = {name for code in said if code != SOURCE for name in said[code]}
     apart = {"index.html", LICENCES, FIRMWARE, *later}
     files = ["./", *(name for name in names if name not in apart)]

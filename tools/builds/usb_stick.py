@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import __version__
-from tiniscript.base.languages import SOURCE, text, told_in
+from tiniscript.base.languages import SOURCE, text, translated_languages
 from tiniscript.flash import ready
 from tools import ROOT, CannotMake
 from tools.builds import stick_pages, stick_wheels
@@ -45,7 +45,7 @@ class Missing(NamedTuple):
     what: str
     why: str
 
-    def said(self, language: str) -> str:
+    def sentence(self, language: str) -> str:
         return text("documents", f"stick/{self.key}", language).format(what=self.what)
 
 
@@ -79,7 +79,7 @@ def main(words: Sequence[str] | None = None) -> int:
     titles = ", ".join(SYSTEMS[system].title for system in systems)
     add_readme(folder, titles, ", ".join(pythons), missing)
     for item in missing:
-        print(f"missing: {item.said(SOURCE)} ({item.why})", file=sys.stderr)
+        print(f"missing: {item.sentence(SOURCE)} ({item.why})", file=sys.stderr)
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"{folder}: {size / 1e6:.0f} MB. Copy what is in it to the stick.")
     return 1 if missing else 0
@@ -148,11 +148,11 @@ def add_texts(folder: Path) -> None:
 
 def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missing]) -> None:
     parts = [f"TiniScript {__version__}\n{systems}\nPython {pythons}\n"]
-    for language in told_in("documents", "stick/title"):
+    for language in translated_languages("documents", "stick/title"):
         index = name_in(language, stick_pages.INDEX)
         lacks = text("documents", "stick/lacks", language)
         how = text("documents", "stick/readme", language).format(index=index)
-        rows = [how, *(lacks.format(what=item.said(language)) for item in missing)]
+        rows = [how, *(lacks.format(what=item.sentence(language)) for item in missing)]
         title = text("documents", "stick/title", language)
         parts.append("\n".join((title, "", *rows, "")))
     sentence = "\n".join(parts)

@@ -77,7 +77,7 @@ def main(arguments: list[str] | None = None) -> int:
     code = 0
     for module in MODULES:
         path = ROOT / module.path
-        result = built(ROOT / SOURCES, module)
+        result = build(ROOT / SOURCES, module)
         if path.exists() and path.read_bytes() == result:
             continue
         if only_check:
@@ -102,7 +102,7 @@ def missing() -> str:
     return f"ziglang {pin[1]} is needed, here is {result}. Run: pip install ziglang=={pin[1]}"
 
 
-def built(sources: Path, module: Module) -> bytes:
+def build(sources: Path, module: Module) -> bytes:
     """Return a module made from `sources`, a folder like `vm_arduino`.
 
     The compiler sees paths inside that folder alone, and keeps nothing from other builds.

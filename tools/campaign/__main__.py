@@ -20,7 +20,7 @@ from math import inf
 from tools import ROOT
 from tools.campaign import results
 from tools.campaign.goals import BY_NAME, GOALS, Goal
-from tools.campaign.results import Result, measured
+from tools.campaign.results import Result, figure_text
 
 FIRST_SEED = 100_001  # others than those of the tests
 
@@ -40,7 +40,7 @@ def main(arguments: list[str] | None = None) -> int:
     for goal in goals:
         result = done.get(goal.name)
         when = f"; {result.date}, code of {result.commit}" if result else ""
-        print(f"{goal.name:15} {goal.target:>11,} {goal.unit}: {measured(goal, result)}{when}")
+        print(f"{goal.name:15} {goal.target:>11,} {goal.unit}: {figure_text(goal, result)}{when}")
     return code
 
 

@@ -91,7 +91,7 @@ def git(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
 
 
-def measured(goal: Goal, result: Result | None) -> str:
+def figure_text(goal: Goal, result: Result | None) -> str:
     """Return the figure, that it is less than the goal where it is, and whether it is old."""
     if result is None:
         return "not run yet"
@@ -116,5 +116,5 @@ def rows() -> list[tuple[str, ...]]:
             seeds = f"{result.seed}" if last == result.seed else f"{result.seed} to {last}"
             about = ("-" if "{seed}" not in goal.command else seeds, result.date, result.commit)
         row = (f"`{goal.name}`", goal.guarantee, f"{goal.target:,} {goal.unit}")
-        outcome.append((*row, measured(goal, result), *about))
+        outcome.append((*row, figure_text(goal, result), *about))
     return outcome

@@ -24,7 +24,7 @@ from tools import ROOT
 from tools.generate import avr_header, built, cpp_header, link_header, remark_tables, text_tables
 from tools.generate.arena import world_picture
 from tools.generate.cpp_cases import cases_table
-from tools.generate.documents import DOCUMENTS, list_of_documents, spliced, table
+from tools.generate.documents import DOCUMENTS, list_of_documents, splice, table
 from tools.generate.driver_lists import with_drivers
 from tools.generate.front import fronts
 from tools.generate.guide_pictures import guide_pictures
@@ -89,7 +89,7 @@ def spec() -> str:
     """Return `bytecode_spec.md` with the tables that it takes from the compiler."""
     text = SPEC.read_text(encoding="utf-8")
     for name, made in SPEC_TABLES.items():
-        text = spliced(text, name, made())
+        text = splice(text, name, made())
     return text
 
 
@@ -241,7 +241,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
         (WIRED / f"{path.stem}.h", partial(robot_header, path))
         for path in sorted(ROBOTS.glob("*.toml"))
     ),
-    *((ROOT / name, make) for name, make in built.kept().items()),
+    *((ROOT / name, make) for name, make in built.makers_of_kept().items()),
 ]
 
 

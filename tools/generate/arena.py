@@ -32,7 +32,7 @@ class Way(NamedTuple):
     end: list[tuple[float, float]]
 
 
-def driven(program: str, robot: str, world: World, lasts_ms: int) -> Way:
+def drive_way(program: str, robot: str, world: World, lasts_ms: int) -> Way:
     """Drive for so many milliseconds of the robot's clock, and return the way."""
     result = tiniscript.compile(program, robot=robot)
     simulation = Simulation(robot, world, result.image)
@@ -112,7 +112,7 @@ def world_picture(command: str) -> str:
         scale = (COLUMN - 2 * PAD) / world.width_cm
         foot = PAD + world.height_cm * scale + 24
         bottom = max(bottom, foot)
-        way = driven((EXAMPLES / example).read_text("utf-8"), robot, world, 1000 * seconds)
+        way = drive_way((EXAMPLES / example).read_text("utf-8"), robot, world, 1000 * seconds)
         parts += arena(world, way, left, PAD, scale)
         parts.append(
             f'<text x="{left}" y="{foot:.0f}" font-family="{FONT}" font-size="15" fill="#37414b">'

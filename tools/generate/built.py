@@ -22,7 +22,7 @@ COMMAND = "python -m tools.generate"
 Made = dict[str, Callable[[], str]]
 
 
-def kept() -> Made:
+def makers_of_kept() -> Made:
     """Return how what is kept of these documents is made, by its name in a clone."""
     result = wiring_pages(COMMAND, is_kept=True)
     pages = {name: make for name, make in result.items() if name.startswith(f"docs/{SOURCE}/")}
@@ -32,7 +32,7 @@ def kept() -> Made:
     return pages | {name: make for name, make in result.items() if name in shown}
 
 
-def built() -> dict[str, str]:
+def build_all() -> dict[str, str]:
     """Return the documents of a site, by the names that they would have in a clone."""
     made = {
         name_in(language, "docs/en/command.md"): partial(page, language, COMMAND, table)

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from tiniscript.base.languages import text, told_in
+from tiniscript.base.languages import text, translated_languages
 from tiniscript.cli import help
 from tiniscript.cli.texts.options import Option, shown_of
-from tiniscript.cli.texts.verbs import NOTES, VERBS, of_verb, said, steps_of, typed
+from tiniscript.cli.texts.verbs import NOTES, VERBS, command_words, of_verb, steps_of, verb_text
 from tools.site.documents import links
 
 Table = Callable[[Sequence[str], Sequence[Sequence[object]]], str]
-DOCUMENTED = tuple(told_in("documents", "command/title"))
+DOCUMENTED = tuple(translated_languages("documents", "command/title"))
 
 
 def _text(key: str, language: str) -> str:
@@ -43,13 +43,13 @@ def _overview(language: str, table: Table) -> Iterator[str]:
             [_text(key, language) for key in ("command", "does")],
             [(f"`{typed}`", does) for typed, does in rows],
         )
-    yield from (said(note, language) for note in NOTES)
+    yield from (verb_text(note, language) for note in NOTES)
     yield _text("each", language)
     yield _options([option for option in shown_of("tsc") if option.verbs == "*"], language, table)
 
 
 def _command(command: str, language: str, table: Table) -> Iterator[str]:
-    yield f"{'##' if command in VERBS else '###'} `tsc {typed(command)}`"
+    yield f"{'##' if command in VERBS else '###'} `tsc {command_words(command)}`"
     yield "\\\n".join(f"`{way}`" for way in help.usage(command, language))
     yield of_verb(command, "says", language)
     own = [option for option in shown_of(command) if option.verbs != "*"]
@@ -57,7 +57,7 @@ def _command(command: str, language: str, table: Table) -> Iterator[str]:
     yield _options([option for option in own if not (is_apart and option.virtual)], language, table)
     virtual = [option for option in own if is_apart and option.virtual]
     if virtual:
-        yield said("virtual", language)
+        yield verb_text("virtual", language)
         yield _options(virtual, language, table)
     yield of_verb(command, "ends", language).replace("\n", "\\\n")
 

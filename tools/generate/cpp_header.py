@@ -283,7 +283,7 @@ def tables(command: str) -> str:
             ),
             array(
                 "kForms[][2]",
-                [(packed(form), names(same)) for form, same in rows.items()],
+                [(pack_form(form), names(same)) for form, same in rows.items()],
                 len(with_tasks),
             ),
             array(
@@ -315,7 +315,7 @@ def names(same: Sequence[opcodes.Op]) -> str:
     return ", ".join(op.name for op in same[:4]) + (" ..." if len(same) > 4 else "")
 
 
-def packed(form: DecodeForm) -> str:
+def pack_form(form: DecodeForm) -> str:
     roles = ("none", *opcodes.CONTROL_ROLES)
     assert form.size < 8 and form.pops < 4 and form.pushes < 2 and roles.index(form.role) < 32
     effects = form.pops << 6 | form.pushes << 5 | roles.index(form.role)

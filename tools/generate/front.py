@@ -19,7 +19,7 @@ from tiniscript.cli import main as tsc
 from tiniscript.robots.wiring.drawing import FONT
 from tiniscript.virtual import worlds
 from tools import ROOT
-from tools.generate.arena import Way, arena, driven
+from tools.generate.arena import Way, arena, drive_way
 from tools.site.documents import sources
 
 PROGRAM = ROOT / "examples" / "obstacle_until.ts"
@@ -57,7 +57,7 @@ def front(language: str, command: str) -> str:
 
 
 def _program() -> list[str]:
-    return [_row(PAD, PAD + 18 + ROW * at, _coloured(row)) for at, row in enumerate(_lines())]
+    return [_row(PAD, PAD + 18 + ROW * at, _color(row)) for at, row in enumerate(_lines())]
 
 
 def _lines() -> list[str]:
@@ -73,7 +73,7 @@ def _row(x: float, y: float, inside: str, size: int = 15) -> str:
     )
 
 
-def _coloured(row: str) -> str:
+def _color(row: str) -> str:
     code, slashes, note = row.partition("//")
     matches = [_span(_colour(part), part) for part in WORDS_AND_SIGNS.split(code)]
     return "".join([*matches, _span(DIM, slashes + note)])
@@ -120,7 +120,7 @@ def _console_lines(verb: str, program: str, language: str) -> list[str]:
 
 @cache
 def _driven_path() -> Way:
-    return driven(PROGRAM.read_text(encoding="utf-8"), ROBOT, worlds.load(WORLD), LASTS_MS)
+    return drive_way(PROGRAM.read_text(encoding="utf-8"), ROBOT, worlds.load(WORLD), LASTS_MS)
 
 
 def _arena(language: str) -> list[str]:

@@ -11,12 +11,12 @@ from functools import partial
 from html import escape
 
 from tiniscript.lessons import catalogue
-from tiniscript.lessons.variation import varied
+from tiniscript.lessons.variation import vary
 from tiniscript.robots.wiring.drawing import FONT
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
 from tools import ROOT
-from tools.generate.arena import FLOOR, WALL, WAY, arena, driven
+from tools.generate.arena import FLOOR, WALL, WAY, arena, drive_way
 from tools.site.documents import sources
 
 REFERENCE, GUIDE = "docs/en/language.md", "docs/en/monday.md"
@@ -72,7 +72,7 @@ def lesson(command: str) -> str:
     """Return three worlds of lesson 7, with the way of a right program in each."""
     folder = catalogue.folders()[6]
     found, program = catalogue.load(folder), catalogue.answers(folder)[0][0].program
-    runs = ((varied(found, k), program, 8000) for k in (1, 2, 3))
+    runs = ((vary(found, k), program, 8000) for k in (1, 2, 3))
     return _path_pictures(command, found.robot, *runs)
 
 
@@ -81,7 +81,7 @@ def _path_pictures(command: str, robot: str, *runs: tuple[World, str, int]) -> s
     side, parts = 330 if len(runs) == 1 else 240, []
     scale = side / max(runs[0][0].width_cm, runs[0][0].height_cm)
     for k, (world, program, lasts_ms) in enumerate(runs):
-        way = driven(program, robot, world, lasts_ms)
+        way = drive_way(program, robot, world, lasts_ms)
         parts += arena(world, way, PAD + k * (side + PAD), PAD, scale)
     width = (len(runs) - 1) * (side + PAD) + world.width_cm * scale
     return _svg(command, width, world.height_cm * scale, parts)
@@ -105,7 +105,7 @@ def hand(command: str) -> str:
     """Return what a robot before something shows when a guide asks it for the distance."""
     [line, said] = re.findall(r'tsc live "(SHOW\(.*?\))"\n(\w+ \d+)', _text(GUIDES["en"]))[0]
     world, scale = before(int(said.split()[1])), 4.0
-    way = driven(f"SI|{line}", "tinibot", world, 200)
+    way = drive_way(f"SI|{line}", "tinibot", world, 200)
     front, wall = (PAD + x * scale for x in (way.points[0][0] + FRONT, world.width_cm))
     y = PAD + world.height_cm / 2 * scale
     parts = arena(world, way, PAD, PAD, scale)

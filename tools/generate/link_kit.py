@@ -16,12 +16,12 @@ from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.bytecode.image import HEADER_BYTES, ImageRefused
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.bytecode.verify import Refused, loaded, verify
+from tiniscript.bytecode.verify import Refused, load_image, verify
 from tiniscript.conformance.kit import LINK_FORM, LINK_VERSION
 from tiniscript.link.messages import MAJOR, MINOR
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
-from tools.generate.machine_kit import STEPS, TINIBOT, USUAL, Run, arithmetic, documented
+from tools.generate.machine_kit import STEPS, TINIBOT, USUAL, Run, arithmetic, documented_runs
 
 LONGEST_MS = 3000
 MOST_SHOWS = 40
@@ -33,7 +33,7 @@ BYTES = re.compile(r"((?:[0-9a-f]{2} ?)+)(?:   (.*))?$")
 
 def link_kit(command: str) -> str:
     """Return the text of the file: a line for each case."""
-    runs = [run for run in documented() if run.when == USUAL and not run.needs]
+    runs = [run for run in documented_runs() if run.when == USUAL and not run.needs]
     runs += [run for run in arithmetic() if answers_fault(run)]
     parts = {
         "programs": list(programs(runs)),
@@ -55,7 +55,7 @@ def answers_fault(run: Run) -> bool:
 def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
     for run in runs:
         try:
-            image = loaded(run.image, run.kit)
+            image = load_image(run.image, run.kit)
         except (Refused, ImageRefused):
             continue
         code = image.code

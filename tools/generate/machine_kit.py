@@ -29,9 +29,9 @@ from tiniscript import compile_text, robots
 from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import assemble
-from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused, pack, sealed, unpack
+from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused, pack, unpack, with_checksum
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ISA_MAJOR, ISA_MINOR, SHORTS, Op
-from tiniscript.bytecode.verify import Refused, loaded
+from tiniscript.bytecode.verify import Refused, load_image
 from tiniscript.conformance.kit import FORM, VERSION
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, RUNNING, Robot
@@ -75,7 +75,7 @@ class Run(NamedTuple):
     slow: Mapping[str, tuple[int, int, int]] = {}
     text: str = ""
 
-    def called_every(self, every_ms: int) -> Run:
+    def call_every(self, every_ms: int) -> Run:
         name = f"{self.name} (called every {every_ms} ms)"
         return self._replace(name=name, when=(0, (every_ms,)))
 
@@ -118,7 +118,7 @@ def machine_kit(command: str) -> str:
 
 def runs() -> Iterator[Run]:
     """Return all that a machine is asked for, and some that never end."""
-    kinds = documented, times, late, devices, images, needs, arithmetic
+    kinds = documented_runs, times, late, devices, images, needs, arithmetic
     for kind in (*kinds, random_programs, task_programs, ways):
         yield from kind()
 
@@ -170,12 +170,12 @@ class SlowRobot(TracedRobot):
 
 def answer_of(
     run: Run,
-    loaded: Callable[[bytes, Kit], Image] = loaded,
+    load_image: Callable[[bytes, Kit], Image] = load_image,
     machine_of: Callable[[bytes, Robot, int, int, int], Machine] = machine_of,
 ) -> list[str] | None:
     """Return what the machine in Python answers; None where no step of it takes time."""
     try:
-        code = loaded(run.image, run.kit).code
+        code = load_image(run.image, run.kit).code
     except Refused as refused:
         return [f"REFUSED {refused.name} {refused.offset}"]
     except ImageRefused as refused:
@@ -211,7 +211,7 @@ def answer_of(
 # -- where cases come from ----------------------------------------------------------------------
 
 
-def documented() -> Iterator[Run]:
+def documented_runs() -> Iterator[Run]:
     """Return what the case files and the specification run or refuse."""
     paths = [*sorted(ROOT.glob("tests/cases/*.md")), ROOT / "bytecode_spec.md"]
     for case in (case for path in paths for case in read(path)):
@@ -225,9 +225,9 @@ def documented() -> Iterator[Run]:
             continue
         yield run._replace(name=f"{case.id} (time wraps around)", when=WRAPS)
         yield run._replace(name=f"{case.id} (called every 7 ms, time wraps around)", when=SELDOM)
-        yield run.called_every(LATE_MS)
+        yield run.call_every(LATE_MS)
         if run.needs & TASKS:
-            yield from (run.called_every(every_ms) for every_ms in OFTEN)
+            yield from (run.call_every(every_ms) for every_ms in OFTEN)
         if senses.readings:
             yield run.at(Pace(7, tuple(senses.readings), 50, 0, 30))
 
@@ -312,8 +312,8 @@ def devices() -> Iterator[Run]:
         ((f"_{k}", f"_{k}") for k in range(SHORTS)),
     ):
         for name in (f"READ{sensor}", f"PUSH_SENSOR{sensor}", f"SET{actuator}"):
-            code += assembled(name)
-        code += assembled(f"PUSH_READ{sensor}") + assembled("SHOW")
+            code += assemble_bytes(name)
+        code += assemble_bytes(f"PUSH_READ{sensor}") + assemble_bytes("SHOW")
     readings = {
         device.name: [0, 1, 1, 0] if device.is_yes_no else [1000 * k + many for many in range(4)]
         for k, device in enumerate(kit.sensors)
@@ -321,7 +321,7 @@ def devices() -> Iterator[Run]:
     yield Run("devices: 32 of each", kit, image_for(code, kit), Senses(readings))
 
 
-def assembled(text: str) -> bytes:
+def assemble_bytes(text: str) -> bytes:
     """Return the bytes of an instruction that has a device, or nothing, as operand."""
     name, _, device = text.partition(" ")
     return bytes([BY_NAME[name].code, *([int(device[1:])] if device else [])])
@@ -339,25 +339,25 @@ def images() -> Iterator[Run]:
         "waits for a button": pack("SB", 0, bytes.fromhex("440150")),
         "only PING": pack("PING", 0, b""),
         "PING with code": pack("PING", 0, b"\x58"),
-        "a start that is not known": changed(good, 4, 3),
-        "something of needs": changed(good, 14, 4),
-        "the last bit of needs": changed(good, 14, 128),
-        "an older major version": changed(good, 2, 1),
-        "a later major version": changed(good, 2, 3),
-        "a later minor version": changed(good, 3, ISA_MINOR + 1),
+        "a start that is not known": change_byte(good, 4, 3),
+        "something of needs": change_byte(good, 14, 4),
+        "the last bit of needs": change_byte(good, 14, 128),
+        "an older major version": change_byte(good, 2, 1),
+        "a later major version": change_byte(good, 2, 3),
+        "a later minor version": change_byte(good, 3, ISA_MINOR + 1),
         "another version, and nothing after it": b"TS\x01\x00",
         "another version, and no checksum": b"TS\x03" + good[3:10] + bytes(4) + good[14:],
-        "a header of 14 bytes": changed(good, 5, 14),
-        "a header of 0 bytes": changed(good, 5, 0),
+        "a header of 14 bytes": change_byte(good, 5, 14),
+        "a header of 0 bytes": change_byte(good, 5, 0),
         "more code than there may be": good[:8] + b"\x00\x80" + good[10:],
         "one byte more": good + b"\0",
         "one byte more, and a wrong checksum": good[:-1] + b"\0\0",
         "a letter of another kind": b"Ts" + good[2:],
         "one letter, another one": b"X",
         "nothing": b"",
-        "needs before the start": changed(changed(good, 14, 4), 4, 9),
-        "a checksum before needs": changed(good, 14, 4)[:-1] + b"\0",
-        "a start before a rule": changed(pack("SI", 0, b"\xff"), 4, 3),
+        "needs before the start": change_byte(change_byte(good, 14, 4), 4, 9),
+        "a checksum before needs": change_byte(good, 14, 4)[:-1] + b"\0",
+        "a start before a rule": change_byte(pack("SI", 0, b"\xff"), 4, 3),
         "a rule before another kit": pack("SI", 0x1234, b"\x92\xff"),
         "another sensor": pack("SI", 0x1234, bytes.fromhex("9a")),
         "devices where there are none": pack("SI", 1, bytes.fromhex("58")),
@@ -391,9 +391,9 @@ def compile_image(text: str) -> bytes:
     return compile_text(text, TINIBOT).image
 
 
-def changed(image: bytes, at: int, value: int) -> bytes:
+def change_byte(image: bytes, at: int, value: int) -> bytes:
     """Return an image with another byte, and the checksum that fits."""
-    return sealed(image[:at] + bytes([value]) + image[at + 1 :])
+    return with_checksum(image[:at] + bytes([value]) + image[at + 1 :])
 
 
 def arithmetic() -> Iterator[Run]:
@@ -444,7 +444,7 @@ def task_programs() -> Iterator[Run]:
         text, readings = task_program(rng)
         run = task_run(f"tasks: {seed}", text, readings)
         yield run
-        yield from (run.called_every(every_ms) for every_ms in OFTEN)
+        yield from (run.call_every(every_ms) for every_ms in OFTEN)
         yield run._replace(name=f"{run.name} (called every 7 ms, time wraps around)", when=SELDOM)
         yield run.at(a_pace(rng))
         run = task_run(f"tasks: rivals {seed}", *rival_program(rng))
@@ -476,7 +476,7 @@ def ways() -> Iterator[Run]:
         senses = FAR._replace(max_ms=5000)
         run = Run(f"ways: {text}", TINIBOT, compile_image(text), senses, text=text)
         yield run
-        yield run.called_every(LATE_MS)
+        yield run.call_every(LATE_MS)
     go, watch = BY_NAME["GO_F"].opcode, BY_NAME["WATCH_GO_R"].opcode
     two = bytes([BY_NAME["PUSH_NUM_2"].code, BY_NAME["PUSH_NUM_20"].code])
     for name, code, needs in (

@@ -35,7 +35,7 @@ class Packed(NamedTuple):
         return len(self.common) + 2 * len(self.pairs) + len(self.texts)
 
 
-def packed(texts: Sequence[str]) -> Packed:
+def pack(texts: Sequence[str]) -> Packed:
     """Return the texts in as few bytes as are found."""
     rows = [[*text.encode("ascii"), END] for text in texts]
     common = _most_common(rows)
@@ -47,7 +47,7 @@ def packed(texts: Sequence[str]) -> Packed:
     return min(candidates, key=lambda each: each.size)
 
 
-def unpacked(data: Packed) -> list[str]:
+def unpack(data: Packed) -> list[str]:
     """Return what packed texts say."""
     halves = [half for byte in data.texts for half in (byte >> 4, byte & 15)]
     texts, text, at = [], bytearray(), 0

@@ -11,8 +11,8 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
-from tiniscript.base.languages import found as translated
-from tiniscript.base.languages import text, told_in
+from tiniscript.base.languages import find_text as translated
+from tiniscript.base.languages import text, translated_languages
 from tiniscript.base.words import WORDS, Word
 from tools.generate import paper
 from tools.generate.paper import BOLD, MONO, SANS, Box, Line, Page
@@ -122,7 +122,7 @@ def posters(command: str) -> dict[str, Callable[[], str]]:
     """Return how the files of `docs/poster/` are made, by their names. `command` makes them."""
     return {
         f"poster.{language}.{form}": partial(poster, language, form, command)
-        for language in told_in("documents", "poster/title")
+        for language in translated_languages("documents", "poster/title")
         for form in ("svg", "pdf")
     }
 

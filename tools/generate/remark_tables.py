@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.codegen.text.problems import OF_DEFS, PROBLEMS, REMARKS, said
+from tiniscript.codegen.text.problems import OF_DEFS, PROBLEMS, REMARKS, problem_text
 from tiniscript.link.messages import LINK_FAULTS
-from tiniscript.robots.profile import answered, language_number
+from tiniscript.robots.profile import answer_languages, language_number
 from tiniscript.robots.text_levels import LEVELS
-from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, packed
+from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, pack
 from tools.generate.text_tables import bytes_of_table, file_of, numbers_of
 
 SMALLEST = "uno"
@@ -74,7 +74,7 @@ def rows(language: str, is_small: bool = False) -> list[str]:
     ]
     unsaid = _unused_remarks() if is_small else set()
     return [
-        *("" if row in unsaid else said(*row, language) for row in rows),
+        *("" if row in unsaid else problem_text(*row, language) for row in rows),
         *("" if ("fault", name) in unsaid else name for name in names),
     ]
 
@@ -103,7 +103,7 @@ def texts(command: str) -> str:
             "",
             "#ifdef tiniscript_has_discs",
             "",
-            *(row for item in answered() for row in (*_tables(item, rows(item)), "")),
+            *(row for item in answer_languages() for row in (*_tables(item, rows(item)), "")),
             "#else",
             "",
             "// An ATmega328P that reads text: what it never says is empty.",
@@ -111,7 +111,7 @@ def texts(command: str) -> str:
             "",
             *(
                 row
-                for item in answered()
+                for item in answer_languages()
                 for row in (*_tables(item, rows(item, is_small=True)), "")
             ),
             "#endif",
@@ -132,8 +132,8 @@ def texts(command: str) -> str:
 
 def _table_function(function: str, table: str, at: str = "") -> list[str]:
     """Return a function that has a table of the robot's language."""
-    first, *others = (f"k{item.title()}{table}" for item in answered())
-    numbers = [language_number(item) for item in answered()[1:]]
+    first, *others = (f"k{item.title()}{table}" for item in answer_languages())
+    numbers = [language_number(item) for item in answer_languages()[1:]]
     pairs = zip(numbers, others, strict=True)
     choice = "".join(f"robot_language() == 0x{number:04x} ? {other} : " for number, other in pairs)
     choice += first
@@ -147,7 +147,7 @@ def _table_function(function: str, table: str, at: str = "") -> list[str]:
 def _tables(language: str, rows: Sequence[str]) -> list[str]:
     """Return the texts of a language. On a board the linker leaves the others out."""
     language = language.title()
-    data = packed(rows)
+    data = pack(rows)
     lines = [data.texts[at : at + 16] for at in range(0, len(data.texts), 16)]
     return [
         f"const uint8_t k{language}[] tini_progmem = {{",

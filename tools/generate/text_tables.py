@@ -14,8 +14,8 @@ from tiniscript.base.limits import BLOCKS
 from tiniscript.base.words import ALIASES, WORDS, Word
 from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BY_NAME
-from tiniscript.codegen.text.problems import PROBLEMS, said
-from tiniscript.robots.kit_words import packed, packed_range
+from tiniscript.codegen.text.problems import PROBLEMS, problem_text
+from tiniscript.robots.kit_words import pack_range, pack_word
 from tiniscript.robots.text_levels import OF_TASKS_AND_WAYS, UNREAD
 from tools.generate.cpp_header import camel, cpp_file, enumeration
 
@@ -181,7 +181,7 @@ def words_tables(command: str) -> str:
         "",
         [
             "const uint8_t kWords[] tini_progmem = {",
-            *(f"    {bytes_of_table(packed(word.text))}  // {word.text}" for word in words),
+            *(f"    {bytes_of_table(pack_word(word.text))}  // {word.text}" for word in words),
             "    0,",
             "};",
             "",
@@ -190,7 +190,7 @@ def words_tables(command: str) -> str:
             "};",
             "",
             "const uint8_t kArgumentRanges[][8] tini_progmem = {",
-            *(f"    {{{bytes_of_table(packed_range(low, high))}}}," for low, high in ranges()),
+            *(f"    {{{bytes_of_table(pack_range(low, high))}}}," for low, high in ranges()),
             "};",
         ],
     )
@@ -204,7 +204,7 @@ def problems_header(command: str) -> str:
 
 def numbers_of(name: str, keys: Sequence[str]) -> str:
     """Return an enum of what a robot says, with its English texts."""
-    rows = [(key, k, said(name.lower(), key, SOURCE)) for k, key in enumerate(keys, 1)]
+    rows = [(key, k, problem_text(name.lower(), key, SOURCE)) for k, key in enumerate(keys, 1)]
     return enumeration(name, [("NONE", 0, ""), *rows]).rstrip("\n")
 
 

@@ -12,14 +12,14 @@ from functools import partial
 from itertools import product
 
 from tiniscript import robots
-from tiniscript.base.languages import told_in
+from tiniscript.base.languages import translated_languages
 from tiniscript.robots.wiring.drawing import drawing_of
 from tiniscript.robots.wiring.finished import finished_of
 from tiniscript.robots.wiring.page import Block, page_of
 from tiniscript.robots.wiring.plan import Plan, plan_of
 from tools.site.documents import links
 
-LANGUAGES = tuple(told_in("wiring", "title"))
+LANGUAGES = tuple(translated_languages("wiring", "title"))
 KEPT = (
     "`tsc firmware --wiring --robot {name} -o {name}.html` writes this page with a drawing of the"
     " finished robot; `--lang es` en español, `--lang pt` em português."

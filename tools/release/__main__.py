@@ -27,7 +27,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from tools import ROOT, CannotMake
-from tools.builds.studio import found_tools
+from tools.builds.studio import find_tools
 from tools.campaign import results
 from tools.release import facts
 from tools.release.packing import sha256
@@ -124,7 +124,7 @@ def lacks(parts: Sequence[str]) -> str:
             return f'{name} is not installed. Do that with:  pip install -e ".[{extra}]"'
     if "studio" in parts:
         try:
-            found_tools()
+            find_tools()
         except CannotMake as why:
             return str(why)
     return ""

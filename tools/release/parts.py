@@ -65,14 +65,14 @@ class Clone(NamedTuple):
             raise CannotMake(f"python {name} said:\n" + "\n".join(text[-12:]))
         return completed.stdout
 
-    def named(self, part: str) -> Path:
+    def file_of(self, part: str) -> Path:
         """Return the file of a part that is a folder."""
         return self.parts / f"tiniscript-{part}-{self.version}.zip"
 
 
 def firmware(clone: Clone) -> list[Path]:
     clone.python("-m", "tools.builds.firmware_files")
-    return [pack(clone.root / READY, clone.named("firmware"), clone.epoch)]
+    return [pack(clone.root / READY, clone.file_of("firmware"), clone.epoch)]
 
 
 def studio(clone: Clone) -> list[Path]:
@@ -105,7 +105,7 @@ def page(clone: Clone) -> list[Path]:
     stamp = clone.root / PAGE / "build.json"
     kept = stamp.read_bytes()
     stamp.unlink()  # says of which files it was built, not a file of the page
-    path = pack(clone.root / PAGE, clone.named("studio"), clone.epoch)
+    path = pack(clone.root / PAGE, clone.file_of("studio"), clone.epoch)
     stamp.write_bytes(kept)
     return [path]
 
@@ -123,7 +123,7 @@ def site(clone: Clone) -> list[Path]:
     folder = clone.parts / "site"
     no_studio = () if (clone.root / PAGE).is_dir() else ("--no-studio",)
     clone.python("-m", "tools.builds.site", str(folder), *no_studio)
-    path = pack(folder, clone.named("site"), clone.epoch)
+    path = pack(folder, clone.file_of("site"), clone.epoch)
     shutil.rmtree(folder)
     return [path]
 
@@ -137,7 +137,7 @@ def stick(clone: Clone) -> list[Path]:
     # 1: something could not be had, which the stick's README.txt then names
     good = (0, 1) if clone.whole_stick else (0,)
     clone.python("-m", "tools.builds.usb_stick", str(folder), *words, good=good)
-    path = pack(folder, clone.named("stick"), clone.epoch)
+    path = pack(folder, clone.file_of("stick"), clone.epoch)
     shutil.rmtree(folder)
     return [path]
 

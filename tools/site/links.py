@@ -35,7 +35,7 @@ class _Page(HTMLParser):
             self.links.append((address, is_fetched))
 
 
-def dead(folder: Path) -> list[str]:
+def dead_links(folder: Path) -> list[str]:
     """Return a line for each link that leads nowhere, and for each file from another origin.
 
     The studio's page is looked at, but not what its scripts do: its tests do that.

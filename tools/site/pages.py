@@ -15,7 +15,7 @@ from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
 from tiniscript.lessons import catalogue
-from tiniscript.lessons.catalogue import filled
+from tiniscript.lessons.catalogue import fill_numbers
 from tools import CannotMake
 from tools.site.documents import Document
 
@@ -85,7 +85,7 @@ def page(source: str, on: Shelf, place: Place | None = None) -> str:
     here = place or on.places[source]
     text = on.text(source)
     if (path.parent / "lesson.toml").is_file():
-        text = filled(text, source, catalogue.load(path.parent))
+        text = fill_numbers(text, source, catalogue.load(path.parent))
     for number, part in enumerate(_FENCED.split(text)):
         is_code = number % 2 == 1
         matches.append(

@@ -6,7 +6,7 @@ import html
 import re
 from pathlib import Path
 
-from tiniscript.base.languages import found
+from tiniscript.base.languages import find_text
 
 # A whole text between two tags, or a label.
 SAID = re.compile(r'(>\s*|(?:aria-label|title)=")([^<>"]*?)(\s*<|")')
@@ -16,7 +16,7 @@ def translate(folder: Path, language: str) -> None:
     """Say in a language what the theme says on the pages in a folder."""
 
     def own(match: re.Match[str]) -> str:
-        message = found("documents", f"theme/{html.unescape(match[2])}", language)
+        message = find_text("documents", f"theme/{html.unescape(match[2])}", language)
         return f"{match[1]}{html.escape(message)}{match[3]}" if message else match[0]
 
     for path in folder.rglob("*.html"):

@@ -133,7 +133,7 @@ def write(path: str, files: Files) -> None:
             archive.writestr(zipfile.ZipInfo(name, STAMP), data)
 
 
-def compiled(files: Files) -> Files:
+def compile_all(files: Files) -> Files:
     return {
         str(PurePosixPath(name).with_suffix(".pyc")): pyc(source, name)
         for name, source in files.items()
@@ -169,12 +169,12 @@ def pack(start: list[str], package: str, cobs: str, standard: str, target: str) 
     for name in (*start, *ENCODINGS, ROOT):
         packer.add(name)
     packed = set(packer.own)
-    write(f"{target}/tiniscript.zip", {**compiled(packer.own), **data_of(package, DATA)})
+    write(f"{target}/tiniscript.zip", {**compile_all(packer.own), **data_of(package, DATA)})
     packer.add(LESSONS)  # what of Python's library these need is in the archive of that
     lessons = {name: source for name, source in packer.own.items() if name not in packed}
     data = data_of(package, DATA_OF_LESSONS)
     data |= {name: on_page(page.decode()).encode() for name, page in data.items()
              if name.endswith(".md")}  # fmt: skip
-    write(f"{target}/lessons.zip", {**compiled(lessons), **data})
-    write(f"{target}/python.zip", compiled(packer.standard))
+    write(f"{target}/lessons.zip", {**compile_all(lessons), **data})
+    write(f"{target}/python.zip", compile_all(packer.standard))
     return f"{len(packer.own)} modules of tiniscript and cobs, {len(packer.standard)} of Python"

@@ -25,7 +25,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from tools.uno.build import built, missing
+from tools.uno.build import build, missing
 from tools.uno.log import CYCLES_PER_MS, HERTZ, Byte, Event, Masked, PinChange, Pins, Stack
 
 __all__ = [
@@ -81,7 +81,7 @@ class Uno:
         options += ["--watch-stack"] if watches_stack else []
         options += ["--watch-masked"] if watches_masked else []
         self._process = subprocess.Popen(
-            [built(), *options, firmware],
+            [build(), *options, firmware],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,
@@ -143,7 +143,7 @@ class Uno:
         self._print_state(f"run forever {speed}")
 
     @contextmanager
-    def aside(self) -> Iterator[None]:
+    def try_out(self) -> Iterator[None]:
         """Try something: after it the chip is where it was, and nothing of it has happened.
 
         The chip has paused before. It has no `eeprom` file, which would keep what was written.
@@ -230,17 +230,17 @@ class Uno:
         self._print_state(_at_cycle(at) + f"hold {'high' if level else 'low'} {bits}")
 
     @property
-    def sent(self) -> list[Byte]:
+    def sent_bytes(self) -> list[Byte]:
         """What the chip has sent."""
         return [Byte.of(event) for event in list(self.events) if event.what == "sent"]
 
     @property
-    def received(self) -> list[Byte]:
+    def received_bytes(self) -> list[Byte]:
         """What has come into the chip's buffer or shift register."""
         return [Byte.of(event) for event in list(self.events) if event.what == "received"]
 
     @property
-    def lost(self) -> bytes:
+    def lost_bytes(self) -> bytes:
         """What was received and then overwritten, because nobody fetched what was before it."""
         return bytes(int(event["byte"]) for event in list(self.events) if event.what == "lost")
 
@@ -263,7 +263,7 @@ class Uno:
 
     # -- interrupts ---------------------------------------------------------------------------
 
-    def masked(self) -> list[Masked]:
+    def longest_masked(self) -> list[Masked]:
         """Say for how long each place has kept interrupts off, at most.
 
         Needs `watches_masked`, which makes it about half as fast.

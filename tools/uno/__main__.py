@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import sys
 
-from tools.uno.build import built, missing
+from tools.uno.build import build, missing
 
 if why := missing():
     sys.exit(f"uno: {why}")
-os.execv(built(), [str(built()), *sys.argv[1:]])
+os.execv(build(), [str(build()), *sys.argv[1:]])

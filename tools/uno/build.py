@@ -30,7 +30,7 @@ def missing() -> str:
 
 
 @lru_cache(maxsize=1)
-def built() -> Path:
+def build() -> Path:
     """Return the program; what was made before from the same sources is used again.
 
     Several may build at the same time: each builds for itself, and the last one stays.

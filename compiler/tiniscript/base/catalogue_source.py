@@ -112,7 +112,7 @@ class Row:
         return True
 
 
-def decoded(path: Path) -> tuple[str, list[Problem]]:
+def decode_file(path: Path) -> tuple[str, list[Problem]]:
     """Return the text of a file, and what is wrong where it cannot be read, or is no UTF-8."""
     try:
         data = path.read_bytes()
@@ -140,7 +140,7 @@ def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
     while at < len(lines):
         is_row = _HEAD.match(lines[at]) is not None
         end = _end(lines, at) if is_row else at + 1
-        value, why = _parsed(block := "".join(lines[at:end]))
+        value, why = _parse_block(block := "".join(lines[at:end]))
         if why:  # the next row is what begins as one, whatever is open here
             problems.append((at + 1, f"this is no TOML: {why[1]}"))
             end = next((k for k in range(at + 1, len(lines)) if _is_head(lines[k])), len(lines))
@@ -167,18 +167,18 @@ def _is_head(line: str) -> bool:
 def _end(lines: list[str], at: int) -> int:
     """Return where a row ends: a text of several lines or a list goes on."""
     quotes = ""
-    if not _parsed(lines[at])[1]:
+    if not _parse_block(lines[at])[1]:
         return at + 1
     for k in range(at, len(lines)):
         if k > at and not quotes and (_is_head(lines[k]) or lines[k].strip()[:1] in ("", "#")):
-            if _is_head(lines[k]) or not _parsed("".join(lines[at:k]))[1]:
+            if _is_head(lines[k]) or not _parse_block("".join(lines[at:k]))[1]:
                 return k
         for item in _QUOTES.findall(lines[k]):
             quotes = "" if quotes == item else quotes or item
     return len(lines)
 
 
-def _parsed(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
+def _parse_block(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
     """Return what TOML says, or in which line after the first it is none, and why."""
     if sys.version_info >= (3, 11):
         import tomllib
@@ -194,7 +194,7 @@ def _parsed(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
 
 def _toml_problems(text: str) -> list[Problem]:
     """Return what is no TOML of a file each of whose rows is."""
-    _, why = _parsed(text)
+    _, why = _parse_block(text)
     return [(why[0] + 1, why[1])] if why else []
 
 
@@ -206,7 +206,7 @@ def _key(line: str) -> str:
 def load(path: Path) -> Catalogue:
     """Read the English texts of a file. What is wrong in it is a problem."""
     catalogue = Catalogue()
-    text, catalogue.problems = decoded(path)
+    text, catalogue.problems = decode_file(path)
     read, _, problems = rows(text)
     catalogue.problems += problems
     keys, firsts = set[str](), dict[tuple[str, str], Entry]()

@@ -167,7 +167,7 @@ def _take_place(new: Path, target: Path) -> None:
 
 
 @contextmanager
-def alone(path: Path, mode: int = 0o600) -> Iterator[None]:
+def lock_file(path: Path, mode: int = 0o600) -> Iterator[None]:
     """No other process that asks for the same changes a file meanwhile. Raises OSError.
 
     A process that ends unlocks what it has locked. One that stands still does not: then this ends
@@ -178,7 +178,7 @@ def alone(path: Path, mode: int = 0o600) -> Iterator[None]:
     number = os.open(lock, flags, mode)
     try:
         end_s = monotonic() + LOCK_S
-        while not is_locked(number):
+        while not try_lock(number):
             if monotonic() >= end_s:
                 raise TimeoutError(110, os.strerror(110))
             sleep(0.02)
@@ -187,7 +187,7 @@ def alone(path: Path, mode: int = 0o600) -> Iterator[None]:
         os.close(number)
 
 
-def is_locked(number: int) -> bool:
+def try_lock(number: int) -> bool:
     """Lock an open file for this process, unless another one has."""
     try:
         if sys.platform == "win32":

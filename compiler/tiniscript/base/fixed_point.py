@@ -27,7 +27,7 @@ def in_range(value: int) -> int:
     raise Fault("OVERFLOW")
 
 
-def divided(numerator: int, denominator: int) -> int:
+def quotient(numerator: int, denominator: int) -> int:
     """Return the quotient of two integers rounded half away from zero."""
     if denominator < 0:
         numerator, denominator = -numerator, -denominator
@@ -51,7 +51,7 @@ def multiply(a: int, b: int) -> int:
 def divide(a: int, b: int) -> int:
     if b == 0:
         raise Fault("DIVIDE_BY_ZERO")
-    return in_range(divided(a * ONE, b))
+    return in_range(quotient(a * ONE, b))
 
 
 def modulo(a: int, b: int) -> int:
@@ -82,10 +82,10 @@ def round_to(a: int, decimals: int) -> int:
     if places < -6:  # half of 10**7 is more than any number
         return 0
     unit: int = 10 ** (3 - places)
-    return in_range(divided(a, unit) * unit)
+    return in_range(quotient(a, unit) * unit)
 
 
-def limited(value: int, low: int, high: int) -> int:
+def clamp(value: int, low: int, high: int) -> int:
     """Return the number nearest to `value` from `low` to `high`."""
     return low if value < low else high if value > high else value
 

@@ -9,7 +9,7 @@ import zlib
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import Fault, divided, in_range, value_text
+from tiniscript.base.fixed_point import Fault, in_range, quotient, value_text
 from tiniscript.base.words import ROLES, Argument, Word
 
 NUMBER = "number"
@@ -107,7 +107,7 @@ class Kit(NamedTuple):
         per_second = (self.turn if turns else self.speed) * power  # in thousandths of a percent
         if not per_second:
             raise Fault("NO_POWER")
-        return in_range(divided(way * 100_000, per_second))
+        return in_range(quotient(way * 100_000, per_second))
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -59,7 +59,7 @@ class ByLanguage(dict[str, T]):
 def _with_name(name: T, language: str) -> T:
     if isinstance(name, dict):
         return {key: _with_name(value, language) for key, value in name.items()}  # type: ignore[return-value]
-    return found("names", name, language) or name  # type: ignore[arg-type, return-value]
+    return find_text("names", name, language) or name  # type: ignore[arg-type, return-value]
 
 
 @cache
@@ -96,7 +96,9 @@ def about(language: str) -> Language:
 @cache
 def _load_language(language: str) -> Language:
     path = FOLDER / language / ITSELF
-    return Language(*_cached(path.with_suffix(KEPT), [path], lambda: _catalogue_texts(language)))
+    return Language(
+        *_load_cached(path.with_suffix(KEPT), [path], lambda: _catalogue_texts(language))
+    )
 
 
 def _catalogue_texts(language: str) -> tuple[Any, ...]:
@@ -106,7 +108,7 @@ def _catalogue_texts(language: str) -> tuple[Any, ...]:
     return result.name, result.english_name, result.forms, result.form_of
 
 
-def found(name: str, key: str, language: str) -> str | None:
+def find_text(name: str, key: str, language: str) -> str | None:
     """Return a text of a catalogue, None where it has no such key, or one that counts."""
     text = catalogue(name, language).get(key)
     return text if isinstance(text, str) else None
@@ -114,7 +116,7 @@ def found(name: str, key: str, language: str) -> str | None:
 
 def text(name: str, key: str, language: str) -> str:
     """Return a text of a catalogue."""
-    result = found(name, key, language)
+    result = find_text(name, key, language)
     if result is not None:
         return result
     raise KeyError(key)
@@ -125,7 +127,7 @@ def keys(name: str) -> list[str]:
     return [key for key, said in catalogue(name, SOURCE).items() if isinstance(said, str)]
 
 
-def told_in(name: str, key: str) -> list[str]:
+def translated_languages(name: str, key: str) -> list[str]:
     """Return the languages in which a text is there, the one that is translated first."""
     english = text(name, key, SOURCE)
     return [
@@ -135,7 +137,7 @@ def told_in(name: str, key: str) -> list[str]:
     ]
 
 
-def counted(name: str, key: str, count: int, language: str) -> str:
+def plural_text(name: str, key: str, count: int, language: str) -> str:
     """Return the form of a text with a plural that goes with a number."""
     forms = catalogue(name, language)[key]
     assert isinstance(forms, dict), key
@@ -155,7 +157,9 @@ def catalogue(name: str, language: str) -> Texts:
         if not is_clone():
             return {}
     beside = (own.with_name(item) for item in (SEEN, ITSELF))
-    result: Texts = _cached(path, [*files(name, language), *beside], lambda: texts(name, language))
+    result: Texts = _load_cached(
+        path, [*files(name, language), *beside], lambda: texts(name, language)
+    )
     return result
 
 
@@ -169,18 +173,25 @@ def texts(name: str, language: str) -> Texts:
 def entries(name: str, language: str) -> Catalogue:
     """Return the English texts of a catalogue with what a language has of them."""
     from tiniscript.base.catalogue_source import load
-    from tiniscript.base.translations import Own, joined, named, read_language, read_own, read_seen
+    from tiniscript.base.translations import (
+        Own,
+        catalogue_of_names,
+        merge_translations,
+        read_language,
+        read_own,
+        read_seen,
+    )
 
     source, path = files(name, language)
     own = read_own(path) if language != SOURCE else Own()
-    english = load(source) if name != NAMES else named(own)
+    english = load(source) if name != NAMES else catalogue_of_names(own)
     for line, why in english.problems:
         raise WrongTexts(f"{source}:{line}: {why}")
     seen, _ = read_seen(path.with_name(SEEN))
-    return joined(english, name, own, seen, read_language(path.with_name(ITSELF)))
+    return merge_translations(english, name, own, seen, read_language(path.with_name(ITSELF)))
 
 
-def _cached(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
+def _load_cached(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
     """Return what is kept in a file if no source is newer, else make it, and keep it."""
     if _is_fresh(path, sources):
         with suppress(ValueError, EOFError, TypeError, OSError):  # half a file

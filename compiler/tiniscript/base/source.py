@@ -33,7 +33,7 @@ class Edit(NamedTuple):
     text: str
 
 
-def applied(text: str, edits: Iterable[Edit]) -> str:
+def apply_edits(text: str, edits: Iterable[Edit]) -> str:
     """Return the text with these changes. They must not overlap."""
     pieces, place = [], 0
     for span, new in sorted(edits):

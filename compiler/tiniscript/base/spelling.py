@@ -47,9 +47,9 @@ def _edits(one: str, other: str) -> int:
     last = list(range(len(other) + 1))
     for i, letter in enumerate(one, 1):
         row = [i]
-        for k, its in enumerate(other, 1):
-            least = min(last[k] + 1, row[k - 1] + 1, last[k - 1] + (letter != its))
-            if i > 1 and k > 1 and letter == other[k - 2] and its == one[i - 2]:
+        for k, other_letter in enumerate(other, 1):
+            least = min(last[k] + 1, row[k - 1] + 1, last[k - 1] + (letter != other_letter))
+            if i > 1 and k > 1 and letter == other[k - 2] and other_letter == one[i - 2]:
                 least = min(least, before_last[k - 2] + 1)
             row.append(least)
         before_last, last = last, row
@@ -87,13 +87,13 @@ class Speller:
                 for rest in _deletions(word):
                     self._by_rest.setdefault(rest, []).append(word)
 
-    def alike(self, word: str) -> str | None:
+    def find_sound_alike(self, word: str) -> str | None:
         """Return the word that sounds like `word`, or None."""
         if not _ALIKE <= len(word) <= _LONGEST:
             return None
         return next(filter(None, map(self._by_sound.get, _sound_keys(word))), None)
 
-    def near(self, word: str) -> str | None:
+    def find_near_miss(self, word: str) -> str | None:
         """Return a word that is one slip of the finger away from `word`, or None."""
         if not _SWAPPED <= len(word) <= _LONGEST or not word.isalpha():
             return None

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import limited, value_text, whole
+from tiniscript.base.fixed_point import clamp, value_text, whole
 from tiniscript.base.kit import Kit
 
 
@@ -91,5 +91,5 @@ class TracedRobot:
     def set(self, actuator: int, value: int) -> None:
         device = self.kit.actuators[actuator]
         if not device.is_yes_no:
-            value = limited(whole(value) * 1000, device.low, device.high)
+            value = clamp(whole(value) * 1000, device.low, device.high)
         self.say("SET", (actuator, value), f"SET {device.name} {device.text(value)}")

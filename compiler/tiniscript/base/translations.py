@@ -24,7 +24,7 @@ from tiniscript.base.catalogue_source import (
     Forms,
     Problem,
     Row,
-    decoded,
+    decode_file,
     gaps,
     rows,
 )
@@ -54,7 +54,7 @@ class Language:
 def read_language(path: Path) -> Language:
     """Read what a language says of itself; what it does not say is as in English."""
     language = Language(path.parent.name, path.parent.name)
-    text, language.problems = decoded(path)
+    text, language.problems = decode_file(path)
     read, _, problems = rows(text)
     language.problems += problems
     known: dict[str, Any] = {"name": str, "english_name": str, "read_by": str, "is_complete": bool,
@@ -104,7 +104,7 @@ def _form_of(rule: str, names: tuple[object, ...]) -> tuple[str, str]:
 def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
     """Return the hashes of a language by file and key, and what is wrong with the file of them."""
     found: dict[str, list[str]] = {}
-    text, problems = decoded(path) if path.is_file() else ("", [])
+    text, problems = decode_file(path) if path.is_file() else ("", [])
     for number, line in enumerate(text.split("\n"), 1):
         row = _SEEN.fullmatch(line)
         if not line.strip() or line[0] == "#":
@@ -134,7 +134,7 @@ def read_own(path: Path) -> Own:
     own = Own()
     if not path.is_file():
         return own
-    text, own.problems = decoded(path)
+    text, own.problems = decode_file(path)
     own.rows, own.below, problems = rows(text)
     own.problems += problems
     for row in own.rows:
@@ -162,17 +162,17 @@ def _forms(value: object) -> Forms | None:
     return None
 
 
-def named(own: Own) -> Catalogue:
+def catalogue_of_names(own: Own) -> Catalogue:
     """Return the texts of a file whose keys are the English texts."""
     return Catalogue({(key, key): Entry(key, key) for key in own.texts})
 
 
-def joined(
+def merge_translations(
     english: Catalogue, name: str, own: Own, seen: dict[str, list[str]], language: Language
 ) -> Catalogue:
     """Return English texts with those of a language, and what is wrong with these."""
     catalogue = Catalogue(
-        {at: untold(entry) for at, entry in english.entries.items()}, own.problems[:]
+        {at: without_translation(entry) for at, entry in english.entries.items()}, own.problems[:]
     )
     groups = catalogue.groups()
     for key, texts in own.texts.items():
@@ -196,7 +196,7 @@ def joined(
     return catalogue
 
 
-def untold(entry: Entry) -> Entry:
+def without_translation(entry: Entry) -> Entry:
     at = (entry.key, entry.english, entry.plural)
     return Entry(*at, notes=entry.notes, is_same=entry.is_same, like=entry.like, line=entry.line)
 

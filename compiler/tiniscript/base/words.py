@@ -184,9 +184,9 @@ def said_of(word: str, *kinds: str) -> tuple[str, ...]:
     return ()
 
 
-def shortened(word: str) -> list[str]:
+def expand_short(word: str) -> list[str]:
     """Return the commands that a word is short for in some language: E for W, and for L."""
-    return [it.value for it in lexicon().get(word, ()) if it.kind == "short"]
+    return [entry.value for entry in lexicon().get(word, ()) if entry.kind == "short"]
 
 
 def concept_of(word: str) -> str | None:
@@ -197,17 +197,17 @@ def concept_of(word: str) -> str | None:
     return None
 
 
-def names(word: str, argument: Argument) -> bool:
+def names_argument(word: str, argument: Argument) -> bool:
     """Whether a word is what documents and pupils call a value of a call: POTENCIA, VEL, T."""
     text = said_of(word, "value") or said_of(word, "letter")
     return text[:1] == (argument.name if argument in (LEFT, RIGHT) else argument.unit,)
 
 
-def said_instead(word: str) -> dict[str, str]:
+def hints_for_foreign(word: str) -> dict[str, str]:
     """Return what a message says of a word of another language that has no like here."""
     if word.startswith("MOTOR"):
         return {"motors": "M(left, right)"}
-    return {kind: its for kind, its in _INSTEAD.items() if said_of(word, kind)}
+    return {kind: hint for kind, hint in _INSTEAD.items() if said_of(word, kind)}
 
 
 def other_name(word: str) -> str:

@@ -103,7 +103,7 @@ def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int =
     assert len(code) <= CODE_BYTES
     values = (MAGIC, *isa_of(needs), STARTS.index(start), HEADER_BYTES + len(later),
               devices, len(code), 0, needs)  # fmt: skip
-    return sealed(struct_pack(_LAYOUT, *values) + later + code)
+    return with_checksum(struct_pack(_LAYOUT, *values) + later + code)
 
 
 def isa_of(needs: int) -> tuple[int, int]:
@@ -111,7 +111,7 @@ def isa_of(needs: int) -> tuple[int, int]:
     return ISA_MAJOR, 1 if needs else 0
 
 
-def sealed(image: bytes) -> bytes:
+def with_checksum(image: bytes) -> bytes:
     """Return an image with the checksum that fits the rest of it."""
     head, rest = image[:_CHECKSUM_AT], image[_AFTER_CHECKSUM:]
     return head + struct_pack("<I", zlib.crc32(head + rest)) + rest
@@ -145,7 +145,7 @@ def unpack(data: bytes, has: int = EVERYTHING) -> Image:
         raise ImageRefused("TRUNCATED")
     if len(data) > header_length + code_length:
         raise ImageRefused("TRAILING")
-    if checksum(sealed(data)) != found:
+    if checksum(with_checksum(data)) != found:
         raise ImageRefused("DAMAGED")
     if needs & ~has:
         raise ImageRefused("UNKNOWN_NEEDS", found=f"{needs:02x}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tiniscript.bytecode.disassembly import rows
 
 
-def begins(code: bytes) -> list[int]:
+def statement_starts(code: bytes) -> list[int]:
     """Return the offsets where a statement begins: the stack is empty there, and no AND_THEN or
     OR_ELSE is open. The check of an UNTIL or a WHEN begins one, too."""
     result: list[int] = []

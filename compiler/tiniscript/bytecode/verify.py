@@ -369,7 +369,7 @@ class _Verifier:
             self.refuse(rule)
         self.routine = _Routine(kind, self.after, self.target)
 
-    def ended(self, kind: str) -> _Routine:
+    def close_routine(self, kind: str) -> _Routine:
         """Close the open routine, and return it."""
         routine, self.routine = self.routine, self.main
         if not routine.end or routine.kind != kind:
@@ -388,36 +388,36 @@ class _Verifier:
 
 
 _STEPS: dict[str, Callable[[_Verifier], object]] = {
-    "end": lambda it: it.refuse("BAD_END"),
-    **dict.fromkeys(("value", "read", "plain"), lambda it: None),
+    "end": lambda verifier: verifier.refuse("BAD_END"),
+    **dict.fromkeys(("value", "read", "plain"), lambda verifier: None),
     "join": _Verifier.join,
-    "until": lambda it: it.end_check(_UNTIL),
+    "until": lambda verifier: verifier.end_check(_UNTIL),
     "watch": _Verifier.watch,
     "if": _Verifier.if_,
     "else": _Verifier.else_,
-    "forever": lambda it: it.open(_REPEAT, 0),
-    "count": lambda it: it.open(_COUNT, 0),
-    "while": lambda it: it.open(_REPEAT, it.target),
-    "loop": lambda it: it.open(_COUNT, it.target),
-    "again": lambda it: it.close(_REPEAT),
-    "next": lambda it: it.close(_COUNT),
-    "break": lambda it: it.leave(_REPEAT),
-    "drop": lambda it: it.leave(_COUNT),
+    "forever": lambda verifier: verifier.open(_REPEAT, 0),
+    "count": lambda verifier: verifier.open(_COUNT, 0),
+    "while": lambda verifier: verifier.open(_REPEAT, verifier.target),
+    "loop": lambda verifier: verifier.open(_COUNT, verifier.target),
+    "again": lambda verifier: verifier.close(_REPEAT),
+    "next": lambda verifier: verifier.close(_COUNT),
+    "break": lambda verifier: verifier.leave(_REPEAT),
+    "drop": lambda verifier: verifier.leave(_COUNT),
     "call": _Verifier.call,
-    "def": lambda it: it.begin(_DEF, len(it.closed) == DEFS, "TOO_MANY_DEFS"),
-    "return": lambda it: it.closed.append(it.ended(_DEF)),
-    "task": lambda it: it.task(_TASK),
-    "end_task": lambda it: it.ended(_TASK),
-    "when": lambda it: it.task(_WHEN),
-    "end_when": lambda it: it.ended(_WHEN),
-    "look": lambda it: it.end_check(_WHEN),
+    "def": lambda verifier: verifier.begin(_DEF, len(verifier.closed) == DEFS, "TOO_MANY_DEFS"),
+    "return": lambda verifier: verifier.closed.append(verifier.close_routine(_DEF)),
+    "task": lambda verifier: verifier.task(_TASK),
+    "end_task": lambda verifier: verifier.close_routine(_TASK),
+    "when": lambda verifier: verifier.task(_WHEN),
+    "end_when": lambda verifier: verifier.close_routine(_WHEN),
+    "look": lambda verifier: verifier.end_check(_WHEN),
 }
 assert _STEPS.keys() == CONTROL_ROLES.keys()
 _IN_EXPRESSIONS = ("end", "value", "join")
 _IN_CHECKS = ("read", "until", "look")
 
 
-def loaded(data: bytes, kit: Kit, has: int = EVERYTHING) -> Image:
+def load_image(data: bytes, kit: Kit, has: int = EVERYTHING) -> Image:
     """Return the image in `data`, for a machine that has so much of `needs`.
 
     Looks at its header, its code, and the devices that the code uses, as every machine does.

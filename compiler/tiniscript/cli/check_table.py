@@ -14,7 +14,7 @@ from typing import NamedTuple
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.program_files import ProgramFile, programs
-from tiniscript.cli.repairing import print_difference, repaired
+from tiniscript.cli.repairing import print_difference, repair
 from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts import text
 from tiniscript.diagnostics.rendering import Message, as_json, message
@@ -70,7 +70,7 @@ def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> 
     else:
         robot = robot_of(given.data, robot)
     if options.fix or options.diff:
-        compiled, repaired, problem = _repaired(given, options, robot, language)
+        compiled, repaired, problem = _repair(given, options, robot, language)
         if problem:
             return Row(file.name, [], 0, problem)
     else:
@@ -83,25 +83,25 @@ def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> 
     return Row(file.name, messages, repaired, "")
 
 
-def _repaired(
+def _repair(
     given: inputs.Input, options: Namespace, robot: Robot, language: str
 ) -> tuple[Compiled, int, str]:
     """Make or show the sure repairs of a program; return what is left, how many, and a problem."""
-    its = repaired(given, robot)
-    if its.repairs and not options.json:
-        print_difference(given.data, its.data, given.name)
+    result = repair(given, robot)
+    if result.repairs and not options.json:
+        print_difference(given.data, result.data, given.name)
     if options.diff:
-        return compiling.compile_input(given, robot, is_strict=False), its.repairs, ""
-    if its.repairs:
+        return compiling.compile_input(given, robot, is_strict=False), result.repairs, ""
+    if result.repairs:
         try:
-            outputs.write(Path(given.name), its.data, "unwritable_source")
+            outputs.write(Path(given.name), result.data, "unwritable_source")
         except CommandError as problem:
-            return its.compiled, 0, problem.plain(language)
-    return its.compiled, its.repairs, ""
+            return result.compiled, 0, problem.plain(language)
+    return result.compiled, result.repairs, ""
 
 
 def _line(row: Row, language: str) -> str:
-    name = inputs.shown(row.name)
+    name = inputs.printable_name(row.name)
     if row.problem:
         return text("checked_unread", language).format(file=name, why=row.problem)
     if not row.mistakes:
@@ -118,7 +118,7 @@ def _table(rows: Sequence[Row], language: str) -> list[str]:
     heads = [text(key, language) for key in columns]
     cells = []
     for row in rows:
-        name = inputs.shown(row.name)
+        name = inputs.printable_name(row.name)
         name = name if len(name) <= NAME_COLUMNS else "…" + name[1 - NAME_COLUMNS :]
         first = next((each for each in row.messages if each.severity == "mistake"), None)
         place = "" if first is None else f"{first.line}: {first.code}"
@@ -147,7 +147,7 @@ def _formatted_row(cells: Sequence[str], widths: Sequence[int]) -> str:
 
 def _as_data(row: Row) -> dict[str, object]:
     return {
-        "file": inputs.shown(row.name),
+        "file": inputs.printable_name(row.name),
         "mistakes": row.mistakes,
         "warnings": row.warnings,
         "repaired": row.repaired,
@@ -158,7 +158,7 @@ def _as_data(row: Row) -> dict[str, object]:
 
 def _as_csv(rows: Sequence[Row], language: str) -> bytes:
     def cells(row: Row) -> tuple[object, ...]:
-        counts = (inputs.shown(row.name), row.mistakes, row.warnings, row.repaired)
+        counts = (inputs.printable_name(row.name), row.mistakes, row.warnings, row.repaired)
         if not row.mistakes:
             return (*counts, "", "", row.problem)
         first = row.messages[0]

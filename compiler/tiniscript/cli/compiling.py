@@ -30,7 +30,7 @@ def for_level(compiled: Compiled, robot: Robot, name: str | None) -> Compiled:
     return compiled._replace(diagnostics=in_order([*compiled.diagnostics, *lacking]))
 
 
-def parsed(given: inputs.Input, kit: Kit) -> Compiled:
+def parse_input(given: inputs.Input, kit: Kit) -> Compiled:
     """Return only the syntax mistakes of a program's text."""
     text = text_of(given.data, given.name)
     if not isinstance(text, str):

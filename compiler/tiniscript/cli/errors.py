@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tiniscript.base import languages
-from tiniscript.cli.texts import Said, text
+from tiniscript.cli.texts import Sentence, text
 
 
 class CommandError(Exception):
@@ -24,7 +24,7 @@ class CommandError(Exception):
             suggestion = text("did_you_mean", language).format(near=self.values["near"])
             try_it = f" {languages.text('messages', 'label/try', language)}  "
             what, advice, example = result.rpartition(try_it)  # what was typed may have it, too
-            return Said(
+            return Sentence(
                 f"{what} {suggestion}{advice}{example}" if advice else f"{result} {suggestion}"
             )
         return result
@@ -38,13 +38,13 @@ def _printable_value(value: str | Exception) -> str:
     return (value.strerror if isinstance(value, OSError) else None) or str(value)
 
 
-def unwritable(how: str, file: str, why: str | Exception) -> CommandError:
+def unwritable_error(how: str, file: str, why: str | Exception) -> CommandError:
     """Return what is said of a file; `how` is the sentence's key, and the option that it names."""
     key, _, option = how.partition(" ")
     return CommandError(2, key, file=file, why=why, option=option)
 
 
-def not_installed(key: str, why: Exception) -> CommandError:
+def missing_package_error(key: str, why: Exception) -> CommandError:
     """Return what is said where the packages of a virtual robot are missing."""
     from tiniscript.library import install_advice
 

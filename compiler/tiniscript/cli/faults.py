@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.texts import text
 from tiniscript.library.source_map import Map
 
@@ -21,7 +21,7 @@ def fault_text(fault: str, offset: int, places: Map | None, is_image: bool, lang
         piece = line[place.column - 1 : end] if len(line) > 100 else line.strip()
         piece = piece.replace("\t", " ")
         key = "fault_line_of" if is_image else "fault_line"
-        name = shown(places.name)
+        name = printable_name(places.name)
         task = _task_text(places.task_of(place), language)
         where = text(key, language).format(name=name, line=place.line, task=task, shown=piece[:100])
     what = text(f"fault_{fault}", language)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from tiniscript.base import files
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts import text
@@ -48,7 +48,7 @@ class Step(NamedTuple):
     percent: int
 
 
-class Growing:
+class FolderProgress:
     """How far a folder has grown, in percent of `mb`; the part is another program's to fill."""
 
     def __init__(self, folder: Path, mb: int) -> None:
@@ -93,16 +93,16 @@ def agree(
 
 def install(extra: str, part: Part, language: str) -> None:
     """Install the packages of an extra for this Python, which can. Raises CommandError."""
-    command = install_advice.installing(extra)
+    command = install_advice.install_command(extra)
     assert command is not None, extra
     with tempfile.TemporaryDirectory(prefix="tiniscript-", dir=sys.prefix) as scratch:
-        growing = Growing(Path(scratch), part.mb)
+        progress = FolderProgress(Path(scratch), part.mb)
         # It fetches into the folder for temporary files: this one, which can be measured.
         variables = {**os.environ, **dict.fromkeys(("TMPDIR", "TEMP", "TMP"), scratch)}
         run(
             command,
             Path(scratch),
-            lambda said: Step(f"{part.key}_now", growing.percent()),
+            lambda said: Step(f"{part.key}_now", progress.percent()),
             language,
             variables,
             lambda said: PUTTING not in said,  # half of a package looks whole
@@ -113,7 +113,7 @@ def install(extra: str, part: Part, language: str) -> None:
 def run(
     command: list[str],
     folder: Path,
-    seen: Callable[[str], Step],
+    read_step: Callable[[str], Step],
     language: str,
     environment: Mapping[str, str] | None = None,
     may_end: Callable[[str], bool] = lambda said: True,
@@ -124,7 +124,7 @@ def run(
 
     def look(said: str) -> None:
         nonlocal doing
-        step = seen(said)
+        step = read_step(said)
         if step.key != doing:
             doing = step.key
             progress.end()
@@ -149,5 +149,5 @@ def _failure(doing: str, log: str) -> CommandError:
     files.keep(kept, log.encode("utf-8", "replace"))  # else the sentence has to do
     kinds = (("fetch_no_room", _NO_ROOM), ("fetch_offline", _OFFLINE))
     key = next((key for key, pattern in kinds if pattern.search(log)), "fetch_failed")
-    why = shown(children.reason(log))
-    return CommandError(2, key, doing=doing, why=why, log=shown(str(kept)))
+    why = printable_name(children.reason(log))
+    return CommandError(2, key, doing=doing, why=why, log=printable_name(str(kept)))

@@ -11,7 +11,7 @@ from tiniscript.base import files
 from tiniscript.cli import fetching
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.fetching import Part
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts import say_aside, text
 from tiniscript.flash import building, ready
@@ -36,7 +36,7 @@ def on_boards(name: str | None, language: str, boards: Sequence[str] = BOARDS) -
     for board in boards:
         try:
             robot = robots.load(robots.DEFAULT if name is None else name, board)
-            result.append(robot.speaking(language))
+            result.append(robot.with_language(language))
         except ProfileRefused:
             continue  # the board has no such pins
     return result
@@ -50,7 +50,7 @@ def firmware(robot: Robot, options: Namespace, language: str) -> Ready:
         return result
     if sources is None:
         raise CommandError(2, "flash_no_sources")
-    with _built(robot, options, language) as look:
+    with _show_build(robot, options, language) as look:
         data = building.build(sources, robot, look)
         return ready.keep(ready.title_of(robot), robot.board.chip, sources.digest(robot), data)
 
@@ -77,12 +77,12 @@ def upload(robot: Robot, port: str | None, options: Namespace, language: str) ->
     sources = building.sources()
     if sources is None:
         raise CommandError(2, "flash_no_sources")
-    with _built(robot, options, language, port=shown(port or "")) as look:
+    with _show_build(robot, options, language, port=printable_name(port or "")) as look:
         building.upload(sources, robot, port, look)
 
 
 @contextmanager
-def _built(
+def _show_build(
     robot: Robot, options: Namespace, language: str, **more: str
 ) -> Iterator[Callable[[StepProgress], None]]:
     """Fetch what builds firmware, and show the progress. Raises CommandError for all that can fail
@@ -102,7 +102,7 @@ def _built(
         progress.label = text(f"flash_{seen.phase}", language)
         if seen.what and seen.what != fetched:
             progress.end()
-            what = shown(seen.what)
+            what = printable_name(seen.what)
             say_aside("flash_fetches", language, what=what)
             fetched = seen.what
         progress.draw(seen.percent)
@@ -112,7 +112,7 @@ def _built(
     except building.CannotBuild as why:
         raise _failure(why, values) from None
     except OSError as why:
-        folder = shown(str(ready.cache()))
+        folder = printable_name(str(ready.cache()))
         raise CommandError(2, "flash_no_room", why=why, folder=folder) from None
     finally:
         progress.end()
@@ -124,7 +124,7 @@ def _fetch(robot: Robot, values: dict[str, str], options: Namespace, language: s
     PlatformIO fetches the compiler itself, when it builds.
     """
     has_platformio = building.platformio() is not None
-    if not has_platformio and install_advice.installing(install_advice.FIRMWARE) is None:
+    if not has_platformio and install_advice.install_command(install_advice.FIRMWARE) is None:
         raise _failure(building.CannotBuild(building.CannotBuild.NO_PLATFORMIO), values)
     platformio = Part("fetch_platformio", building.PLATFORMIO_MB)
     compiler = Part("fetch_compiler", building.missing_mb(robot))
@@ -144,7 +144,7 @@ def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:
     if why.log:
         files.keep(log, why.log.encode("utf-8", "replace"))  # else the sentence has to do
     how = install_advice.command(install_advice.FIRMWARE)
-    said = {"why": shown(why.said), "log": shown(str(log)), "how": how}
+    said = {"why": printable_name(why.said), "log": printable_name(str(log)), "how": how}
     return CommandError(2, f"flash_{why.why}", **said, **values)
 
 

@@ -18,10 +18,10 @@ from tiniscript.cli.texts.verbs import (
     NOTES,
     STEPS,
     VERBS,
+    command_words,
     of_verb,
-    said,
     steps_of,
-    typed,
+    verb_text,
 )
 
 WIDTH = 80  # columns, where the terminal has as many
@@ -35,13 +35,13 @@ def show(page: Callable[[str, int], str], language: str) -> None:
     pager.show(page(language, _width()), language)
 
 
-def listed(commands: Iterable[str], language: str, width: int = WIDTH) -> str:
+def list_commands(commands: Iterable[str], language: str, width: int = WIDTH) -> str:
     """Return what commands do, as a list."""
     rows = [_row(command, language) for command in commands]
     return "\n".join(_columns(rows, _left_width(rows, width * 4 // 10), width)) + "\n"
 
 
-def of(command: str, language: str, width: int = WIDTH) -> str:
+def help_of(command: str, language: str, width: int = WIDTH) -> str:
     """Return the help of a command; that of a verb names its steps, which have their own."""
     table = shown_of(command)
     steps = steps_of(command)
@@ -56,31 +56,31 @@ def of(command: str, language: str, width: int = WIDTH) -> str:
 
 
 def _steps(steps: list[str], language: str, width: int) -> Iterator[str]:
-    yield _paragraphs(said("steps", language), width)
-    yield listed(steps, language, width).rstrip("\n")
+    yield _paragraphs(verb_text("steps", language), width)
+    yield list_commands(steps, language, width).rstrip("\n")
 
 
 def overview(language: str, width: int = WIDTH) -> str:
     """Return the help of `tsc`: the verbs that most people need, with an example each."""
     parts = [
-        _paragraphs(said("title", language), width),
-        listed(FIRST, language, width).rstrip("\n"),
+        _paragraphs(verb_text("title", language), width),
+        list_commands(FIRST, language, width).rstrip("\n"),
         "\n".join(_options(shown_of("tsc"), language, width)),
-        _paragraphs(said("more", language), width),
+        _paragraphs(verb_text("more", language), width),
     ]
     return "\n\n".join(parts) + "\n"
 
 
-def everything(language: str, width: int = WIDTH) -> str:
+def full_help(language: str, width: int = WIDTH) -> str:
     """Return what `tsc help all` says: every verb, in groups."""
-    parts = [_paragraphs(said("title", language), width)]
+    parts = [_paragraphs(verb_text("title", language), width)]
     commands = groups(language)
     left = _left_width([row for _, rows in commands for row in rows], width * 4 // 10)
     for heading, rows in commands:
         parts.append(_paragraphs(heading, width))
         parts.append("\n".join(_columns(rows, left, width)))
     parts.append("\n".join(_options(shown_of("tsc"), language, width)))
-    parts.append("\n".join(_paragraphs(said(note, language), width) for note in NOTES))
+    parts.append("\n".join(_paragraphs(verb_text(note, language), width) for note in NOTES))
     return "\n\n".join(parts) + "\n"
 
 
@@ -90,7 +90,7 @@ def groups(language: str) -> list[tuple[str, list[Row]]]:
     for verb, group in VERBS.items():
         own = [] if verb == SET else [verb]  # which does nothing without a word after it
         rows = [_row(command, language) for command in (*own, *steps_of(verb))]
-        found.setdefault(said(f"group/{group}", language), []).extend(rows)
+        found.setdefault(verb_text(f"group/{group}", language), []).extend(rows)
     return list(found.items())
 
 
@@ -110,12 +110,12 @@ def usage(command: str, language: str) -> list[str]:
             label = option.shown_value(language) + (" ..." if option.repeats else "")
             is_required = option.kind == PROGRAM  # in whose place -e may stand
             words.append(label if is_required else f"[{label}]")
-    return [" ".join([*words, said("usage", language)])]
+    return [" ".join([*words, verb_text("usage", language)])]
 
 
 def begins(command: str, language: str) -> str:
     """Return how a command begins: `doctor --ports`; `firmware --board NAME|FILE`."""
-    words = typed(command)
+    words = command_words(command)
     last = words.split()[-1]
     options = [option for option in shown_of(command) if option.flags == last]
     return " ".join([words, *(_value(option, language) for option in options)]).rstrip()
@@ -150,7 +150,7 @@ def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str
     yield from _columns(rows[False], left, width)
     if rows[True]:
         yield ""
-        yield said("virtual", language)
+        yield verb_text("virtual", language)
         yield from _columns(rows[True], left, width)
         yield ""
     yield from _columns(last, left, width)
@@ -181,10 +181,10 @@ def _paragraphs(text: str, width: int) -> str:
 def _wrap(text: str, width: int) -> list[str]:
     """Return the lines of a text. What stands between backticks is not broken, if it fits."""
 
-    def kept(match: re.Match[str]) -> str:
+    def keep_spaces(match: re.Match[str]) -> str:
         return match[1].replace(" ", "\0") if len(match[1]) <= width else match[1]
 
-    whole = re.sub("`([^`]*)`", kept, text)
+    whole = re.sub("`([^`]*)`", keep_spaces, text)
     lines = wrap(whole, width, break_long_words=False, break_on_hyphens=False)
     return [line.replace("\0", " ") for line in lines]
 

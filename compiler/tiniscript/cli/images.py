@@ -10,7 +10,7 @@ from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, for_robot, image_of
-from tiniscript.library.known_kits import fitting, lacking
+from tiniscript.library.known_kits import find_robot_for, missing_need
 from tiniscript.library.other_robots import is_other_robots
 from tiniscript.library.source_map import Map
 from tiniscript.robots.profile import Robot
@@ -45,8 +45,8 @@ def ready(
     if given.is_image:
         image = _read(given)
         _check(given, image, robot)
-        if is_strict and (lacks := lacking(image.needs, robot)):
-            raise CommandError(1, lacks, robot=robot.name, file=inputs.shown(given.name))
+        if is_strict and (lacks := missing_need(image.needs, robot)):
+            raise CommandError(1, lacks, robot=robot.name, file=inputs.printable_name(given.name))
         return Ready(image, len(given.data), source_map.recall(image.checksum))
     compiled = compiling.compile_input(given, robot, is_strict)
     if is_open and not compiled.is_right:
@@ -58,7 +58,7 @@ def ready(
     if not compiled.is_right:
         return None
     image = image_of(compiled, robot)
-    places = source_map.made(compiled)
+    places = source_map.map_of_compiled(compiled)
     return Ready(image, len(compiled.image), places)
 
 
@@ -66,19 +66,19 @@ def _read(given: inputs.Input) -> Image:
     try:
         return unpack(given.data)
     except ImageRefused as refused:
-        values = {"file": inputs.shown(given.name), **refused.values}
+        values = {"file": inputs.printable_name(given.name), **refused.values}
         raise CommandError(1, f"image_{refused.name}", **values) from None
 
 
 def _check(given: inputs.Input, image: Image, robot: Robot) -> None:
     """Raise CommandError where the robot may not run an image, and say which known one may."""
-    file = inputs.shown(given.name)
+    file = inputs.printable_name(given.name)
     try:
         check(image, robot.kit)
     except (ImageRefused, Refused) as refused:
         is_other = refused.name == "NO_SUCH_DEVICE" and image.devices  # it has fewer
         if refused.name == "OTHER_KIT" or is_other:
-            other = fitting(image, robot)
+            other = find_robot_for(image, robot)
             theirs = "FILE" if other is None else other.name
             raise CommandError(
                 1, "image_OTHER_KIT", file=file, robot=robot.name, theirs=theirs
@@ -91,7 +91,7 @@ def _check(given: inputs.Input, image: Image, robot: Robot) -> None:
 
 def robot_for(given: inputs.Input, robot: Robot) -> Robot:
     """Return `robot`, or a known robot that has the devices of an image if `robot` lacks them."""
-    return fitting(_read(given), robot) or robot
+    return find_robot_for(_read(given), robot) or robot
 
 
 def keep_map(ready: Ready) -> None:

@@ -13,7 +13,7 @@ from tiniscript.base.files import is_pipe
 from tiniscript.base.source import LARGEST_SOURCE, printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
-from tiniscript.cli.texts import Said, say_aside
+from tiniscript.cli.texts import Sentence, say_aside
 from tiniscript.library import named_robot
 from tiniscript.robots.profile import ProfileRefused, Robot
 
@@ -65,7 +65,7 @@ def _program(options: Namespace) -> Input:
 
 def file(name: str, typed: str | None = None) -> Input:
     """Return what is in a file. Raises CommandError, which names it as it was `typed`."""
-    path, said = Path(name), shown(name if typed is None else typed)
+    path, said = Path(name), printable_name(name if typed is None else typed)
     if sys.platform == "win32":
         from tiniscript.cli.windows_names import is_device
 
@@ -90,11 +90,11 @@ def file(name: str, typed: str | None = None) -> Input:
 def port(name: str) -> str:
     """Return the name of a port that a person has typed. Raises CommandError where it is none."""
     if not name.strip() or not name.isprintable():
-        raise CommandError(2, "no_such_port", found=shown(name) or "''")
+        raise CommandError(2, "no_such_port", found=printable_name(name) or "''")
     return name
 
 
-def shown(name: str) -> str:
+def printable_name(name: str) -> str:
     """Return a file's name as a message can print it."""
     return printable(name, SHOWN)
 
@@ -104,7 +104,9 @@ def robot(options: Namespace, language: str) -> Robot:
     try:
         return robots.load(robots.DEFAULT if options.robot is None else options.robot)
     except ProfileRefused as why:
-        raise refused(why, language, "profile_refused", file=shown(options.robot)) from None
+        raise refusal(
+            why, language, "profile_refused", file=printable_name(options.robot)
+        ) from None
 
 
 def wired_robot(options: Namespace, language: str) -> Robot:
@@ -134,13 +136,17 @@ def robot_for(given: Input, options: Namespace, language: str) -> Robot:
 
 def tell_other(given: Input, chosen: Robot, language: str) -> None:
     """Say on standard error that `--robot` wins, where the program names another robot."""
-    named = named_robot.named(given.data)
+    named = named_robot.robot_name(given.data)
     if named is not None and named.lower() != chosen.name.lower():
-        values = {"file": shown(given.name), "robot": shown(chosen.name), "named": shown(named)}
+        values = {
+            "file": printable_name(given.name),
+            "robot": printable_name(chosen.name),
+            "named": printable_name(named),
+        }
         say_aside("robot_chosen", language, **values)
 
 
-def refused(
+def refusal(
     why: ProfileRefused, language: str, key: str,
     alone: tuple[str, ...] = ("file_", "no_such_robot", "no_such_world"), **values: str,
 ) -> CommandError:  # fmt: skip
@@ -153,4 +159,6 @@ def refused(
     lines = describe(why, language)
     if len(lines) == 1 and why.reasons[0][0].startswith(alone):
         return CommandError(2, "plain", said=lines[0])
-    return CommandError(2, key, reasons=Said("\n".join("  " + line for line in lines)), **values)
+    return CommandError(
+        2, key, reasons=Sentence("\n".join("  " + line for line in lines)), **values
+    )

@@ -24,7 +24,7 @@ from rich.cells import cell_len, set_cell_size
 from tiniscript import robots
 from tiniscript.base.source import PROGRAM_ENDS, Unreadable, decode, printable
 from tiniscript.cli import compiling, inputs, outputs
-from tiniscript.cli.errors import CommandError, not_installed
+from tiniscript.cli.errors import CommandError, missing_package_error
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.program_files import ProgramFile, in_folder, read
 from tiniscript.cli.robot.simulator_options import check_picture, draw_picture
@@ -36,7 +36,7 @@ from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.marking import Marking
 from tiniscript.lessons.running import Run
 from tiniscript.lessons.sentences import sentence
-from tiniscript.library.compiling import Compiled, for_robot, maker
+from tiniscript.library.compiling import Compiled, for_robot, image_maker
 from tiniscript.library.named_robot import name_in, robot_of
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.module import NoWebAssembly
@@ -73,19 +73,19 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
     if options.seed is not None:
         seeds = [whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)]
     if options.program is None and not options.texts:
-        raise CommandError(2, "lesson_no_program", number=inputs.shown(options.number))
+        raise CommandError(2, "lesson_no_program", number=inputs.printable_name(options.number))
 
     marker = _Marker(lesson, robots.load(lesson.robot), seeds, language)
     if _is_folder(options):
         if options.plot is not None:
-            raise CommandError(2, "lesson_one_picture", file=inputs.shown(options.program))
+            raise CommandError(2, "lesson_one_picture", file=inputs.printable_name(options.program))
         marks = [marker.mark_file(found, name) for name, found in _programs(options)]
         _name_notes(marks, options, language)
     else:
         if options.plot is not None:
             check_picture(options)
         given = inputs.program(options)
-        compiled = marker.compiled(given)
+        compiled = marker.compile(given)
         if not options.json:
             outputs.print_diagnostics(compiled, language)
         marks = [marker.mark(given, compiled)]
@@ -119,16 +119,18 @@ class _Marker:
         try:
             if file.problem is not None:
                 raise file.problem
-            compiled = self.compiled(given)
+            compiled = self.compile(given)
         except CommandError as failure:
             text = failure.plain(self.language)
-            text = text.replace(inputs.shown(file.name), inputs.shown(name))
+            text = text.replace(inputs.printable_name(file.name), inputs.printable_name(name))
             return Mark(name, UNREADABLE, 0, (("", text),))
         return self.mark(given, compiled)
 
-    def compiled(self, given: inputs.Input) -> Compiled:
+    def compile(self, given: inputs.Input) -> Compiled:
         if given.is_image:
-            raise CommandError(2, "needs_text", file=inputs.shown(given.name), verb="lesson check")
+            raise CommandError(
+                2, "needs_text", file=inputs.printable_name(given.name), verb="lesson check"
+            )
         robot = robot_of(given.data, self.robot)
         compiled = compiling.compile_input(given, robot, is_strict=True, names_robots=False)
         return for_robot(compiled, robot)
@@ -138,14 +140,14 @@ class _Marker:
             return Mark(given.name, MISTAKES, 0, tuple(self._mistakes(compiled)))
         robot = robot_of(given.data, self.robot)
         lesson = self.lesson._replace(robot=name_in(given.data) or self.lesson.robot)
-        marking = Marking(compiled.source.text, maker(robot), robot, lesson, self.seeds)
+        marking = Marking(compiled.source.text, image_maker(robot), robot, lesson, self.seeds)
         try:
-            outcome = marking.whole()
+            outcome = marking.run_to_end()
         except WorldRefused as refused:
-            values = {"file": inputs.shown(self.lesson.name), "seed": str(marking.seed)}
-            raise inputs.refused(refused, self.language, "lesson_world", (), **values) from None
+            values = {"file": inputs.printable_name(self.lesson.name), "seed": str(marking.seed)}
+            raise inputs.refusal(refused, self.language, "lesson_world", (), **values) from None
         except NoWebAssembly as why:
-            raise not_installed("virtual_needs_wasmtime", why) from None
+            raise missing_package_error("virtual_needs_wasmtime", why) from None
         return Mark(
             given.name,
             outcome.verdict,
@@ -187,22 +189,24 @@ def _programs(options: Namespace) -> Iterator[tuple[str, ProgramFile]]:
     try:
         os.scandir(folder).close()
     except OSError as why:
-        raise CommandError(2, "lesson_folder", file=inputs.shown(folder), why=why) from None
+        raise CommandError(
+            2, "lesson_folder", file=inputs.printable_name(folder), why=why
+        ) from None
     names = list(islice(in_folder(folder, TEXTS), PROGRAMS + 1))
     if len(names) > PROGRAMS:
-        raise CommandError(2, "lesson_many", file=inputs.shown(folder), most=str(PROGRAMS))
+        raise CommandError(2, "lesson_many", file=inputs.printable_name(folder), most=str(PROGRAMS))
     for name in names:
         yield os.path.relpath(name, folder), read(name)
 
 
 def _name_notes(marks: Sequence[Mark], options: Namespace, language: str) -> None:
     """Name the notes of a folder on standard error. Raises CommandError where all are notes."""
-    notes = [inputs.shown(mark.name) for mark in marks if mark.verdict == NO_PROGRAM]
+    notes = [inputs.printable_name(mark.name) for mark in marks if mark.verdict == NO_PROGRAM]
     if len(notes) == len(marks):
-        raise CommandError(2, "lesson_empty", file=inputs.shown(options.program))
+        raise CommandError(2, "lesson_empty", file=inputs.printable_name(options.program))
     if notes:
         sentence = text("lesson_notes", language)
-        number = inputs.shown(options.number)
+        number = inputs.printable_name(options.number)
         print(sentence.format(files=", ".join(notes), number=number), file=sys.stderr)
 
 
@@ -226,7 +230,7 @@ def _is_note(file: ProgramFile) -> bool:
 
 
 def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: str) -> None:
-    number, file = inputs.shown(options.number), inputs.shown(mark.name)
+    number, file = inputs.printable_name(options.number), inputs.printable_name(mark.name)
     if mark.verdict == MISTAKES:
         say("lesson_mistakes", language, file=file)
         return
@@ -241,13 +245,17 @@ def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: s
         if len(seeds) > 1 and mark.seed and not options.texts and mark.name != "-":
             say("lesson_again", language, number=number, file=file, seed=mark.seed)
     if options.plot is not None:
-        say("picture", language, file=inputs.shown(options.plot))
+        say("picture", language, file=inputs.printable_name(options.plot))
 
 
 def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> None:
     """Print a row for each program: its name, the verdict, and the first sentence."""
     rows = [
-        (inputs.shown(mark.name), text(f"verdict_{mark.verdict}", language), _first_error(mark))
+        (
+            inputs.printable_name(mark.name),
+            text(f"verdict_{mark.verdict}", language),
+            _first_error(mark),
+        )
         for mark in marks
     ]
     wide = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
@@ -266,7 +274,7 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
             cells = " " * cell_len(cells)
     passed = sum(mark.verdict == PASSED for mark in marks)
     count = text("lesson_count", language)
-    number = inputs.shown(options.number)
+    number = inputs.printable_name(options.number)
     programs = sum(mark.verdict != NO_PROGRAM for mark in marks)
     print(count.format(passed=passed, all=programs, number=number))
 

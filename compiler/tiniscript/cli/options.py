@@ -14,10 +14,10 @@ from tiniscript.base.fixed_point import as_text, read_literal
 from tiniscript.base.kit import Device
 from tiniscript.cli import paths
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.texts import text
-from tiniscript.cli.texts.options import Option, choosers_of, of_verb
-from tiniscript.cli.texts.verbs import STEPS, said, steps_of, typed
+from tiniscript.cli.texts.options import Option, choosers_of, options_of
+from tiniscript.cli.texts.verbs import STEPS, command_words, steps_of, verb_text
 from tiniscript.robots.profile import Robot
 
 # The messages of argparse, and what is said instead.
@@ -40,12 +40,12 @@ class Options(ArgumentParser):
     def __init__(self, command: str, language: str) -> None:
         # argparse always needs a formatter, and with a width it starts faster
         plain = partial(HelpFormatter, width=80)
-        self.command, self.verb = command, typed(command)
+        self.command, self.verb = command, command_words(command)
         super().__init__(
             f"tsc {self.verb}", add_help=False, allow_abbrev=False, formatter_class=plain
         )
         self.language = language
-        self.table = of_verb(command)
+        self.table = options_of(command)
         for option in self.table:
             self._add_option(option)
 
@@ -65,9 +65,9 @@ class Options(ArgumentParser):
         """Return the options, or None after printing the help that the user has asked for."""
         own = arguments[: arguments.index("--")] if "--" in arguments else arguments
         if "-h" in own or "--help" in own:
-            from tiniscript.cli.help import of, show
+            from tiniscript.cli.help import help_of, show
 
-            show(partial(of, self.command), self.language)
+            show(partial(help_of, self.command), self.language)
             return None
         begun = Namespace(verb=self.verb, language=self.language)
         options, more = self.parse_known_args(arguments, begun)
@@ -76,10 +76,10 @@ class Options(ArgumentParser):
         if more:  # told of after a wrong value: `tsc set nme TINI`
             self.error(f"unrecognized arguments: {' '.join(more)}")
         if sys.platform == "win32" and getattr(options, "programs", None):
-            from tiniscript.cli.windows_names import matching
+            from tiniscript.cli.windows_names import matching_files
 
             options.programs = [
-                item for name in options.programs for item in matching(name) or [name]
+                item for name in options.programs for item in matching_files(name) or [name]
             ]
         paths.check(options, self.language)
         return options
@@ -119,7 +119,7 @@ class Options(ArgumentParser):
         suggestion = self._suggestion(unknown)
         for key, pattern in _MESSAGES.items():
             if match := re.fullmatch(pattern, message):
-                message = said(f"wrong/{key}", self.language).format(*match.groups())
+                message = verb_text(f"wrong/{key}", self.language).format(*match.groups())
         raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=suggestion)
 
     def _refuse_of_step(self, unknown: str) -> None:
@@ -128,9 +128,11 @@ class Options(ArgumentParser):
         others = [name for name in (verb, *steps_of(verb)) if _has(name, unknown)]
         if not others or not unknown.startswith("-"):
             return
-        other = typed(others[0])
+        other = command_words(others[0])
         choosers = {name: step.choosers for name, step in STEPS.items()}
-        if choosers.get(self.command) and all(unknown in choosers.get(it, ()) for it in others):
+        if choosers.get(self.command) and all(
+            unknown in choosers.get(chooser, ()) for chooser in others
+        ):
             raise CommandError(2, "one_step", first=self.verb, second=other)
         raise CommandError(2, "option_of_step", option=unknown, verb=self.verb, other=other)
 
@@ -145,7 +147,7 @@ class Options(ArgumentParser):
 
 
 def _has(command: str, flag: str) -> bool:
-    return any(flag in option.flags.split() for option in of_verb(command))
+    return any(flag in option.flags.split() for option in options_of(command))
 
 
 def _suggestion(found: str, known: Sequence[str]) -> str:
@@ -157,8 +159,9 @@ def _suggestion(found: str, known: Sequence[str]) -> str:
 def bad_choice(option: str, known: Sequence[str], found: str, language: str) -> CommandError:
     """Return the error for a value that is not among an option's choices."""
     allowed = f"{', '.join(known[:-1])} {text('or', language)} {known[-1]}"
-    return CommandError(2, "bad_choice", option=option, known=allowed, found=shown(found) or "''",
-                        near=_suggestion(found, known))  # fmt: skip
+    shown = printable_name(found) or "''"
+    near = _suggestion(found, known)
+    return CommandError(2, "bad_choice", option=option, known=allowed, found=shown, near=near)
 
 
 def whole_number(option: str, found: str | None, default: int, low: int, high: int,
@@ -196,7 +199,7 @@ def thousandths(
     if value is None or not low <= value <= high:
         allowed = text("range_number", language).format(low=as_text(low), high=as_text(high))
         raise CommandError(
-            2, "bad_number", option=option, range=allowed, found=shown(found) or "''"
+            2, "bad_number", option=option, range=allowed, found=printable_name(found) or "''"
         )
     return value
 
@@ -223,11 +226,13 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
             raise CommandError(2, "sensor_form", example=example)
         if number in lists:
             raise CommandError(2, "sensor_twice", name=name)
-        lists[number] = [_reading(device, value.strip(), language) for value in values.split(",")]
+        lists[number] = [
+            _parse_reading(device, value.strip(), language) for value in values.split(",")
+        ]
     return lists
 
 
-def _reading(device: Device, found: str, language: str) -> int:
+def _parse_reading(device: Device, found: str, language: str) -> int:
     if device.is_yes_no:
         value = {"TRUE": 1, "FALSE": 0, "1": 1, "0": 0}.get(found.upper())
         allowed = text("range_yes_no", language)

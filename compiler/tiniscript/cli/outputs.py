@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tiniscript.cli.errors import unwritable
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.errors import unwritable_error
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.streams import has_colors
-from tiniscript.cli.texts import Said, say_aside, text
+from tiniscript.cli.texts import Sentence, say_aside, text
 from tiniscript.library.compiling import Compiled
 
 SHOWN = 20  # diagnostics that are printed; a person mends the first ones first
@@ -27,7 +27,7 @@ def write(path: Path, data: bytes, how: str, mode: int | None = None) -> None:
     except (OSError, ValueError, RuntimeError) as why:  # RuntimeError: a link to itself
         if isinstance(why, BrokenPipeError):
             raise
-        raise unwritable(how, shown(str(path)), why) from None
+        raise unwritable_error(how, printable_name(str(path)), why) from None
 
 
 def put(name: str | None, data: bytes) -> bool:
@@ -55,7 +55,7 @@ def print_diagnostics(compiled: Compiled, language: str) -> None:
         text = message(diagnostic, compiled.source, language)
         rows = as_text(text, compiled.source, language, color).split("\n")
         frame = rows[: 2 * bool(compiled.source.text)]
-        print(*frame, *map(Said, rows[len(frame) :]), "", sep="\n", file=sys.stderr)
+        print(*frame, *map(Sentence, rows[len(frame) :]), "", sep="\n", file=sys.stderr)
     if len(compiled.diagnostics) > SHOWN:
         say_aside("and_more", language, n=len(compiled.diagnostics) - SHOWN)
     if len(compiled.diagnostics) > 1:

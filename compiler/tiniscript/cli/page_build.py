@@ -25,7 +25,7 @@ def prepare(options: Namespace, language: str) -> None:
     if not serving.is_built():
         build(options, language)
     elif not building.is_of_sources(serving.PAGE):
-        how = " ".join(map(install_advice.quoted, (sys.executable, str(building.BUILDER))))
+        how = " ".join(map(install_advice.quote, (sys.executable, str(building.BUILDER))))
         say_aside("studio_stale", language, how=how)
 
 
@@ -35,26 +35,26 @@ def build(options: Namespace, language: str) -> None:
         raise CommandError(2, "studio_not_built")
     parts = missing_parts()
     has_node = NODE not in parts
-    if not has_node and install_advice.installing(install_advice.STUDIO) is None:
+    if not has_node and install_advice.install_command(install_advice.STUDIO) is None:
         how = install_advice.command(install_advice.STUDIO)
         raise CommandError(2, "studio_no_node", oldest=str(building.OLDEST_NODE), how=how)
     missing = text("studio_missing", language)
     fetching.agree(missing, parts, building.MINUTES, options, language)
     if not has_node:
         fetching.install(install_advice.STUDIO, NODE, language)
-    growing = fetching.Growing(building.MODULES, building.NODE_MODULES_MB)
+    growing = fetching.FolderProgress(building.MODULES, building.NODE_MODULES_MB)
 
-    def seen(said: str) -> Step:
+    def read_step(said: str) -> Step:
         step = max(building.step(said), 0 if NPM in parts else 1)
         is_fetching = STEPS[step] == "fetch_npm_now"
         return Step(STEPS[step], growing.percent() if is_fetching else PERCENT[step])
 
-    fetching.run([sys.executable, "-m", building.MODULE], building.CLONE, seen, language)
+    fetching.run([sys.executable, "-m", building.MODULE], building.CLONE, read_step, language)
 
 
 def missing_parts() -> list[Part]:
     """Return what is fetched before the page can be built."""
-    node = [] if building.found_tools() is not None else [NODE]
+    node = [] if building.find_tools() is not None else [NODE]
     return node if building.are_fetched() else [*node, NPM]
 
 

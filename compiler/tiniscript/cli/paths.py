@@ -25,7 +25,7 @@ from typing import NamedTuple
 from tiniscript import robots
 from tiniscript.base.source import PROGRAM_ENDS
 from tiniscript.bytecode.image import MAGIC
-from tiniscript.cli.errors import CommandError, unwritable
+from tiniscript.cli.errors import CommandError, unwritable_error
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import OPTIONS
 
@@ -39,7 +39,7 @@ WRITES = {
 }
 
 
-class Named(NamedTuple):
+class NamedPath(NamedTuple):
     """A file that a command reads or writes; `dest` is the name of its option."""
 
     dest: str
@@ -96,41 +96,41 @@ def real_name(program: str) -> str:
     return program
 
 
-def _output_paths(options: Namespace) -> Iterator[Named]:
+def _output_paths(options: Namespace) -> Iterator[NamedPath]:
     values = vars(options)
     for dest, (label, _) in WRITES.items():
         path = values.get(dest)
         if isinstance(path, str) and not (dest == "output" and path == "-"):
-            yield Named(dest, path, label)
+            yield NamedPath(dest, path, label)
     for item in sorted(set(values.get("programs") or ())):
         if values["fix"] and not values["diff"] and item != "-":
-            yield Named("programs", real_name(item), "tsc check --fix")
+            yield NamedPath("programs", real_name(item), "tsc check --fix")
     program = values.get("program")
     if program is not None and program != "-":
         program = real_name(program)
         if options.verb == "compile" and options.output is None and not options.text:
-            yield Named("output", default_output(program), "-o")
+            yield NamedPath("output", default_output(program), "-o")
         if options.verb == "fmt" and not options.check:
-            yield Named("program", program, "tsc fmt")
+            yield NamedPath("program", program, "tsc fmt")
 
 
-def _read(options: Namespace, language: str) -> Iterator[Named]:
+def _read(options: Namespace, language: str) -> Iterator[NamedPath]:
     values = vars(options)
     for dest, key in READS.items():
         result = values.get(dest)
         for path in result if isinstance(result, list) else [result]:
             if isinstance(path, str) and path != "-" and not _is_shipped(dest, path):
                 name = real_name(path) if dest in ("program", "programs") else path
-                yield Named(dest, name, text(key, language))
+                yield NamedPath(dest, name, text(key, language))
     if "port" in values and values["port"] is None and not values.get("virtual"):
         from tiniscript.link import known_ports
 
-        last = known_ports.known().last
+        last = known_ports.remembered_ports().last
         if last is not None:
-            yield Named("port", last, text("path_port", language))
+            yield NamedPath("port", last, text("path_port", language))
     with suppress(OSError, ValueError):  # it is closed
         if stat.S_ISREG(os.fstat(0).st_mode):
-            yield Named("stdin", "/dev/stdin", text("path_stdin", language))
+            yield NamedPath("stdin", "/dev/stdin", text("path_stdin", language))
 
 
 def _is_shipped(dest: str, name: str) -> bool:
@@ -144,7 +144,7 @@ def _is_shipped(dest: str, name: str) -> bool:
     return False
 
 
-def _identity(named: Named, may_be_device: bool = False) -> tuple[object, ...] | None:
+def _identity(named: NamedPath, may_be_device: bool = False) -> tuple[object, ...] | None:
     """Return a key that is the same for all names of a file, or None for a device such as a tty.
 
     The key of a missing file is its folder and its name without regard to capitals, because its
@@ -173,7 +173,7 @@ def _path_key(name: str) -> str:
     return normalize("NFC", normalize("NFC", name).casefold())
 
 
-def _refuse_foreign(output: Named) -> None:
+def _refuse_foreign(output: NamedPath) -> None:
     """Refuse to write over a file that tsc has not made. Raises CommandError."""
     with suppress(OSError, ValueError):  # it is not there, or writing it reports the reason
         if is_foreign(Path(output.path)):
@@ -187,7 +187,7 @@ def _refuse_unwritable(path: str, how: str, language: str) -> None:
         from tiniscript.cli.windows_names import has_no_file
 
         if path and has_no_file(path):
-            raise unwritable(how, path, text("no_windows_name", language))
+            raise unwritable_error(how, path, text("no_windows_name", language))
     try:
         try:
             stat_result = os.stat(path)  # noqa: PTH116 - a name that no file can have gets no Path
@@ -204,9 +204,9 @@ def _refuse_unwritable(path: str, how: str, language: str) -> None:
             if sys.platform != "win32" and not os.access(folder, os.W_OK | os.X_OK):
                 number = errno.EACCES
     except (OSError, ValueError) as why:
-        raise unwritable(how, path, why) from None
+        raise unwritable_error(how, path, why) from None
     if number or not path:
-        raise unwritable(how, path or "''", os.strerror(number or errno.ENOENT))
+        raise unwritable_error(how, path or "''", os.strerror(number or errno.ENOENT))
 
 
 HEAD_BYTES = 4096  # of a file, which tell what it is

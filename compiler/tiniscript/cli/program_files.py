@@ -36,7 +36,7 @@ def programs(names: Sequence[str]) -> Iterator[ProgramFile]:
     for name in names:
         result = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
         if not result:
-            raise CommandError(2, "no_programs", file=inputs.shown(name))
+            raise CommandError(2, "no_programs", file=inputs.printable_name(name))
         for item in result:
             real = os.path.realpath(item)
             if real not in seen:
@@ -79,7 +79,9 @@ def read(name: str) -> ProgramFile:
     try:
         stat_result = Path(name).stat()
         if not (stat.S_ISREG(stat_result.st_mode) or stat.S_ISDIR(stat_result.st_mode)):
-            return ProgramFile(name, b"", CommandError(2, "file_no_file", file=inputs.shown(name)))
+            return ProgramFile(
+                name, b"", CommandError(2, "file_no_file", file=inputs.printable_name(name))
+            )
     except (OSError, ValueError):
         pass  # reading it says why
     try:

@@ -14,7 +14,7 @@ from tiniscript.base.source import printable
 from tiniscript.cli import compiling
 from tiniscript.cli.inputs import Input
 from tiniscript.cli.streams import has_colors
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.library.compiling import Compiled, text_of
 from tiniscript.robots.profile import Robot
 
@@ -31,20 +31,20 @@ class Repaired(NamedTuple):
     compiled: Compiled
 
 
-def repaired(given: Input, robot: Robot) -> Repaired:
+def repair(given: Input, robot: Robot) -> Repaired:
     """Return a program with its sure repairs; bytes that are no program stay as they are."""
     text = text_of(given.data, given.name)
     if not isinstance(text, str):
         return Repaired(given.data, 0, text)
 
-    def compiled(data: bytes) -> Compiled:
+    def compile_data(data: bytes) -> Compiled:
         return compiling.compile_input(given._replace(data=data), robot, is_strict=False)
 
-    result = fixed(text, lambda changed: compiled(changed.encode()).diagnostics)
+    result = repair_program(text, lambda changed: compile_data(changed.encode()).diagnostics)
     new = result.text.encode()
     if given.data.startswith(_BOM):
         new = _BOM + new
-    return Repaired(new, result.repairs, compiled(new))
+    return Repaired(new, result.repairs, compile_data(new))
 
 
 def print_difference(old: bytes, new: bytes, name: str) -> None:

@@ -44,7 +44,7 @@ def beginnings() -> tuple[bytes, ...]:
     return (*empty, *(item.replace(b"\n", b"\r\n") for item in empty))
 
 
-def no_formula(text: str) -> str:
+def escape_formula(text: str) -> str:
     """Return what somebody wrote so that a spreadsheet takes it for text, in cells after commas.
 
     It may take ; for their end, which no quotation marks keep in a cell then.

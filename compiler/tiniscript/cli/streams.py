@@ -19,7 +19,7 @@ import sys
 from time import monotonic
 from typing import Any, TextIO
 
-from tiniscript.cli.texts import Said
+from tiniscript.cli.texts import Sentence
 
 UNREAD_S = 1.0  # timeout for a reader when a command is interrupted
 NAME = "tiniscript_plain"  # of the handler of errors
@@ -96,7 +96,7 @@ def drop_unread() -> None:
             is_pipe = stat.S_ISFIFO(os.fstat(number).st_mode)
         except (OSError, ValueError, AttributeError):  # no file of the system, or closed
             continue
-        if is_pipe and not _is_written(stream, number):
+        if is_pipe and not _write_all(stream, number):
             nowhere = os.open(os.devnull, os.O_WRONLY)
             os.dup2(nowhere, number)
             os.close(nowhere)
@@ -122,7 +122,7 @@ def refuse_unread() -> None:
         raise BrokenPipeError
 
 
-def _is_written(stream: TextIO, pipe: int) -> bool:
+def _write_all(stream: TextIO, pipe: int) -> bool:
     """Write what waits for a pipe; return whether all was taken in time."""
     if sys.platform == "win32":
         return False
@@ -148,7 +148,7 @@ def _is_written(stream: TextIO, pipe: int) -> bool:
 
 
 class Wrapping:
-    """A terminal that breaks sentences, each a `Said`, at its width. Frames and tables are none."""
+    """A terminal that breaks each `Sentence` at its width. Frames and tables are none."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
@@ -157,10 +157,10 @@ class Wrapping:
         return getattr(self._stream, name)
 
     def write(self, text: str) -> int:
-        if isinstance(text, Said):
+        if isinstance(text, Sentence):
             from shutil import get_terminal_size
 
-            text = wrapped(text, get_terminal_size().columns)
+            text = wrap(text, get_terminal_size().columns)
         return self._stream.write(text)
 
 
@@ -169,16 +169,16 @@ class Wrapping:
 _COMMAND = re.compile(r"(?<=[^ ] {2})[^ \n]+(?: [^ \n]+)*")
 
 
-def wrapped(said: str, columns: int) -> str:
+def wrap(said: str, columns: int) -> str:
     """Return a sentence in rows; what stands after two blanks is a command."""
     from textwrap import fill
 
-    def whole(command: re.Match[str]) -> str:
+    def keep_spaces(command: re.Match[str]) -> str:
         is_kept = len(command[0]) < columns or os.sep in command[0].partition(" ")[0]
         return command[0].replace(" ", "\0") if is_kept else command[0]
 
     rows = []
-    for row in _COMMAND.sub(whole, said).split("\n"):
+    for row in _COMMAND.sub(keep_spaces, said).split("\n"):
         indent = row[: len(row) - len(row.lstrip(" "))]
         filled = fill(row, columns, replace_whitespace=False, subsequent_indent=indent,
                       break_long_words=False, break_on_hyphens=False)  # fmt: skip

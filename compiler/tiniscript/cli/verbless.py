@@ -18,10 +18,10 @@ from tiniscript.base.languages import languages
 from tiniscript.base.source import PROGRAM_ENDS
 from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.options import chosen, of_verb
-from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, said, typed
+from tiniscript.cli.texts.options import chosen, options_of
+from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, command_words, verb_text
 from tiniscript.cli.texts.verbs import of_verb as said_of
 
 
@@ -30,13 +30,13 @@ def refuse(name: str, words: list[str], language: str) -> NoReturn:
     if name in WAS:
         raise CommandError(2, "was_verb", was=name, now=_now(WAS[name], words, language))
     refuse_program(name)
-    raise CommandError(2, "no_verb", found=name, near=meant(name))
+    raise CommandError(2, "no_verb", found=name, near=guess_verb(name))
 
 
 def _now(command: str, words: list[str], language: str) -> str:
     """Return what is typed for a command that was a verb: with the words after it, if they fit."""
     head = STEPS[command].head if command in STEPS else command
-    for item in (head, typed(command)):
+    for item in (head, command_words(command)):
         verb, *more = [*item.split(), *words]
         found, rest = chosen(verb, more)
         if found == command and Options(command, language).fits(rest):
@@ -46,25 +46,25 @@ def _now(command: str, words: list[str], language: str) -> str:
     return begins(command, language)
 
 
-def meant(name: str) -> str:
+def guess_verb(name: str) -> str:
     """Return the command that somebody means with a word that is no verb, or nothing."""
     called = (
         item
         for item in (*COMMANDS, "--version")
-        if _unaccented(name) in _names_in_languages(item).split()
+        if _without_accents(name) in _names_in_languages(item).split()
     )
     suggestion = next(called, None) or nearest(name, (*VERBS, *WAS)) or ""
-    return typed(WAS.get(suggestion, suggestion))
+    return command_words(WAS.get(suggestion, suggestion))
 
 
 def is_help(name: str) -> bool:
     """Whether a word is what help is called in a language: `tsc ayuda`."""
-    return _unaccented(name) in _names_in_languages("help").split()
+    return _without_accents(name) in _names_in_languages("help").split()
 
 
 def _names_in_languages(verb: str) -> str:
     """Return what the same is called elsewhere, in each language."""
-    return " ".join(_unaccented(said_of(verb, "words", language)) for language in languages())
+    return " ".join(_without_accents(said_of(verb, "words", language)) for language in languages())
 
 
 def refuse_program(name: str) -> None:
@@ -73,9 +73,9 @@ def refuse_program(name: str) -> None:
     tsc does not choose a verb: a robot moves only when the user has asked for it.
     """
     if name.lower().endswith((*PROGRAM_ENDS, ".bin")) or _is_file(name):
-        raise CommandError(2, "file_without_verb", found=_quoted(name))
+        raise CommandError(2, "file_without_verb", found=_quote(name))
     if "(" in name or "|" in name:
-        raise CommandError(2, "text_without_verb", found=_quoted(name, always=True))
+        raise CommandError(2, "text_without_verb", found=_quote(name, always=True))
 
 
 def _is_file(name: str) -> bool:
@@ -85,9 +85,9 @@ def _is_file(name: str) -> bool:
         return False
 
 
-def _quoted(name: str, always: bool = False) -> str:
+def _quote(name: str, always: bool = False) -> str:
     """Return a name as it can be copied into a command."""
-    result = shown(name)
+    result = printable_name(name)
     return f'"{result}"' if always or " " in result else result
 
 
@@ -115,32 +115,34 @@ def verbs_for(said: str) -> list[str]:
 
 def _weights(verb: str) -> dict[str, int]:
     """Return what each stem of a command's texts counts."""
-    options = [option for option in of_verb(verb) if option.verbs not in ("*", "tsc")]
+    options = [option for option in options_of(verb) if option.verbs not in ("*", "tsc")]
 
-    def said(what: str) -> set[str]:
+    def stems_of(what: str) -> set[str]:
         return {stem for language in languages() for stem in _stems(said_of(verb, what, language))}
 
     helps = (option.help(language) for option in options for language in languages())
     flags = (option.flags for option in options)
-    weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | said("ends"), 1)
-    weights |= dict.fromkeys(said("says"), 2)
-    weights |= dict.fromkeys(said("summary"), 4)
+    weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | stems_of("ends"), 1)
+    weights |= dict.fromkeys(stems_of("says"), 2)
+    weights |= dict.fromkeys(stems_of("summary"), 4)
     weights |= dict.fromkeys(_stems(_names_in_languages(verb)), 6)
     return weights | dict.fromkeys(_stems(verb), 12)
 
 
 def _stems(text: str) -> set[str]:
-    words = re.findall("[a-z]+", _unaccented(text))
-    sentence = (word for word in words if len(word) >= SHORTEST and word not in _idle())
+    words = re.findall("[a-z]+", _without_accents(text))
+    sentence = (word for word in words if len(word) >= SHORTEST and word not in _idle_words())
     return {word.removesuffix("s")[:STEM] for word in sentence}  # port and ports are one
 
 
 @cache
-def _idle() -> frozenset[str]:
+def _idle_words() -> frozenset[str]:
     """Return words that say nothing of what a command does."""
-    return frozenset(word for language in languages() for word in said("idle", language).split())
+    return frozenset(
+        word for language in languages() for word in verb_text("idle", language).split()
+    )
 
 
-def _unaccented(text: str) -> str:
+def _without_accents(text: str) -> str:
     """Return a text in small letters without accents."""
     return re.sub("[\u0300-\u036f]", "", unicodedata.normalize("NFD", text.casefold()))

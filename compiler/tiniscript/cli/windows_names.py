@@ -28,7 +28,7 @@ def is_device(path: str) -> bool:
     return _stem(parts[-1]) in DEVICES
 
 
-def matching(pattern: str) -> list[str]:
+def matching_files(pattern: str) -> list[str]:
     """Return the names of the files that a pattern such as `*.ts` means, in order.
 
     No shell of Windows does this for the commands it starts.

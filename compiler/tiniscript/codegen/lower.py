@@ -11,7 +11,7 @@ stand.
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import limited, whole
+from tiniscript.base.fixed_point import clamp, whole
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Span
 from tiniscript.bytecode.opcodes import time8
@@ -19,10 +19,10 @@ from tiniscript.codegen.lower_expression import (
     Emitter,
     Item,
     add_value,
+    emit_unless,
+    emit_until,
     number_of,
     pushes_in_one_byte,
-    stops,
-    tests,
 )
 from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant
@@ -62,7 +62,7 @@ def lower(program: ir.Program, plain: bool = False) -> Lowered:
         lowering.statement(statement)
     while waiting:
         lowering.routine(*waiting.pop())
-    return _assembled(lowering.out)
+    return _assemble(lowering.out)
 
 
 class _LoopEnd(NamedTuple):
@@ -146,16 +146,16 @@ class _Lowering:
 
     def move(self, move: ir.Move) -> None:
         out = self.out
-        time = None if move.time is None else self.at_least_0(move.time)
+        time = None if move.time is None else self.clamp_time(move.time)
         power = None if move.power is None else self.percentage(move.power, 0)
         name = "WAIT" if power is None else move.direction
         until = move.until
         if until is None and time is None:  # a move for ever, beside other tasks
             until = ir.Until((), (ir.Term("YES_NO", 0),))
         if until is None and time is not None and not move.unit:
-            time_ms = self.fixed(time)
+            time_ms = self.constant_of(time)
             byte = None if time_ms is None else time8(time_ms)
-            value = None if power is None else self.fixed(power)
+            value = None if power is None else self.constant_of(power)
             if byte is not None and (power is None or value is not None):
                 short = "WAIT8" if value is None else f"MOVE8_{name}"
                 out.add(short, byte, *(() if value is None else (value // 1000,)))
@@ -170,13 +170,13 @@ class _Lowering:
         kind = "_FOREVER" if time is None else "_GO" if move.unit else ""
         out.add(f"WATCH{kind}_{name}")
         self.reads(until.reads)
-        stops(out, until.condition)
+        emit_until(out, until.condition)
 
     def beep(self, beep: ir.Beep) -> None:
-        time_ms, hertz = self.fixed(self.at_least_0(beep.time)), self.fixed(beep.hertz)
+        time_ms, hertz = self.constant_of(self.clamp_time(beep.time)), self.constant_of(beep.hertz)
         byte = None if time_ms is None else time8(time_ms)
         if byte is not None and hertz is not None:
-            self.out.add("BEEP8", byte, limited(whole(hertz), 31, 20_000))
+            self.out.add("BEEP8", byte, clamp(whole(hertz), 31, 20_000))
             return
         add_value(self.out, beep.time)
         add_value(self.out, beep.hertz)
@@ -184,7 +184,7 @@ class _Lowering:
 
     def motors(self, motors: ir.Motors) -> None:
         left, right = self.percentage(motors.left, -100), self.percentage(motors.right, -100)
-        left_value, right_value = self.fixed(left), self.fixed(right)
+        left_value, right_value = self.constant_of(left), self.constant_of(right)
         if left_value is not None and right_value is not None:
             self.out.add("MOTORS8", left_value // 1000, right_value // 1000)
         else:
@@ -197,12 +197,12 @@ class _Lowering:
     def assign(self, assign: ir.Assign) -> None:
         """`X = 5`, `X = X + 5`, `X = X + Y` have instructions of their own."""
         out, variable, value = self.out, assign.variable, assign.value
-        if not self.plain and self.assigned_at_once(variable, value):
+        if not self.plain and self.add_short_assignment(variable, value):
             return
         add_value(out, value)
         out.add("SET_VAR", variable)
 
-    def assigned_at_once(self, variable: int, value: ir.Expression) -> bool:
+    def add_short_assignment(self, variable: int, value: ir.Expression) -> bool:
         """Add the one instruction that does it; return whether there is one."""
         out = self.out
         if len(value) == 1 and value[0].op == "NUMBER":
@@ -240,10 +240,10 @@ class _Lowering:
             following = end if is_last else out.new_label()
             out.span = arm.span
             self.reads(arm.reads)
-            tests(out, arm.condition, following)
+            emit_unless(out, arm.condition, following)
             self.body(arm.body)
             if not is_last:
-                if self.plain or ir.goes_on(arm.body):
+                if self.plain or ir.falls_through(arm.body):
                     out.add("ELSE", to=end)
                 out.mark(following)
         self.body(statement.otherwise)
@@ -255,14 +255,14 @@ class _Lowering:
         if loop.times is None:
             out.add("FOREVER")
         else:
-            value = self.fixed(loop.times)
+            value = self.constant_of(loop.times)
             count = None if value is None else whole(value)
             if count is not None and 1 <= count <= 255:
                 out.add("LOOP8", count)
             else:
                 add_value(out, loop.times)
                 out.add("LOOP", to=end)
-        self.repeated(loop.body, end, loop.times is not None, loop.span)
+        self.add_loop(loop.body, end, loop.times is not None, loop.span)
 
     def while_(self, loop: ir.While) -> None:
         out = self.out
@@ -270,10 +270,10 @@ class _Lowering:
         out.add("WHILE", to=end)
         start = out.mark_here()
         self.reads(loop.reads)
-        tests(out, loop.condition, end)
-        self.repeated(loop.body, end, False, loop.span, start)
+        emit_unless(out, loop.condition, end)
+        self.add_loop(loop.body, end, False, loop.span, start)
 
-    def repeated(
+    def add_loop(
         self, body: ir.Body, end: int, is_counted: bool, span: Span, start: int | None = None
     ) -> None:
         """Add a loop's body, the jump back to `start` (here if None) and the label `end`."""
@@ -289,25 +289,25 @@ class _Lowering:
 
     # -- numbers that the text says -----------------------------------------------------------
 
-    def fixed(self, expression: ir.Expression) -> int | None:
+    def constant_of(self, expression: ir.Expression) -> int | None:
         """Return the value that an operand may hold; in plain code numbers are pushed."""
         return None if self.plain else constant(expression)
 
-    def at_least_0(self, time: ir.Expression) -> ir.Expression:
-        value = self.fixed(time)
+    def clamp_time(self, time: ir.Expression) -> ir.Expression:
+        value = self.constant_of(time)
         return (time[0]._replace(value=0),) if value is not None and value < 0 else time
 
     def percentage(self, power: ir.Expression, low: int) -> ir.Expression:
-        value = self.fixed(power)
+        value = self.constant_of(power)
         if value is None:
             return power
-        return (power[0]._replace(value=limited(whole(value), low, 100) * 1000),)
+        return (power[0]._replace(value=clamp(whole(value), low, 100) * 1000),)
 
 
 # -- layout -----------------------------------------------------------------------------------
 
 
-def _assembled(out: Emitter) -> Lowered:
+def _assemble(out: Emitter) -> Lowered:
     """Choose for each jump the form that reaches its target, and write the bytes.
 
     A jump only ever gets longer, so this ends. Comparing branches have no far form: one that

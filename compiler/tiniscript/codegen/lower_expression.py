@@ -73,7 +73,7 @@ class Emitter:
         moved = []
         for k, item in enumerate(self.items):
             moved.append(len(items))
-            items += _far(item) if k in which else (item,)
+            items += _far_form(item) if k in which else (item,)
         moved.append(len(items))
         self.labels = [moved[index] for index in self.labels]
         self.items = items
@@ -86,7 +86,7 @@ def _shortest_op(name: str, *operands: int) -> tuple[Op, tuple[int, ...]]:
     return BY_NAME[name], operands
 
 
-def _far(item: Item) -> tuple[Item, ...]:
+def _far_form(item: Item) -> tuple[Item, ...]:
     far = BY_NAME.get(item.op.name + "_FAR")
     if far is not None:
         return (item._replace(op=far),)
@@ -173,7 +173,7 @@ def add_value(out: Emitter, expression: Expression) -> None:
             push(out, term)
 
 
-def tests(out: Emitter, condition: Expression, otherwise: int) -> None:
+def emit_unless(out: Emitter, condition: Expression, otherwise: int) -> None:
     """Add branches to the label `otherwise` that are taken where `condition` is FALSE."""
     if out.plain:
         add_value(out, condition)
@@ -191,10 +191,10 @@ def tests(out: Emitter, condition: Expression, otherwise: int) -> None:
             pending.append((split + 1, end - 1, when))
             pending.append((start, split, when))
         else:
-            _test(out, condition[start:end], when, otherwise)
+            _emit_branch(out, condition[start:end], when, otherwise)
 
 
-def stops(out: Emitter, condition: Expression) -> None:
+def emit_until(out: Emitter, condition: Expression) -> None:
     """Add instructions that end a watched move where `condition` is TRUE."""
     compared = None if out.plain else _comparison_to_constant(condition)
     if compared is None:
@@ -205,7 +205,7 @@ def stops(out: Emitter, condition: Expression) -> None:
         out.add(f"UNTIL{compared.bits}_{compared.comparator}", compared.number)
 
 
-def _test(out: Emitter, expression: Expression, when: bool, to: int) -> None:
+def _emit_branch(out: Emitter, expression: Expression, when: bool, to: int) -> None:
     compared = _comparison_to_constant(expression)
     if compared is None:
         add_value(out, expression)

@@ -29,7 +29,7 @@ class Verdict(NamedTuple):
     detail: str = ""
 
 
-def compared(name: str, want: Sequence[str], got: Sequence[str]) -> Verdict:
+def compare(name: str, want: Sequence[str], got: Sequence[str]) -> Verdict:
     """Return the first line that differs."""
     for number in range(max(len(want), len(got))):
         pair = [rows[number] if number < len(rows) else None for rows in (want, got)]
@@ -56,7 +56,7 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
         try:
             got = ask(case.request(), sum(len(row) + 2 for row in case.answer))
         except Problem as problem:
-            verdict = compared(case.name, case.answer, problem.rows)
+            verdict = compare(case.name, case.answer, problem.rows)
             yield verdict._replace(what=problem.what, detail=problem.detail)
             endless += problem.what in ("hang", "flood")
             silent += not answers
@@ -70,4 +70,4 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
                 if refuses:
                     yield Verdict(case.name, LACKS)
                     continue
-            yield compared(case.name, case.answer, got)
+            yield compare(case.name, case.answer, got)

@@ -123,16 +123,16 @@ class LinkRefused(NamedTuple):
     at: int
 
 
-class LinkKit(NamedTuple):
+class LinkTestSuite(NamedTuple):
     programs: tuple[LinkProgram, ...]
     refused: tuple[LinkRefused, ...]
 
 
-def link_kit() -> LinkKit:
+def link_test_suite() -> LinkTestSuite:
     """Return what a robot on a port must do. Raises NotMade."""
     result = _read("link.json")
     assert (result["form"], result["version"]) == (LINK_FORM, LINK_VERSION)
-    return LinkKit(
+    return LinkTestSuite(
         tuple(
             LinkProgram(
                 row["name"],

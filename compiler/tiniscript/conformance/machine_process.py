@@ -62,12 +62,12 @@ class MachineProcess:
         """
         most = expected_bytes + SPARE_BYTES
         if self._answers:
-            with contextlib.suppress(_Ended):
+            with contextlib.suppress(_ProcessEnded):
                 return self._query(request, most)
             self.close()
         try:
             return self._query(request, most)
-        except _Ended as ended:
+        except _ProcessEnded as ended:
             code = ended.code
         self._fail("crash", str(code), [])
 
@@ -172,7 +172,7 @@ class MachineProcess:
                 if rows or self._rest:
                     rows += [self._rest.decode("utf-8", "replace")] if self._rest else []
                     self._fail("crash", str(code), rows)
-                raise _Ended(code)
+                raise _ProcessEnded(code)
             count += len(data)
             self._rest += data
             if count > most:
@@ -192,7 +192,7 @@ class MachineProcess:
         raise Problem(what, detail, tuple(rows))
 
 
-class _Ended(Exception):
+class _ProcessEnded(Exception):
     """The process has ended without a byte of an answer."""
 
     def __init__(self, code: int | None) -> None:

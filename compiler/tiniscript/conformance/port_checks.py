@@ -12,10 +12,10 @@ from typing import NamedTuple
 from tiniscript.bytecode.image import pack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import RULES
-from tiniscript.conformance.comparing import Verdict, compared
-from tiniscript.conformance.kit import LinkKit, LinkProgram
+from tiniscript.conformance.comparing import Verdict, compare
+from tiniscript.conformance.kit import LinkProgram, LinkTestSuite
 from tiniscript.conformance.wire_robot import STARTS, Answer, Silent, WireRobot
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     MAJOR,
@@ -26,7 +26,7 @@ from tiniscript.link.messages import (
     SMALL_FRAME,
     STATUSES,
     STOP_BYTES,
-    written,
+    encode_payload,
 )
 from tiniscript.link.statuses import name_of
 
@@ -57,7 +57,7 @@ def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
     for check in checks:
         try:
             ready(robot)
-            yield compared(check.name, check.wanted, check.found(robot))
+            yield compare(check.name, check.wanted, check.found(robot))
             silent = 0
         except Silent as why:
             yield Verdict(check.name, "silent", detail=why.message)
@@ -77,16 +77,16 @@ def ready(robot: WireRobot) -> None:
     robot.events.clear()
 
 
-def met(robot: WireRobot) -> Answer:
+def greet(robot: WireRobot) -> Answer:
     """Return the robot's answer to HELLO. Raises Silent."""
     return robot.hello(STARTS)
 
 
-def all_checks(kit: LinkKit) -> list[Check]:
+def all_checks(kit: LinkTestSuite) -> list[Check]:
     return [
         *LINK_CHECKS,
         *(
-            Check(f"programs: {program.name}", program.answer(), _program(program))
+            Check(f"programs: {program.name}", program.answer(), _program_check(program))
             for program in kit.programs
         ),
         *(
@@ -102,7 +102,7 @@ def all_checks(kit: LinkKit) -> list[Check]:
     ]
 
 
-def said(answer: Answer) -> str:
+def answer_text(answer: Answer) -> str:
     """Return an answer as a check writes it: a name, and the detail where there is one."""
     if answer.status == -1:
         return "OK with other fields"
@@ -113,11 +113,11 @@ def said(answer: Answer) -> str:
 # -- programs -------------------------------------------------------------------------------------
 
 
-def live(robot: WireRobot, code: bytes) -> Answer:
-    return patient(robot, "LIVE", {"mode": RUN, "code": code})
+def run_live(robot: WireRobot, code: bytes) -> Answer:
+    return ask_while_busy(robot, "LIVE", {"mode": RUN, "code": code})
 
 
-def patient(robot: WireRobot, name: str, values: Mapping[str, int | bytes]) -> Answer:
+def ask_while_busy(robot: WireRobot, name: str, values: Mapping[str, int | bytes]) -> Answer:
     """Ask again while the robot is saving something."""
     for _ in range(BUSY_TRIES):
         answer = robot.ask(name, values)
@@ -127,18 +127,18 @@ def patient(robot: WireRobot, name: str, values: Mapping[str, int | bytes]) -> A
     return answer
 
 
-def announced(robot: WireRobot, image: bytes, mode: int) -> Answer:
-    return patient(robot, "BEGIN", {
+def announce(robot: WireRobot, image: bytes, mode: int) -> Answer:
+    return ask_while_busy(robot, "BEGIN", {
         "mode": mode, "isa_major": image[2], "isa_minor": image[3], "start": image[4],
         "header_length": image[5], "devices": int.from_bytes(image[6:8], "little"),
         "code_length": int.from_bytes(image[8:10], "little"),
     })  # fmt: skip
 
 
-def sent(robot: WireRobot, image: bytes, mode: int) -> Answer:
+def send_image(robot: WireRobot, image: bytes, mode: int) -> Answer:
     """Bring an image in pieces, as it is; return the first answer that is not OK, or the last."""
     rest = image[HEADER + 4 :]
-    answer = announced(robot, image, mode)
+    answer = announce(robot, image, mode)
     most = PAYLOAD_BYTES - 2
     for offset in range(0, len(rest), most):
         if answer.status:
@@ -150,17 +150,17 @@ def sent(robot: WireRobot, image: bytes, mode: int) -> Answer:
     return robot.ask("COMMIT", {"checksum": int.from_bytes(image[HEADER : HEADER + 4], "little")})
 
 
-def _program(program: LinkProgram) -> Callable[[WireRobot], tuple[str, ...]]:
-    def found(robot: WireRobot) -> tuple[str, ...]:
+def _program_check(program: LinkProgram) -> Callable[[WireRobot], tuple[str, ...]]:
+    def observe(robot: WireRobot) -> tuple[str, ...]:
         if len(program.code) < PAYLOAD_BYTES:
-            answer = live(robot, program.code)
+            answer = run_live(robot, program.code)
         else:
-            answer = sent(robot, pack("SI", 0, program.code), RUN)
+            answer = send_image(robot, pack("SI", 0, program.code), RUN)
         if answer.status:
-            return (said(answer),)
+            return (answer_text(answer),)
         return _run_events(robot, program.takes_s + EVENT_S)
 
-    return found
+    return observe
 
 
 def _run_events(robot: WireRobot, seconds: float) -> tuple[str, ...]:
@@ -182,21 +182,21 @@ def _run_events(robot: WireRobot, seconds: float) -> tuple[str, ...]:
 
 
 def _refusal_check(code: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
-    def found(robot: WireRobot) -> tuple[str, ...]:
+    def observe(robot: WireRobot) -> tuple[str, ...]:
         if len(code) < PAYLOAD_BYTES:
-            return (said(patient(robot, "PROGRAM", {"mode": 0, "code": code})),)
-        return (said(sent(robot, pack("SI", 0, code), 0)),)
+            return (answer_text(ask_while_busy(robot, "PROGRAM", {"mode": 0, "code": code})),)
+        return (answer_text(send_image(robot, pack("SI", 0, code), 0)),)
 
-    return found
+    return observe
 
 
 # -- frames ---------------------------------------------------------------------------------------
 
 
-def _hello(robot: WireRobot) -> tuple[str, ...]:
+def _check_hello(robot: WireRobot) -> tuple[str, ...]:
     answer = robot.hello()
     if answer.status:
-        return (said(answer),)
+        return (answer_text(answer),)
     number = answer.number
     large = number("largest") >= SMALL_FRAME and number("window") >= 1
     isa = f"isa {number('isa_major')}.{number('isa_minor')}"
@@ -209,44 +209,44 @@ def _hello(robot: WireRobot) -> tuple[str, ...]:
 
 def _check_damaged_frame(robot: WireRobot) -> tuple[str, ...]:
     before = robot.ask("STATUS").number("damaged")
-    frame = bytearray(encoded(Frame(BY_NAME["PING"].number, 200, robot.epoch)))
+    frame = bytearray(encode_frame(Frame(BY_NAME["PING"].number, 200, robot.epoch)))
     frame[-2] ^= 0x55  # of the checksum
     robot.send(b"\0" + bytes(frame).replace(b"\0", b"\x55", len(frame) - 1)[:-1] + b"\0")
-    replies = robot.heard(0.3)
+    replies = robot.receive(0.3)
     count = (robot.ask("STATUS").number("damaged") - before) % 256
     return ("no answer" if not replies else "an answer", f"damaged: {count} more")
 
 
 def _check_repeated_request(robot: WireRobot) -> tuple[str, ...]:
-    payload = written(BY_NAME["LIVE"].request, {"mode": RUN, "code": SHOW_7})
+    payload = encode_payload(BY_NAME["LIVE"].request, {"mode": RUN, "code": SHOW_7})
     number = BY_NAME["LIVE"].number
     epoch = robot.epoch
     first = robot.ask_frame(number, payload)
     robot.wait(EVENT_S, "DONE")
     second = robot.again(number, payload, epoch=epoch)
     robot.wait(0.4)
-    same = "the same answer" if first.payload == second.payload else said(second)
-    return (said(first), same, f"{sum(e.name == 'SHOW' for e in robot.events)} SHOW")
+    same = "the same answer" if first.payload == second.payload else answer_text(second)
+    return (answer_text(first), same, f"{sum(e.name == 'SHOW' for e in robot.events)} SHOW")
 
 
-def _noise(robot: WireRobot) -> tuple[str, ...]:
+def _check_noise(robot: WireRobot) -> tuple[str, ...]:
     robot.send(bytes.fromhex("80feff80818283") * 20)
-    return (said(robot.ask("PING")),)
+    return (answer_text(robot.ask("PING")),)
 
 
-def _stale(robot: WireRobot) -> tuple[str, ...]:
+def _check_stale(robot: WireRobot) -> tuple[str, ...]:
     number = BY_NAME["CLEAR"].number
-    return (said(robot.ask_frame(number, b"", epoch=(robot.epoch + 100) & 0xFF)),)
+    return (answer_text(robot.ask_frame(number, b"", epoch=(robot.epoch + 100) & 0xFF)),)
 
 
-_WHERE = ("no place before", "1 of what runs", "no place unasked")
+_PLACE_ROWS = ("no place before", "1 of what runs", "no place unasked")
 
 
 def _check_place(robot: WireRobot) -> tuple[str, ...]:
-    if not met(robot).number("features") & PLACES:
-        return _WHERE  # it does not say that it tells places: nobody asks it
+    if not greet(robot).number("features") & PLACES:
+        return _PLACE_ROWS  # it does not say that it tells places: nobody asks it
     before = robot.ask("PING", {"asks": b"?"})
-    program = live(robot, WAIT_20).number("program")
+    program = run_live(robot, WAIT_20).number("program")
     place = _rest_field(robot.ask("PING", {"asks": b"?"}), "place")
     message = f"{int.from_bytes(place[:2], 'little')} of "
     message += "what runs" if place[2:] == program.to_bytes(4, "little") else "something else"
@@ -264,18 +264,19 @@ def _rest_field(answer: Answer, name: str) -> bytes:
 
 LINK_CHECKS = (
     Check("link: HELLO", (f"link {MAJOR}", f"isa {ISA_MAJOR}.{ISA_MINOR}",
-                          "frames of 63 bytes", "the same nonce again: the same session"), _hello),
-    Check("link: PING", ("OK",), lambda robot: (said(robot.ask("PING")),)),
-    Check("link: where a program is", _WHERE, _check_place),
+                          "frames of 63 bytes", "the same nonce again: the same session"),
+          _check_hello),
+    Check("link: PING", ("OK",), lambda robot: (answer_text(robot.ask("PING")),)),
+    Check("link: where a program is", _PLACE_ROWS, _check_place),
     Check("link: a message that nobody knows", ("UNKNOWN_MESSAGE",),
-          lambda robot: (said(robot.ask_frame(NO_MESSAGE, b"")),)),
+          lambda robot: (answer_text(robot.ask_frame(NO_MESSAGE, b"")),)),
     Check("link: a payload that is too long", ("BAD_LENGTH",),
-          lambda robot: (said(robot.ask_frame(BY_NAME["PING"].number, b"??")),)),
+          lambda robot: (answer_text(robot.ask_frame(BY_NAME["PING"].number, b"??")),)),
     Check("link: a payload that is too short", ("BAD_LENGTH",),
-          lambda robot: (said(robot.ask_frame(BY_NAME["COMMIT"].number, b"abc")),)),
-    Check("link: a request of another epoch", ("STALE",), _stale),
+          lambda robot: (answer_text(robot.ask_frame(BY_NAME["COMMIT"].number, b"abc")),)),
+    Check("link: a request of another epoch", ("STALE",), _check_stale),
     Check("link: a damaged frame", ("no answer", "damaged: 1 more"), _check_damaged_frame),
-    Check("link: a request after noise", ("OK",), _noise),
+    Check("link: a request after noise", ("OK",), _check_noise),
     Check("link: a request that comes twice", ("OK", "the same answer", "1 SHOW"),
         _check_repeated_request),
 )  # fmt: skip
@@ -286,45 +287,45 @@ LINK_CHECKS = (
 LONG = pack("SI", 0, bytes.fromhex("310001") * 40)
 
 
-def _changed(at: int, value: int) -> bytes:
+def _change_byte(at: int, value: int) -> bytes:
     """Return the image with another byte and its old checksum."""
     return LONG[:at] + bytes([value]) + LONG[at + 1 :]
 
 
 def _image_check(image: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
-    return lambda robot: (said(sent(robot, image, 0)),)
+    return lambda robot: (answer_text(send_image(robot, image, 0)),)
 
 
-def _fetched(robot: WireRobot) -> tuple[str, ...]:
-    answer = sent(robot, LONG, 0)
+def _check_fetch(robot: WireRobot) -> tuple[str, ...]:
+    answer = send_image(robot, LONG, 0)
     if answer.status:
-        return (said(answer),)
+        return (answer_text(answer),)
     image = b""
     while len(image) < len(LONG):
         answer = robot.ask("FETCH", {"offset": len(image)})
         piece = answer.values.get("bytes")
         if answer.status or not isinstance(piece, bytes) or not piece:
-            return (said(answer),)
+            return (answer_text(answer),)
         image += piece
     return ("the same image" if image == LONG else "another image",)
 
 
-def _incomplete(robot: WireRobot) -> tuple[str, ...]:
-    announced(robot, LONG, 0)
+def _check_incomplete(robot: WireRobot) -> tuple[str, ...]:
+    announce(robot, LONG, 0)
     robot.ask("DATA", {"offset": 0, "bytes": LONG[HEADER + 4 : HEADER + 24]})
     gap = robot.ask("DATA", {"offset": 30, "bytes": b"?"})
-    return (f"next {gap.number('next')}", said(robot.ask("COMMIT", {"checksum": 0})))
+    return (f"next {gap.number('next')}", answer_text(robot.ask("COMMIT", {"checksum": 0})))
 
 
 IMAGE_CHECKS = (
-    Check("images: FETCH brings back what was sent", ("the same image",), _fetched),
+    Check("images: FETCH brings back what was sent", ("the same image",), _check_fetch),
     Check("images: another major version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | ISA_MINOR}",),
-          _image_check(_changed(2, ISA_MAJOR + 1))),
+          _image_check(_change_byte(2, ISA_MAJOR + 1))),
     Check("images: a later minor version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | ISA_MINOR}",),
-          _image_check(_changed(3, ISA_MINOR + 1))),
-    Check("images: another checksum", ("DAMAGED",), _image_check(_changed(HEADER,
+          _image_check(_change_byte(3, ISA_MINOR + 1))),
+    Check("images: another checksum", ("DAMAGED",), _image_check(_change_byte(HEADER,
         LONG[HEADER] ^ 1))),
-    Check("images: a piece is missing", ("next 20", "INCOMPLETE 20"), _incomplete),
+    Check("images: a piece is missing", ("next 20", "INCOMPLETE 20"), _check_incomplete),
 )  # fmt: skip
 
 
@@ -336,38 +337,44 @@ def _state(answer: Answer) -> str:
     return STATES[number] if 0 <= number < len(STATES) else f"state {number}"
 
 
-def _stopped(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tuple[str, ...]]:
-    def found(robot: WireRobot) -> tuple[str, ...]:
-        live(robot, WAIT_20)
+def _stop_check(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tuple[str, ...]]:
+    def observe(robot: WireRobot) -> tuple[str, ...]:
+        run_live(robot, WAIT_20)
         robot.events.clear()
         stop(robot)
         event = robot.wait(EVENT_S, "STOPPED")
         cause = "no STOPPED" if event is None else f"STOPPED {event.number('cause')}"
         state = _state(robot.ask("PING"))
-        latched = said(live(robot, SHOW_7))
-        return (cause, state, latched, said(robot.ask("CLEAR")), said(live(robot, SHOW_7)))
+        latched = answer_text(run_live(robot, SHOW_7))
+        return (
+            cause,
+            state,
+            latched,
+            answer_text(robot.ask("CLEAR")),
+            answer_text(run_live(robot, SHOW_7)),
+        )
 
-    return found
+    return observe
 
 
 def _check_silence(robot: WireRobot) -> tuple[str, ...]:
-    live(robot, WAIT_20)
+    run_live(robot, WAIT_20)
     robot.wait(SILENCE_S, "FAULT", heartbeats=False)
     status = robot.ask("STATUS")
     return (_state(status), f"fault {status.number('fault')}")
 
 
-def _attended(robot: WireRobot) -> tuple[str, ...]:
-    live(robot, WAIT_20)
+def _check_attended(robot: WireRobot) -> tuple[str, ...]:
+    run_live(robot, WAIT_20)
     robot.wait(ATTENDED_S)
     return (_state(robot.ask("PING")),)
 
 
 STOP_CHECKS = (
     Check("stops: the stop sequence", ("STOPPED 1", "STOPPED", "LATCHED", "OK", "OK"),
-          _stopped(lambda robot: robot.send(bytes(STOP_BYTES)))),
+          _stop_check(lambda robot: robot.send(bytes(STOP_BYTES)))),
     Check("stops: STOP", ("STOPPED 2", "STOPPED", "LATCHED", "OK", "OK"),
-          _stopped(lambda robot: robot.ask("STOP"))),
+          _stop_check(lambda robot: robot.ask("STOP"))),
     Check("stops: a second of silence", ("FAULTED", "fault 64"), _check_silence),
-    Check("stops: a run that is attended goes on", ("RUNNING",), _attended),
+    Check("stops: a run that is attended goes on", ("RUNNING",), _check_attended),
 )  # fmt: skip

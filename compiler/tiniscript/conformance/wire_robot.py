@@ -10,7 +10,7 @@ from time import monotonic
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -19,8 +19,8 @@ from tiniscript.link.messages import (
     MINOR,
     STATUSES,
     Malformed,
-    read,
-    written,
+    decode_payload,
+    encode_payload,
 )
 from tiniscript.link.wire import Wire
 
@@ -87,7 +87,7 @@ class WireRobot:
     ) -> Answer:
         """Return the answer to a request with a new number; send it again where none comes."""
         message = BY_NAME[name]
-        payload = written(message.request, values or {})
+        payload = encode_payload(message.request, values or {})
         return self.ask_frame(message.number, payload, tries, message=name)
 
     def ask_frame(
@@ -105,7 +105,7 @@ class WireRobot:
         """The same with the number of the request before."""
         frame = Frame(number, self._seq, self.epoch if epoch is None else epoch, payload)
         for _ in range(tries):
-            self.send(b"\0" + encoded(frame))
+            self.send(b"\0" + encode_frame(frame))
             until_s = monotonic() + self.answer_ms / 1000
             while monotonic() < until_s:
                 for reply in self._replies():
@@ -131,7 +131,7 @@ class WireRobot:
             else:
                 self._replies()
 
-    def heard(self, seconds: float) -> list[Frame]:
+    def receive(self, seconds: float) -> list[Frame]:
         """Return the replies of so long a time."""
         until_s = monotonic() + seconds
         frames: list[Frame] = []
@@ -141,9 +141,9 @@ class WireRobot:
 
     def _replies(self) -> list[Frame]:
         """Take what has arrived: keep events and the epoch, and return the replies."""
-        *packets, self._rest = (self._rest + self.wire.heard(LOOK_MS, 1)).split(b"\0")
+        *packets, self._rest = (self._rest + self.wire.receive(LOOK_MS, 1)).split(b"\0")
         self._rest = self._rest[-1024:]
-        frames = [frame for frame in map(decoded, filter(None, packets)) if frame]
+        frames = [frame for frame in map(decode_frame, filter(None, packets)) if frame]
         replies = []
         for frame in frames:
             if not frame.is_reply:
@@ -159,7 +159,9 @@ class WireRobot:
         message = BY_NUMBER.get(frame.number)
         if message is not None:
             try:
-                self.events.append(Event(message.name, read(message.reply, frame.payload)))
+                self.events.append(
+                    Event(message.name, decode_payload(message.reply, frame.payload))
+                )
             except Malformed:
                 self.events.append(Event(f"{message.name} with other fields", {}))
 
@@ -169,7 +171,7 @@ def _answer(number: int, payload: bytes) -> Answer:
     if status != STATUSES["OK"]:
         return Answer(status, int.from_bytes(rest[:2], "little"), {}, payload)
     try:
-        values = read(BY_NUMBER[number].reply, rest)
+        values = decode_payload(BY_NUMBER[number].reply, rest)
     except (KeyError, Malformed):
         return Answer(-1, 0, {}, payload)
     return Answer(status, 0, values, payload)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence, Set
 from typing import NamedTuple
 
-from tiniscript.base.source import Edit, Source, Span, applied, overlap
+from tiniscript.base.source import Edit, Source, Span, apply_edits, overlap
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 
@@ -61,7 +61,7 @@ class Fixed(NamedTuple):
 Check = Callable[[str], list[Diagnostic]]
 
 
-def fixed(text: str, check: Check) -> Fixed:
+def repair_program(text: str, check: Check) -> Fixed:
     """Return a program with its sure repairs. `check` finds the diagnostics of a text.
 
     A long program takes long, and has many mistakes: it is not checked so often.
@@ -72,7 +72,7 @@ def fixed(text: str, check: Check) -> Fixed:
     steps = _steps(diagnostics)
     while left > 0 and (repairs := next(steps, None)):
         edits = [edit for repair in repairs for edit in repair]
-        changed = applied(text, edits)
+        changed = apply_edits(text, edits)
         after = check(changed)
         left -= 1
         if is_better(after, diagnostics, edits):
@@ -82,7 +82,7 @@ def fixed(text: str, check: Check) -> Fixed:
 
 def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     """Give the sure repairs that do not touch, and then each one alone."""
-    sure = [it.repair.edits for it in diagnostics[:MANY] if it.repair and it.repair.is_sure]
+    sure = [item.repair.edits for item in diagnostics[:MANY] if item.repair and item.repair.is_sure]
     together: list[tuple[Edit, ...]] = []
     for edits in sure:
         if not any(overlap(edits, other) for other in together):
@@ -103,7 +103,7 @@ def offer(text: str, diagnostics: Sequence[Diagnostic], which: int, check: Check
     lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
     if not edits or any("~" in line for line in lines):  # else it is copied again
         return []
-    after = check(applied(text, edits))
+    after = check(apply_edits(text, edits))
     if diagnostic.is_mistake:
         return edits if is_better(after, diagnostics, edits) else []
     return edits if _removes_warning(after, diagnostic.code, diagnostics) else []
@@ -164,13 +164,13 @@ def _covered_by_offer(
     others = set() if offers[k] else {codes.NEVER_ENDS.number}  # a header is shown without its end
     if diagnostics[k].code is codes.RESERVED:  # `S = S + 1`, by whatever name
         others.add(codes.USED_BEFORE_SET.number)
-    for it, edits in zip(diagnostics, offers, strict=True):
-        if it is not diagnostics[k]:
-            others |= {text[slice(*it.span)].upper()} - {""}
+    for item, edits in zip(diagnostics, offers, strict=True):
+        if item is not diagnostics[k]:
+            others |= {text[slice(*item.span)].upper()} - {""}
             if overlap(edits, offers[k]):
                 # their ends are in one place
-                others |= {it.code.number, codes.WRONG_END.number, codes.NOT_OPEN.number}
-            elif it.is_mistake and not edits and it.span.start < diagnostics[k].span.start:
+                others |= {item.code.number, codes.WRONG_END.number, codes.NOT_OPEN.number}
+            elif item.is_mistake and not edits and item.span.start < diagnostics[k].span.start:
                 others.add(codes.NOT_OPEN.number)  # its header may be what nobody can read
     return others
 
@@ -193,17 +193,17 @@ class _InPlace:
 
     def __init__(self, text: str, edits: Sequence[Edit], check: Check) -> None:
         self.edits = sorted(edits)
-        self.text = applied(text, edits)
+        self.text = apply_edits(text, edits)
         self.mistakes = [diagnostic for diagnostic in check(self.text) if diagnostic.is_mistake]
 
     def is_right(
-        self, diagnostic: Diagnostic, its: Sequence[Edit], others: Set[str] = frozenset()
+        self, diagnostic: Diagnostic, own_edits: Sequence[Edit], others: Set[str] = frozenset()
     ) -> bool:
         """Whether no mistake begins in what is offered, but of a code or a word of `others`."""
         shift, shown = 0, []
         for edit in self.edits:
             start = edit.span.start + shift
-            shown += [Span(start, start + len(edit.text))] if edit in its else []
+            shown += [Span(start, start + len(edit.text))] if edit in own_edits else []
             shift += len(edit.text) - (edit.span.end - edit.span.start)
         text = next(filter(None, map(diagnostic.values.get, _WRITTEN)), "")
         begin = self.text.find(text, max(0, shown[0].start - len(text)))

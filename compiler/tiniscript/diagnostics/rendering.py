@@ -124,7 +124,7 @@ def explain(code: str, lang: str) -> str | None:
         _text(f"{number}/more", lang),
     ]
     for part in ("wrong", "right"):
-        if program := languages.found(CATALOGUE, f"{number}/{part}", lang):
+        if program := languages.find_text(CATALOGUE, f"{number}/{part}", lang):
             parts.append(_label(part, lang) + "\n\n" + indent(program, "    "))
     return "\n\n".join(parts)
 
@@ -146,14 +146,14 @@ def _label(name: str, lang: str) -> str:
 
 
 def _term(word: str, lang: str) -> str | None:
-    return languages.found(CATALOGUE, f"term/{word}", lang)
+    return languages.find_text(CATALOGUE, f"term/{word}", lang)
 
 
 def _texts(key: str, lang: str) -> Iterator[str]:
     """Yield the texts of which one is taken."""
     yield _text(key, lang)
     for number in count(2):
-        text = languages.found(CATALOGUE, f"{key}/{number}", lang)
+        text = languages.find_text(CATALOGUE, f"{key}/{number}", lang)
         if text is None:
             return
         yield text

@@ -22,7 +22,7 @@ from tiniscript.doctor.computer import (
     looks_wireless,
     without_driver,
 )
-from tiniscript.doctor.examination import Expected, Heard, examine
+from tiniscript.doctor.examination import Expectations, RobotAnswers, examine
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.line import Line
 from tiniscript.doctor.robot import SharedRobot
@@ -82,7 +82,7 @@ class Question(NamedTuple):
     port: str | None
     last: str | None
     baud: int
-    expected: Expected
+    expected: Expectations
     nonce: int
     watch_ms: int = 0
     virtual: tuple[str, ...] = ()
@@ -108,7 +108,7 @@ def diagnose(doors: Doors, question: Question) -> Diagnosis:
     try:
         client = doors.join(port)
         if client is not None:
-            return Diagnosis(port, _shared(client, doors, question), computer, True)
+            return Diagnosis(port, _diagnose_shared(client, doors, question), computer, True)
     except OtherVersion as other:
         values = {"verb": other.registration.verb, "theirs": other.version}
         return Diagnosis(port, (sure("other_tsc", **values),), computer, False)
@@ -121,10 +121,10 @@ def diagnose(doors: Doors, question: Question) -> Diagnosis:
     is_radio = doors.is_radio(port) or port.startswith(PSEUDO)
     if not is_radio and _is_listed(doors.system, computer, port) and not doors.may_open(port):
         return Diagnosis(port, (sure("not_opened"),), computer, False)
-    return _opened(doors, question, computer, port, is_radio)
+    return _diagnose_open_port(doors, question, computer, port, is_radio)
 
 
-def _opened(
+def _diagnose_open_port(
     doors: Doors, question: Question, computer: Computer, port: str, is_radio: bool
 ) -> Diagnosis:
     try:
@@ -135,9 +135,9 @@ def _opened(
         )
     is_radio = is_radio and not port.startswith(PSEUDO)
     asked = Line(question.baud, is_radio, question.nonce)
-    expected, heard = question.expected, list[Heard]()
+    expected, heard = question.expected, list[RobotAnswers]()
 
-    def hear(each: Heard) -> None:
+    def hear(each: RobotAnswers) -> None:
         heard.append(each)
         expected.hear(each)
 
@@ -152,7 +152,7 @@ def _opened(
     has_key = any(each.hello.features & OWNED and expected.has_key(each.hello.id) for each in heard)
     if (question.watch_ms or has_key) and not any(finding.is_wrong for finding in findings):
         with doors.share(port) as shared:
-            findings = list(_shared(shared, doors, question))
+            findings = list(_diagnose_shared(shared, doors, question))
     return Diagnosis(port, tuple(findings), computer, True)
 
 
@@ -189,7 +189,9 @@ def _no_port_finding(computer: Computer) -> Finding:
     return sure("no_port")
 
 
-def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[Finding, ...]:
+def _diagnose_shared(
+    client: LinkConnection, doors: Doors, question: Question
+) -> tuple[Finding, ...]:
     robot = SharedRobot(client)
     doors.on_step("hello")
     try:
@@ -224,7 +226,7 @@ def _is_listed(system: System, computer: Computer, port: str) -> bool:
     )  # fmt: skip
 
 
-def unopened(system: System, port: str, failure: PortError) -> Finding:
+def open_failure(system: System, port: str, failure: PortError) -> Finding:
     """Return why a port that somebody has tried to open did not open."""
     computer = inspect_computer(system)
     return _port_in_use(system, computer, port) or _open_failure(failure, computer, port, system)
@@ -233,7 +235,7 @@ def unopened(system: System, port: str, failure: PortError) -> Finding:
 def _open_failure(failure: PortError, computer: Computer, port: str, system: System) -> Finding:
     """Return why a port did not open."""
     if failure.reason == errors.MISSING:
-        return _missing(computer, port, system)
+        return _missing_port(computer, port, system)
     if failure.reason == errors.FORBIDDEN:
         return sure("no_permission", group="")
     if failure.reason == errors.BUSY:
@@ -253,7 +255,7 @@ def _open_failure(failure: PortError, computer: Computer, port: str, system: Sys
     return sure("port_broken", why=failure.why)
 
 
-def _missing(computer: Computer, port: str, system: System) -> Finding:
+def _missing_port(computer: Computer, port: str, system: System) -> Finding:
     """Return why the port that was named does not exist."""
     if looks_wireless(port):
         if computer.bluetooth == NONE:

@@ -31,7 +31,7 @@ from tiniscript.link.names import row_name
 from tiniscript.link.outcomes import OTHER_ROBOT, UNPROVEN
 from tiniscript.link.payloads import HelloReply, SentReply, StatusReply, TrimReply
 from tiniscript.link.requests import OK, Reply
-from tiniscript.link.robot_state import lost_packets
+from tiniscript.link.robot_state import line_error_count
 
 PINGS = 20
 PAUSE_MS = 50  # between two of them
@@ -43,7 +43,7 @@ _BROWN_OUT = "BROWN_OUT"
 _WATCHDOG = "WATCHDOG"
 
 
-class Heard(NamedTuple):
+class RobotAnswers(NamedTuple):
     """What a robot has answered. `trips_ms`: how long it took to answer each PING at once."""
 
     hello: HelloReply
@@ -52,7 +52,7 @@ class Heard(NamedTuple):
     trips_ms: tuple[float, ...]
 
 
-class Expected(NamedTuple):
+class Expectations(NamedTuple):
     """The kit that the robot should have, None for any; `names` says whose a kit is, or nothing.
 
     `has_key` says whether this computer has a key of the robot with this id. `doubts` returns the
@@ -68,7 +68,7 @@ class Expected(NamedTuple):
     doubts: Callable[[str, HelloReply], str] = lambda port, hello: ""
     port: str = ""
     note: Callable[[Mapping[str, str]], None] = lambda told: None
-    hear: Callable[[Heard], None] = lambda heard: None
+    hear: Callable[[RobotAnswers], None] = lambda heard: None
     pings: int = PINGS
 
 
@@ -80,7 +80,7 @@ class Restart(NamedTuple):
 
 
 def examine(
-    robot: Robot, first: Reply[SentReply], expected: Expected, watch_ms: int = 0,
+    robot: Robot, first: Reply[SentReply], expected: Expectations, watch_ms: int = 0,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
     """Return what is wrong with a robot whose answer to HELLO is `first`.
@@ -107,7 +107,7 @@ def examine(
         findings += _status_findings(before)
         lost, trips_ms = _link_findings(robot, before, expected, on_step)
         findings += lost
-        expected.hear(Heard(hello, before, _trim(robot, hello), trips_ms))
+        expected.hear(RobotAnswers(hello, before, _trim(robot, hello), trips_ms))
         on_step("watch")
         restarts = _watch_restarts(robot, hello, watch_ms)
     after = robot.status() if before is not None else None
@@ -132,7 +132,7 @@ def examine(
     return findings
 
 
-def _report_fields(hello: HelloReply, expected: Expected) -> dict[str, str]:
+def _report_fields(hello: HelloReply, expected: Expectations) -> dict[str, str]:
     """Return what a report tells of a robot: not whose it is."""
     features = [name for bit, name, _ in FEATURES if hello.features & bit]
     return {
@@ -165,7 +165,7 @@ def _versions(hello: HelloReply) -> list[Finding]:
     return [sure("firmware_newer" if is_newer else "firmware_older", **values)]
 
 
-def _kit(hello: HelloReply, expected: Expected) -> list[Finding]:
+def _kit(hello: HelloReply, expected: Expectations) -> list[Finding]:
     result = expected.names(hello.kit)
     kit = f"{hello.kit:04x}"
     if expected.kit is not None and hello.kit != expected.kit:
@@ -175,7 +175,7 @@ def _kit(hello: HelloReply, expected: Expected) -> list[Finding]:
     return []
 
 
-def _owner(robot: Robot, hello: HelloReply, expected: Expected) -> list[Finding]:
+def _owner(robot: Robot, hello: HelloReply, expected: Expectations) -> list[Finding]:
     """Compare who may drive it: what is refused for that looks like a robot that does nothing."""
     is_open = not robot.has_shown_keys and expected.has_key(hello.id)
     is_others = hello.features & (OWNED | YOURS) == OWNED and not is_open
@@ -197,7 +197,7 @@ def _status_findings(status: StatusReply) -> list[Finding]:
 
 
 def _link_findings(
-    robot: Robot, before: StatusReply, expected: Expected, on_step: Callable[[str], None]
+    robot: Robot, before: StatusReply, expected: Expectations, on_step: Callable[[str], None]
 ) -> tuple[list[Finding], tuple[float, ...]]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
     on_step("pings")
@@ -213,8 +213,8 @@ def _link_findings(
     lost = []
     if max(missed, damaged_count) * PINGS >= LOSSY * expected.pings:
         lost = [sure("lossy", **values)] if after is not None else []
-    elif after is not None and lost_packets(before) >= 10 * LOSSY:
-        lost = [probably("lossy", **{**values, "damaged": str(lost_packets(before))})]
+    elif after is not None and line_error_count(before) >= 10 * LOSSY:
+        lost = [probably("lossy", **{**values, "damaged": str(line_error_count(before))})]
     return lost, trips_ms
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
-from tiniscript.doctor.examination import Expected, examine
+from tiniscript.doctor.examination import Expectations, examine
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
 from tiniscript.flash.bootloaders import MEGA, NANO_OLD, UNO, Bootloader
@@ -41,24 +41,24 @@ def answers(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool
     for line, greeting, answer in GREETINGS:
         wire.set_baud(line.baud)
         wire.restart()
-        said = wire.heard(BLINK_MS, BLINK_MS)
+        said = wire.receive(BLINK_MS, BLINK_MS)
         is_there = False
         for _ in range(TRIES):
             wire.send(greeting)
-            said += wire.heard(ANSWER_MS)
+            said += wire.receive(ANSWER_MS)
             if is_there := answer in said:
                 break
         if is_there:
-            wire.heard(OVER_MS, OVER_MS)
-            return line, _greeted(wire, greeting, answer)
+            wire.receive(OVER_MS, OVER_MS)
+            return line, _greet(wire, greeting, answer)
         hear(said)
     return None
 
 
-def _greeted(wire: Wire, greeting: bytes, answer: bytes) -> bool:
+def _greet(wire: Wire, greeting: bytes, answer: bytes) -> bool:
     for _ in range(TRIES):
         wire.send(greeting)
-        if answer in wire.heard(ANSWER_MS):
+        if answer in wire.receive(ANSWER_MS):
             return True
     return False
 
@@ -80,12 +80,12 @@ class Line(NamedTuple):
 
 
 def diagnose_line(
-    wire: Wire, line: Line, expected: Expected,
+    wire: Wire, line: Line, expected: Expectations,
     on_step: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
     """Return what is at the other end. `on_step` gets what is done next, a short name."""
     on_step("listen")
-    before = wire.heard(LISTEN_MS if line.is_radio else BOOT_MS)
+    before = wire.receive(LISTEN_MS if line.is_radio else BOOT_MS)
     robot = _robot(wire, line, expected)
     on_step("hello")
     reply = robot.hello(HELLOS)
@@ -99,11 +99,11 @@ def diagnose_line(
     if found is not None:
         return [found]
     if line.is_radio:
-        return [others.best() or _by_radio(heard)]
+        return [others.best_finding() or _by_radio(heard)]
     return _by_cable(wire, line, expected, heard, others, on_step)
 
 
-def _robot(wire: Wire, line: Line, expected: Expected) -> WireRobot:
+def _robot(wire: Wire, line: Line, expected: Expectations) -> WireRobot:
     kit = expected.kit or 0
     return WireRobot(wire, line.nonce, kit, RADIO_MS if line.is_radio else CABLE_MS)
 
@@ -132,10 +132,10 @@ class _Others:
         says nothing else."""
         found = self.look(heard)
         is_echo = _is_echo(heard, spoken)
-        if found is None and not (is_echo and self.best() is None):
+        if found is None and not (is_echo and self.best_finding() is None):
             found = self.ask(heard, not is_echo)
         if found is None and is_echo:
-            said = _beside(heard, spoken)
+            said = _text_beside(heard, spoken)
             found = sure(ECHO, said=said) if said else echo()
         return found
 
@@ -143,8 +143,8 @@ class _Others:
         """Return what has surely sent these bytes, by its row or as a robot that does not hear."""
         if foreign.is_robot(heard):
             return probably("one_way")
-        found = foreign.recognised(heard)
-        return None if found is not None and found.name in foreign.GENERAL else self._judged(found)
+        found = foreign.identify_board(heard)
+        return None if found is not None and found.name in foreign.GENERAL else self._judge(found)
 
     def ask(self, heard: bytes, may_be_text: bool) -> Finding | None:
         """Send the probes, and return what surely answers, or is surely text without them.
@@ -155,26 +155,30 @@ class _Others:
         for row in foreign.ROWS:
             if row.probe:
                 self._wire.send(row.probe)
-                found = self._judged(foreign.recognised(heard + self._wire.heard(self._wait_ms)))
+                found = self._judge(
+                    foreign.identify_board(heard + self._wire.receive(self._wait_ms))
+                )
                 if found is not None:
                     return found
-        if (best := self.best()) is not None and best.cause == "at_firmware":
+        if (best := self.best_finding()) is not None and best.cause == "at_firmware":
             self._wire.send(foreign.ASKS_AT)
-            found = self._judged(foreign.recognised(heard + self._wire.heard(dialects.ANSWER_MS)))
+            found = self._judge(
+                foreign.identify_board(heard + self._wire.receive(dialects.ANSWER_MS))
+            )
             if found is not None:
                 return found
-        return self._judged(foreign.stranger(heard)) if may_be_text else None
+        return self._judge(foreign.stranger(heard)) if may_be_text else None
 
     def settle(self, heard: bytes) -> Finding | None:
         """Return what has sent these bytes, where no question would help."""
-        found = foreign.recognised(heard)
-        return None if found is None else self._judged(found)
+        found = foreign.identify_board(heard)
+        return None if found is None else self._judge(found)
 
-    def best(self) -> Finding | None:
+    def best_finding(self) -> Finding | None:
         """Return what is probably there."""
         return self._kept[0] if self._kept else None
 
-    def _judged(self, found: Foreign | None) -> Finding | None:
+    def _judge(self, found: Foreign | None) -> Finding | None:
         if found is None:
             return None
         finding = Finding(found.name, found.is_sure, {"said": found.said})
@@ -184,7 +188,7 @@ class _Others:
         return None
 
 
-def _echo(wire: Wire, line: Line, expected: Expected) -> Finding:
+def _echo(wire: Wire, line: Line, expected: Expectations) -> Finding:
     """Return what sends back: a sketch has one speed, a wire has every one."""
     if line.is_radio:
         return probably("echo")
@@ -201,7 +205,7 @@ def _echo_of_one_speed(wire: Wire, baud: int) -> Finding:
     return _module(wire, (baud,)) or sure(ECHO, said="")
 
 
-def _beside(heard: bytes, spoken: bytes) -> str:
+def _text_beside(heard: bytes, spoken: bytes) -> str:
     """Return the text that came with what was sent and came back, if any did."""
     for frame in spoken.split(b"\0"):
         heard = heard.replace(frame, b"") if frame else heard
@@ -215,7 +219,7 @@ def _module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
         return None
     if not module.version:  # no module has told which one it is
         wire.send(foreign.ASKS_AT)
-        found = foreign.recognised(wire.heard(dialects.ANSWER_MS))
+        found = foreign.identify_board(wire.receive(dialects.ANSWER_MS))
         if found is not None:
             return Finding(found.name, found.is_sure, {"said": found.said})
     cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
@@ -230,7 +234,7 @@ def _by_radio(heard: bytes) -> Finding:
 
 
 def _by_cable(
-    wire: Wire, line: Line, expected: Expected, heard: bytes, others: _Others,
+    wire: Wire, line: Line, expected: Expectations, heard: bytes, others: _Others,
     on_step: Callable[[str], None],
 ) -> list[Finding]:  # fmt: skip
     garbage = len(heard)
@@ -239,7 +243,7 @@ def _by_cable(
             continue
         on_step("bauds")
         wire.set_baud(baud)
-        more = wire.heard(LISTEN_MS)
+        more = wire.receive(LISTEN_MS)
         robot = _robot(wire, line, expected)
         reply = robot.hello(1)
         if reply is not None:
@@ -266,6 +270,6 @@ def _by_cable(
     if found_bootloader is not None:
         board, is_alone = found_bootloader
         return [sure("bootloader_only", board=board.name) if is_alone
-                else others.best() or probably("other_sketch", said="")]  # fmt: skip
-    kept = others.best()
+                else others.best_finding() or probably("other_sketch", said="")]  # fmt: skip
+    kept = others.best_finding()
     return [kept or (probably("garbled", n=str(garbage)) if garbage >= FEW else probably("silent"))]

@@ -12,8 +12,8 @@ from typing import Any
 
 from tiniscript.bytecode.image import isa_of
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, written
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
+from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, encode_payload
 from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
 from tiniscript.link.requests import OK, Reply, reply_of
@@ -65,15 +65,17 @@ class WireRobot(Robot):
         self._values: dict[str, Mapping[str, int | bytes]] = {"HELLO": hello, "TRIM": {"trim": b""}}
 
     def pause(self, wait_ms: int) -> None:
-        self.heard += self.wire.heard(wait_ms, wait_ms)
+        self.heard += self.wire.receive(wait_ms, wait_ms)
 
     def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
         """Ask until an answer comes; 0x00 goes before each try, as `docs/develop/link.md` says."""
         values = self._values.get(name, {})
         self._seq = (self._seq + 1) & 0xFF
         message = BY_NAME[name]
-        frame = Frame(message.number, self._seq, self._epoch, written(message.request, values))
-        data = b"\0" + encoded(frame)
+        frame = Frame(
+            message.number, self._seq, self._epoch, encode_payload(message.request, values)
+        )
+        data = b"\0" + encode_frame(frame)
         for number in range(tries):
             self.wire.send(data)
             self.spoken += data
@@ -86,13 +88,13 @@ class WireRobot(Robot):
     def _answer(self, name: str, number: int) -> Reply[SentReply] | None:
         result = b""
         for _ in range(READS):
-            more = self.wire.heard(self.answer_ms)
+            more = self.wire.receive(self.answer_ms)
             if not more:
                 break
             result += more
             self.heard += more
             for packet in result.split(b"\0"):
-                frame = decoded(packet) if packet else None
+                frame = decode_frame(packet) if packet else None
                 if frame and frame.is_reply and (frame.number, frame.seq) == (number, self._seq):
                     reply = reply_of(name, frame.payload)
                     if reply is not None:
@@ -120,13 +122,13 @@ class SharedRobot(Robot):
         self.line.event(wait_ms / 1000)
 
     def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
-        def limited(session: Requester) -> PendingRequest[Any]:
+        def with_limit(session: Requester) -> PendingRequest[Any]:
             request: PendingRequest[Any] = getattr(session, name.lower())()
             request.limit_ms = SHARED_MS
             return request
 
         if self._unanswered < SILENT:
-            reply: Reply[SentReply] = self._wait(self.line.do(limited))
+            reply: Reply[SentReply] = self._wait(self.line.begin(with_limit))
             if reply.status not in (LOST, CANCELLED):
                 self._unanswered = 0
                 return reply

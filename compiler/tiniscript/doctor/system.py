@@ -40,7 +40,7 @@ class System:
         return self.root / path.lstrip("/")
 
     def ports(self) -> list[ListedPort]:
-        return ports.listed()
+        return ports.list_ports()
 
     def names(self, folder: str) -> list[str]:
         try:

@@ -43,7 +43,7 @@ _CAUSES = (
 )  # fmt: skip
 
 
-class Ended(NamedTuple):
+class WriteResult(NamedTuple):
     """The outcome, a name from above, and the last lines of output if they help."""
 
     how: str
@@ -96,7 +96,7 @@ def write(
     port: str,
     firmware: Path,
     look: Callable[[StepProgress | None], None],
-) -> Ended:
+) -> WriteResult:
     """Write a firmware, read it back, and compare. `look` is called periodically."""
     words = [*command, "-c", to.programmer, "-p", to.part, "-P", port, "-b", str(to.baud), "-D"]
     words += ["-U", f"flash:w:{firmware}:i"]
@@ -105,9 +105,9 @@ def write(
     except _Over as over:
         return over.ended
     except subprocess.TimeoutExpired:
-        return Ended(ENDLESS)
+        return WriteResult(ENDLESS)
     except children.CannotStart as why:
-        return Ended(FAILED, str(why.strerror or why))
+        return WriteResult(FAILED, str(why.strerror or why))
     return outcome(code, said)
 
 
@@ -116,7 +116,7 @@ class _Over(Exception):
 
     def __init__(self, how: str) -> None:
         super().__init__(how)
-        self.ended = Ended(how)
+        self.ended = WriteResult(how)
 
 
 class _Watch:
@@ -128,7 +128,7 @@ class _Watch:
         self._began_s = self._heard_s = monotonic()
 
     def __call__(self, said: str) -> None:
-        now_s, found = monotonic(), seen(said)
+        now_s, found = monotonic(), parse_progress(said)
         self._look(found)
         if said != self._said:
             self._said, self._heard_s = said, now_s
@@ -146,7 +146,7 @@ def _attempt(said: str) -> int:
     return max(map(int, _ATTEMPT.findall(said)), default=0)
 
 
-def seen(said: str) -> StepProgress | None:
+def parse_progress(said: str) -> StepProgress | None:
     """Return the progress, from its whole output."""
     bars = _BAR.findall(said)
     names = [name for name, _ in bars]
@@ -157,17 +157,17 @@ def seen(said: str) -> StepProgress | None:
     return StepProgress(phase, min(100, 100 * len(marks) // MARKS))
 
 
-def outcome(code: int, said: str) -> Ended:
+def outcome(code: int, said: str) -> WriteResult:
     """Return the outcome, from its exit code and its whole output."""
     if code == 0:
-        return Ended(DONE)
-    began_to_write = seen(said) is not None
+        return WriteResult(DONE)
+    began_to_write = parse_progress(said) is not None
     for how, pattern in _CAUSES:
         if re.search(pattern, said, re.IGNORECASE):
             if began_to_write and how != DIFFERS:
-                return Ended(BROKEN_OFF)
-            return Ended(how)
+                return WriteResult(BROKEN_OFF)
+            return WriteResult(how)
     rows = [row.strip() for row in said.splitlines() if row.strip() and "done." not in row]
     if began_to_write:
-        return Ended(BROKEN_OFF)
-    return Ended(FAILED, rows[-1].removeprefix("avrdude: ") if rows else f"exit code {code}")
+        return WriteResult(BROKEN_OFF)
+    return WriteResult(FAILED, rows[-1].removeprefix("avrdude: ") if rows else f"exit code {code}")

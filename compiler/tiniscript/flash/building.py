@@ -155,7 +155,7 @@ class _Project:
             (folder / name).write_bytes(data)
 
     @property
-    def made(self) -> Path:
+    def hex_file(self) -> Path:
         return self.folder / ".pio" / "build" / self.environment / "firmware.hex"
 
     def run(self, look: Callable[[StepProgress], None], *words: str) -> tuple[int, str]:
@@ -165,7 +165,7 @@ class _Project:
         """
 
         def look_at(said: str) -> None:
-            if found := seen(said, self.files):
+            if found := parse_progress(said, self.files):
                 look(found)
 
         command = [*self.command, self.environment, *words]
@@ -175,7 +175,7 @@ class _Project:
         code, log = self.run(look)
         if too_large := _TOO_LARGE.search(log):
             raise CannotBuild(CannotBuild.TOO_LARGE, "{} > {}".format(*too_large.groups()), log)
-        if code != 0 or (is_hex and not is_whole(self.made)):
+        if code != 0 or (is_hex and not is_whole(self.hex_file)):
             has_begun = _COMPILING.search(log) or not _ONLINE.search(log)
             why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
             raise CannotBuild(why, children.reason(log) or f"exit code {code}", log)
@@ -196,7 +196,7 @@ def build(made_from: Sources, robot: Robot, look: Callable[[StepProgress], None]
             project.environment, less = SMALLER[project.environment]
             look(StepProgress(less, 0))
             project.build(look, is_hex=True)
-        return project.made.read_bytes()
+        return project.hex_file.read_bytes()
 
 
 def upload(
@@ -228,7 +228,7 @@ def _environment() -> dict[str, str]:
     return {**own, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
 
 
-def seen(said: str, files: int) -> StepProgress | None:
+def parse_progress(said: str, files: int) -> StepProgress | None:
     """Return the progress, from its whole output; `files` is the total number of files."""
     text = _WRITING.findall(said)
     if text:

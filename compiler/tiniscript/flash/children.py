@@ -39,7 +39,7 @@ def run(
     first. Raises CannotStart, and TimeoutExpired where it has not ended `leave_s` after its last
     output.
     """
-    with _held_back() as let_through:
+    with _hold_interrupt() as let_through:
         try:
             running = subprocess.Popen(
                 command,
@@ -85,7 +85,7 @@ def run(
 
 
 @contextmanager
-def _held_back() -> Iterator[Callable[[], None]]:
+def _hold_interrupt() -> Iterator[Callable[[], None]]:
     """Keep Ctrl-C until what is yielded is called: nobody would end a program that just starts.
 
     Only the main thread hears of it.

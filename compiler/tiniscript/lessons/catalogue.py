@@ -12,16 +12,16 @@ from pathlib import Path
 from tiniscript import robots
 from tiniscript.base.languages import SOURCE
 from tiniscript.lessons.lesson import Answer, Criterion, Lesson, LessonRefused
-from tiniscript.lessons.markdown import printed
+from tiniscript.lessons.markdown import printed_part
 from tiniscript.lessons.reader import read, read_answers
 from tiniscript.lessons.variation import point_of
-from tiniscript.robots.refusals import shown
+from tiniscript.robots.refusals import printable_value
 from tiniscript.virtual import worlds
 
 NAMED = re.compile(r"\{([a-z_]+(?:\.[a-z_]+)?)\}")
 
 
-def filled(page: str, file: str, lesson: Lesson) -> str:
+def fill_numbers(page: str, file: str, lesson: Lesson) -> str:
     """Return a page with its numbers. Raises LessonRefused where the lesson has none of a name."""
     known = dict(reversed([*_numbers(lesson)]))  # of two criteria of a kind the first one counts
 
@@ -80,7 +80,9 @@ def folder_of(name: str) -> Path:
             return path
     except (OSError, ValueError):  # a name that no folder can have
         pass
-    raise LessonRefused(("no_such_lesson", {"name": shown(name), "most": str(len(shipped))}))
+    raise LessonRefused(
+        ("no_such_lesson", {"name": printable_value(name), "most": str(len(shipped))})
+    )
 
 
 def load(folder: Path) -> Lesson:
@@ -92,7 +94,7 @@ def load(folder: Path) -> Lesson:
 
 def page(folder: Path, who: str, language: str) -> str:
     """Return a page of a lesson as it is printed, as Markdown. Raises LessonRefused."""
-    return printed(whole_page(folder, who, language))
+    return printed_part(whole_page(folder, who, language))
 
 
 def whole_page(folder: Path, who: str, language: str) -> str:
@@ -100,8 +102,8 @@ def whole_page(folder: Path, who: str, language: str) -> str:
     paths = [folder / f"{who}.{item}.md" for item in (language, SOURCE)]
     path = next((path for path in paths if path.is_file()), None)
     if path is None:
-        raise LessonRefused(("no_page", {"file": shown(paths[0].name)}))
-    return filled(_text(path), shown(path.name), load(folder))
+        raise LessonRefused(("no_page", {"file": printable_value(paths[0].name)}))
+    return fill_numbers(_text(path), printable_value(path.name), load(folder))
 
 
 def answers(folder: Path) -> tuple[list[Answer], list[Answer]]:

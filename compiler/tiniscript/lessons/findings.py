@@ -53,7 +53,7 @@ class On(NamedTuple):
     heading: float
 
 
-def between(track: tuple[Sample, ...]) -> list[On]:
+def points_between(track: tuple[Sample, ...]) -> list[On]:
     """Return points of the way, at most a centimetre from each other."""
     ons = [On(float(track[0].ms), *track[0].pose[:2], 0.0, track[0].pose.heading)]
     for sample in track[1:]:

@@ -13,13 +13,13 @@ from itertools import pairwise
 
 from tiniscript.base.fixed_point import ONE, as_text
 from tiniscript.lessons import place_judging
-from tiniscript.lessons.findings import STILL_CM, Finding, Task, between, in_cm, in_seconds
+from tiniscript.lessons.findings import STILL_CM, Finding, Task, in_cm, in_seconds, points_between
 from tiniscript.lessons.lesson import ANY_VALUE, TIME, Criterion, Lesson
-from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, Shown
+from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, ShownValue
 from tiniscript.lessons.variation import is_mirrored
 from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import distance as distance_to
-from tiniscript.virtual.geometry import joined
+from tiniscript.virtual.geometry import join_points
 
 STILL_DEGREES = 5.0  # less is no turn
 EARLY_MS = 5000  # within them a robot that turns to the wrong side has lost its line
@@ -35,7 +35,7 @@ WHERE = AT_END | {"reaches"}
 BEFORE = {"pauses": {"reaches"}, "beeps": {"reaches", "ends_in", "pauses"}}
 
 
-def judged(run: Run, lesson: Lesson) -> list[Finding]:
+def judge_run(run: Run, lesson: Lesson) -> list[Finding]:
     """Return what is missing in a run; nothing: it is right."""
     if run.ending == ASKS:
         return [Finding("", "asks")]
@@ -116,7 +116,9 @@ def _never_touches(criterion: Criterion, task: Task) -> Finding | None:
     touches = task.run.touches
     if criterion.places:
         place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
-        there = (at.ms for at in between(task.run.track) if math.dist(place, at[1:3]) <= within_cm)
+        there = (
+            at.ms for at in points_between(task.run.track) if math.dist(place, at[1:3]) <= within_cm
+        )
         there_ms = next(there, math.inf)
         touches = tuple(touch for touch in touches if touch.ms < there_ms)
     if not touches:
@@ -130,7 +132,7 @@ def _judge_line(criterion: Criterion, task: Task) -> Finding | None:
     run, within_cm = task.run, criterion.numbers["within_cm"]
     eyes = [place for place in run.robot.profile.body.places.values() if place.sees == "line"]
     ahead_cm = sum(eye.x_cm for eye in eyes) / len(eyes) if eyes else 0.0
-    segments = [segment for line in run.world.lines for segment in joined(list(line.points))]
+    segments = [segment for line in run.world.lines for segment in join_points(list(line.points))]
     left = {
         (segment.a.x + (segment.b.x - segment.a.x) * k / n,
          segment.a.y + (segment.b.y - segment.a.y) * k / n)
@@ -330,7 +332,7 @@ def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
     return Finding("shows", f"shows/{key}", values)
 
 
-def _should_show(shown: Shown, what: str, wanted: float, run: Run) -> float | None:
+def _should_show(shown: ShownValue, what: str, wanted: float, run: Run) -> float | None:
     """Return the thousandths that a value should be, or None for any."""
     if what == TIME:  # that of the moment, or of any since it has stopped
         return float(min(max(shown.value, _stopped_ms(shown, run)), shown.ms))
@@ -340,7 +342,7 @@ def _should_show(shown: Shown, what: str, wanted: float, run: Run) -> float | No
     return None if wanted == ANY_VALUE else wanted * ONE
 
 
-def _stopped_ms(shown: Shown, run: Run) -> int:
+def _stopped_ms(shown: ShownValue, run: Run) -> int:
     """Return since when the robot stood as it showed a value, or that moment if it drove."""
     since_ms = shown.ms
     for ms, *powers in run.motors:

@@ -54,7 +54,7 @@ class _Block:
         )
 
 
-def moving(tokens: Sequence[Token], moves: Collection[str] = MOVES) -> list[int]:
+def find_moves(tokens: Sequence[Token], moves: Collection[str] = MOVES) -> list[int]:
     """Return where there are moves that have time and power, as far as the text says it."""
     return [
         k
@@ -93,7 +93,7 @@ def end_of_values(tokens: Sequence[Token], at: int) -> int:
     return next((token.end for token in after if token.start >= last), last)
 
 
-def ahead(tokens: Sequence[Token]) -> int:
+def count_ahead(tokens: Sequence[Token]) -> int:
     """Return how many moves a text has that are no turns on the spot."""
     return sum(
         token.kind == WORD and token.text in AHEAD and not _is_turn(tokens, k)
@@ -110,7 +110,7 @@ def _is_turn(tokens: Sequence[Token], at: int) -> bool:
     return left == ["-", *right] or right == ["-", *left]
 
 
-def unasked(tokens: Sequence[Token]) -> int:
+def count_unasked(tokens: Sequence[Token]) -> int:
     """Return how many UNTIL have nothing in their question that may change."""
     return sum(
         token.text == "UNTIL" and not set(_words(tokens, k)) - FIXED
@@ -123,7 +123,7 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
 
     `tokens` are those of a program without what nothing calls.
     """
-    moves = set(moving(tokens, AHEAD if is_turned else MOVES))
+    moves = set(find_moves(tokens, AHEAD if is_turned else MOVES))
     questions: list[Question] = []
     blocks: list[_Block] = []
     movers = set[str]()  # words of DEF with a move
@@ -155,14 +155,14 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
         return None
     if ending == DONE:
         questions = [each for each in questions if not each.is_ever or each.word == "IF"]
-        questions = [_at_start(each) for each in questions]
+        questions = [_question_at_start(each) for each in questions]
     # A WHILE with moves that the robot was in when its time was over has let it in.
     questions.sort(key=lambda each: (ending != DONE and not each.is_ever and each.word == "WHILE",
                                  each.start))  # fmt: skip
     return questions[0] if questions else None
 
 
-def _at_start(question: Question) -> Question:
+def _question_at_start(question: Question) -> Question:
     """Return a question that was to give something, with what it gave."""
     if not question.is_ever:
         return question

@@ -32,17 +32,17 @@ def plan(lesson: Lesson, title: str) -> str:
     def dash(part: str, number: int) -> str:
         return DASHED if (part, number) in moved else ""
 
-    def drawn(kind: str, points: Iterable[Point], look: str, part: str, number: int) -> None:
+    def draw(kind: str, points: Iterable[Point], look: str, part: str, number: int) -> None:
         row = " ".join(f"{x:.1f},{height - y:.1f}" for x, y in points)
         parts.append(f'<{kind} points="{row}" {look}{dash(part, number)}/>')
 
     for number, line in enumerate(world.lines, 1):
         look = f'fill="none" stroke="#000" stroke-width="{line.width_cm:g}" stroke-linejoin="round"'
-        drawn("polyline", line.points, look, "lines", number)
+        draw("polyline", line.points, look, "lines", number)
     for number, box in enumerate(world.boxes, 1):
-        drawn("polygon", box, 'fill="#bbb" stroke="#333"', "boxes", number)
+        draw("polygon", box, 'fill="#bbb" stroke="#333"', "boxes", number)
     for number, wall in enumerate(world.walls, 1):
-        drawn("polyline", wall, 'fill="none" stroke="#333" stroke-width="3"', "walls", number)
+        draw("polyline", wall, 'fill="none" stroke="#333" stroke-width="3"', "walls", number)
     for number, lamp in enumerate(world.lamps, 1):
         x, y = lamp.place.x, height - lamp.place.y
         parts.append(

@@ -82,12 +82,12 @@ def _paragraph(lines: list[str]) -> list[Block]:
     return [Block(kind, tuple((row,) for row in rows), first) for kind, rows in matches]
 
 
-def printed(page: str) -> str:
+def printed_part(page: str) -> str:
     """Return what is printed of a page."""
     return _section(page, {"print": ""})
 
 
-def beside_simulator(page: str) -> str:
+def studio_part(page: str) -> str:
     """Return what is read of a page in the studio; a hint is a paragraph that begins with HINT."""
     return _section(page, {"page": "", "hint": HINT})
 

@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 from tiniscript.bytecode.image import Image
 from tiniscript.lessons.findings import Finding
-from tiniscript.lessons.judging import judged
+from tiniscript.lessons.judging import judge_run
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.running import Run, Trial
-from tiniscript.lessons.text_judging import explained, idle, judged_text, without
+from tiniscript.lessons.text_judging import explain, idle_finding, judge_text, without_word
 from tiniscript.robots.profile import Robot
 
 PASSED, FAILED = "passed", "failed"
@@ -56,7 +56,7 @@ class Marking:
         self._all_seeds = list(seeds)
         self._seeds = list(seeds)
         self._text = text
-        self._of_text = judged_text(text, lesson)
+        self._of_text = judge_text(text, lesson)
         self._trial: Trial | None = None  # none before a world
         self._needs = [
             (word, lesson._replace(criteria=lesson.criteria[:k]))
@@ -72,7 +72,7 @@ class Marking:
         """The seed of the world where it is now."""
         return self._seeds[0]
 
-    def whole(self) -> Outcome:
+    def run_to_end(self) -> Outcome:
         """Return what came of it in the end. Raises WorldRefused, as `go`."""
         while True:
             outcome = self.go()
@@ -89,10 +89,10 @@ class Marking:
         run = self._trial.go(most_ms)
         if run is None:
             return None
-        result = judged(run, self._lesson)
+        result = judge_run(run, self._lesson)
         if result and self._without:
             return self._next(run)
-        findings = explained(result, self._text, self._lesson, run.ending)
+        findings = explain(result, self._text, self._lesson, run.ending)
         if findings:
             texts = {finding.key for finding in findings}
             of_text = [finding for finding in self._of_text if finding.key not in texts]
@@ -103,7 +103,7 @@ class Marking:
             return None
         if self._without:
             assert self._done is not None
-            return Outcome(FAILED, 0, (idle(self._without, self._text),), self._done)
+            return Outcome(FAILED, 0, (idle_finding(self._without, self._text),), self._done)
         self._done = run
         if self._of_text:
             return Outcome(FAILED, 0, tuple(self._of_text), run)
@@ -113,7 +113,7 @@ class Marking:
         """Try the program without the next word that the lesson needs; it passes without more."""
         while self._needs:
             self._without, self._lesson = self._needs.pop(0)
-            image = self._made(without(self._without, self._text))
+            image = self._made(without_word(self._without, self._text))
             if image is not None:
                 self._image, self._seeds, self._trial = image, list(self._all_seeds), None
                 return None

@@ -6,12 +6,20 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 
-from tiniscript.lessons.findings import STILL_CM, Finding, On, Task, between, in_cm, in_seconds
+from tiniscript.lessons.findings import (
+    STILL_CM,
+    Finding,
+    On,
+    Task,
+    in_cm,
+    in_seconds,
+    points_between,
+)
 from tiniscript.lessons.lesson import Criterion
 from tiniscript.lessons.running import DONE, LIMIT, STEP_MS, Run
 from tiniscript.lessons.variation import shape_of
 from tiniscript.robots.kinematics import Pose
-from tiniscript.virtual.geometry import Point, distance, seen
+from tiniscript.virtual.geometry import Point, distance, nearest_seen
 from tiniscript.virtual.sensing import CONE
 
 BACK_CM = 5.0  # nearer than where it was farthest: then it was on its way back
@@ -93,7 +101,7 @@ def _count_reached(
 ) -> tuple[int, Finding | None]:
     """Return how many of its places the robot has reached in this order, and what is missing."""
     within_cm = criterion.numbers["within_cm"]
-    way = between(task.run.track)
+    way = points_between(task.run.track)
     points = iter(way)
     at = way[0]
     for count, number in enumerate(order):
@@ -211,7 +219,7 @@ def _judge_distance_to_obstacle(criterion: Criterion, task: Task) -> Finding | N
     ahead = run.world.obstacles()
     if criterion.places:
         ahead = shape_of(criterion.places[0], run.world, task.mirrored)
-    gap_cm = seen(ahead, eye, along, CONE)
+    gap_cm = nearest_seen(ahead, eye, along, CONE)
     low, high = criterion.numbers["low_cm"], criterion.numbers["high_cm"]
     values = {"low": f"{low:g}", "high": f"{high:g}"}
     if gap_cm is None:

@@ -12,7 +12,7 @@ from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import REMOTE
 from tiniscript.base.languages import SOURCE, ByLanguage, languages
-from tiniscript.base.languages import found as text_of
+from tiniscript.base.languages import find_text as text_of
 from tiniscript.base.languages import text as said_in
 from tiniscript.base.spelling import nearest
 from tiniscript.base.words import WORDS
@@ -37,7 +37,7 @@ from tiniscript.lessons.lesson import (
 )
 from tiniscript.lessons.sentences import sentence
 from tiniscript.robots.profile import Robot
-from tiniscript.robots.refusals import shown
+from tiniscript.robots.refusals import printable_value
 from tiniscript.robots.toml_table import Table, root_of
 from tiniscript.virtual.world import World
 
@@ -63,11 +63,11 @@ def read(text: str, world: World, name: str) -> Lesson:
         robot = root.choice("robot", robots.names())
         known = _known_words(robots.load(robot or robots.names()[0]))
         lesson = Lesson(
-            shown(name),
+            printable_value(name),
             robot,
             titles,
             root.number("seconds", ONE, MOST_SECONDS * ONE, "seconds = 20", ONE) / ONE,
-            root.whole("worlds", 1, MOST_WORLDS, default=1),
+            root.whole_number("worlds", 1, MOST_WORLDS, default=1),
             root.number("noise_percent", 0, MOST_NOISE * ONE) / ONE / 100,
             root.yes_no("mirror", False),
             world,
@@ -125,7 +125,7 @@ def _sentences(says: Table) -> dict[str, str]:
     except KeyError as lacking:
         name = str(lacking.args[0])
         if name.startswith("said/"):
-            says.complain("unknown_word", "key", found=shown(key), near="")
+            says.complain("unknown_word", "key", found=printable_value(key), near="")
         else:
             says.complain("missing", name, example=f'{name} = "…"')
         return {}
@@ -199,7 +199,7 @@ def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]])
             table.complain(
                 "unknown_criterion",
                 "kind",
-                found=shown(name),
+                found=printable_value(name),
                 near=suggestion,
                 known=", ".join(KINDS),
             )
@@ -241,7 +241,9 @@ def _asked_device(table: Table, names: tuple[str, ...]) -> tuple[str, ...]:
     result = table.text("what", 'what = "LED"')
     if result is None or result in names:
         return () if result is None else (result,)
-    table.complain("not_one_of", "what", found=shown(result), choices=", ".join(names) or "-")
+    table.complain(
+        "not_one_of", "what", found=printable_value(result), choices=", ".join(names) or "-"
+    )
     return ()
 
 
@@ -255,7 +257,7 @@ def _words(table: Table, known: tuple[str, ...]) -> tuple[str, ...]:
     for item in result:
         if item not in known:
             suggestion = nearest(item, known) or ""
-            table.complain("unknown_word", "words", found=shown(item), near=suggestion)
+            table.complain("unknown_word", "words", found=printable_value(item), near=suggestion)
     return tuple(result)
 
 
@@ -286,12 +288,12 @@ def _part(table: Table, key: str, text: str, world: World) -> Place:
     """Return the part of a world that a text names, such as `boxes[2]`."""
     match = PART.fullmatch(text)
     if match is None:
-        table.complain("unknown_part", key, found=shown(text), parts=", ".join(PARTS[1:]))
+        table.complain("unknown_part", key, found=printable_value(text), parts=", ".join(PARTS[1:]))
         return Place("start", 0)
     if match[1]:
         return Place("start", 0)
     number, there = int(match[3]), len(getattr(world, match[2]))
     if number > there:
-        table.complain("no_such_part", key, found=shown(text), there=str(there))
+        table.complain("no_such_part", key, found=printable_value(text), there=str(there))
         return Place("start", 0)
     return Place(match[2], number)

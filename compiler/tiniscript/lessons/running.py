@@ -12,13 +12,13 @@ from typing import NamedTuple
 from tiniscript.base.trace import Event
 from tiniscript.bytecode.image import Image
 from tiniscript.lessons.lesson import Lesson, Press
-from tiniscript.lessons.variation import pressed, varied
+from tiniscript.lessons.variation import presses_of, vary
 from tiniscript.link.remote import NOTHING
-from tiniscript.link.remote import pressed as held
+from tiniscript.link.remote import pressed_of as held
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.computer import Computer
-from tiniscript.virtual.geometry import joined
+from tiniscript.virtual.geometry import join_points
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
 
@@ -38,14 +38,14 @@ class Sample(NamedTuple):
     pose: Pose
 
 
-class Touch(NamedTuple):
+class Collision(NamedTuple):
     """It came against something: `what` is "wall", "box" or "border"."""
 
     ms: int
     what: str
 
 
-class Shown(NamedTuple):
+class ShownValue(NamedTuple):
     """A value of SHOW in thousandths (0 and 1 for yes/no), and where the robot was then."""
 
     ms: int
@@ -80,8 +80,8 @@ class Run(NamedTuple):
     fault: str
     end_ms: int
     track: tuple[Sample, ...]
-    touches: tuple[Touch, ...]
-    shown: tuple[Shown, ...]
+    touches: tuple[Collision, ...]
+    shown: tuple[ShownValue, ...]
     beeps: tuple[Beep, ...]
     switched: tuple[Switched, ...]
     motors: tuple[tuple[int, int, int], ...]
@@ -111,9 +111,9 @@ class Trial:
     def __init__(self, image: Image, profile: Robot, lesson: Lesson, seed: int) -> None:
         """Raises WorldRefused where the robot does not fit into that world."""
         robot = self.robot = VirtualRobot(
-            profile, varied(lesson, seed), Settings(seed=seed, noise=lesson.noise, eeprom_us=0)
+            profile, vary(lesson, seed), Settings(seed=seed, noise=lesson.noise, eeprom_us=0)
         )
-        self._presses = pressed(lesson, seed)
+        self._presses = presses_of(lesson, seed)
         self._witness = _Witness(robot, seed, self._presses)
         self._asks = image.start == "PING"
         if self._asks:
@@ -189,8 +189,8 @@ class _Witness:
         self.events = 0
         self._bumps = 0
         self._track: list[Sample] = []
-        self._touches: list[Touch] = []
-        self._shown: list[Shown] = []
+        self._touches: list[Collision] = []
+        self._shown: list[ShownValue] = []
         self._beeps: list[Beep] = []
         self._switched: list[Switched] = []
         self._on: dict[int, int] = {}
@@ -216,7 +216,7 @@ class _Witness:
             self._track.append(Sample(ms, pose))
         if robot.driving.bumps != self._bumps:
             self._bumps = robot.driving.bumps
-            self._touches.append(Touch(ms, self._nearest_obstacle(pose)))
+            self._touches.append(Collision(ms, self._nearest_obstacle(pose)))
 
     def _record_event(self, event: Event, ms: int, pose: Pose) -> None:
         if event.what == "MOTORS":
@@ -238,7 +238,7 @@ class _Witness:
         elif event.what == "SHOW":
             self._happened.append("shows")
             is_yes_no = event.text.endswith(("TRUE", "FALSE"))
-            self._shown.append(Shown(ms, event.values[0], is_yes_no, pose))
+            self._shown.append(ShownValue(ms, event.values[0], is_yes_no, pose))
 
     def _stops(self, ms: int) -> None:
         """Note a stop, before what it has shown in the same moment."""
@@ -253,8 +253,8 @@ class _Witness:
         """Return what the robot is nearest to."""
         world, hull = self.robot.world, self.robot.driving.hull
         kinds = {
-            "wall": [segment for wall in world.walls for segment in joined(list(wall))],
-            "box": [segment for box in world.boxes for segment in joined([*box, box[0]])],
+            "wall": [segment for wall in world.walls for segment in join_points(list(wall))],
+            "box": [segment for box in world.boxes for segment in join_points([*box, box[0]])],
             "border": world._replace(walls=(), boxes=()).obstacles(),
         }
         gaps = []

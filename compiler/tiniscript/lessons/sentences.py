@@ -5,7 +5,7 @@ Knows every key of `judging`. Does not know when one applies.
 
 from __future__ import annotations
 
-from tiniscript.base.languages import found, text
+from tiniscript.base.languages import find_text, text
 from tiniscript.base.source import printable
 from tiniscript.base.words import WORDS
 from tiniscript.lessons.findings import Finding
@@ -25,7 +25,7 @@ EXAMPLES = {
 def sentence(finding: Finding, language: str) -> str:
     """Return what is said of a finding."""
     key = finding.key
-    if found("lessons", f"said/{key}", language) is None:
+    if find_text("lessons", f"said/{key}", language) is None:
         key = key.partition("/")[0]
     if key == "order" and finding.values["times"] != "1":
         key = "order_again"
@@ -49,7 +49,7 @@ def sentence(finding: Finding, language: str) -> str:
 def _event(finding: Finding, number: int, language: str) -> str:
     """Return an event of the key `order/before/then` in words."""
     parts = [*finding.key.split("/"), "", ""]
-    return found("lessons", f"event/{parts[number]}/{number}", language) or ""
+    return find_text("lessons", f"event/{parts[number]}/{number}", language) or ""
 
 
 def _example(word: str, question: str) -> str:

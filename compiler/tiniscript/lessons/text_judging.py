@@ -27,7 +27,7 @@ TASKS = ("WHEN", "TASK")  # no block stands around them, and none of them in ano
 ACTS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
 
 
-def judged_text(text: str, lesson: Lesson) -> list[Finding]:
+def judge_text(text: str, lesson: Lesson) -> list[Finding]:
     """Return what is missing in a program's text, whatever it does."""
     question = {"question": _question(lesson.robot)}
     tokens = scan(text).tokens
@@ -41,7 +41,7 @@ def judged_text(text: str, lesson: Lesson) -> list[Finding]:
     ]
 
 
-def explained(findings: Sequence[Finding], text: str, lesson: Lesson, ending: str) -> list[Finding]:
+def explain(findings: Sequence[Finding], text: str, lesson: Lesson, ending: str) -> list[Finding]:
     """Return what is missing in a run that ended so, with the reason that the text has for it.
 
     Where the robot did nothing, and the text has what it should do, then it was never reached.
@@ -67,9 +67,9 @@ def explained(findings: Sequence[Finding], text: str, lesson: Lesson, ending: st
 
 def _name_of_uncalled(word: str, tokens: Sequence[Token], words: Sequence[str]) -> str:
     """Return a word of DEF that nothing calls, and that has what is missing."""
-    for name in _uncalled(words):
+    for name in _uncalled_words(words):
         inside = [token for own, token in _tokens_with_def(tokens) if own == name]
-        if kept.moving(inside) if word == "move" else word in [token.text for token in inside]:
+        if kept.find_moves(inside) if word == "move" else word in [token.text for token in inside]:
             return name
     return ""
 
@@ -99,7 +99,7 @@ def _with_condition(
     finding: Finding, tokens: Sequence[Token], words: Sequence[str], lesson: Lesson, ending: str
 ) -> Finding:
     """Return a finding of a robot that stays where it is; with a question that kept it, that."""
-    uncalled = _uncalled(words)
+    uncalled = _uncalled_words(words)
     called = [token for name, token in _tokens_with_def(tokens) if name not in uncalled]
     is_turned = finding.key.endswith("/turned")
     if finding.key == "still/brief":  # it had power, so no IF kept it
@@ -130,7 +130,7 @@ def _question(robot: str) -> str:
 def _judge_words(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     words = _words(tokens)
     times, counted = int(criterion.numbers.get("times", 1)), Counter(words)
-    if "UNTIL" in criterion.words and counted["UNTIL"] - kept.unasked(tokens) < times:
+    if "UNTIL" in criterion.words and counted["UNTIL"] - kept.count_unasked(tokens) < times:
         if counted["UNTIL"] >= times:
             return Finding("uses", "uses/unasked")
     for word in criterion.words:
@@ -139,7 +139,7 @@ def _judge_words(criterion: Criterion, tokens: Sequence[Token]) -> Finding | Non
             values = {"word": word, "times": str(times), "found": str(counted[word])}
             return Finding("uses", key, values)
     own = _own_words(words)
-    uncalled = _uncalled(words)
+    uncalled = _uncalled_words(words)
     if "DEF" in criterion.words and len(own) - len(uncalled) < times and uncalled:
         return Finding("uses", "uses/uncalled", {"name": _call_of(uncalled[0], tokens)})
     if "LOOP" in criterion.words and not any(
@@ -158,7 +158,7 @@ def _own_words(words: Sequence[str]) -> list[str]:
     return [name for word, name in pairwise(words) if word == "DEF"]
 
 
-def _uncalled(words: Sequence[str]) -> list[str]:
+def _uncalled_words(words: Sequence[str]) -> list[str]:
     """Return the words of DEF that nothing calls, or only such a word."""
     bodies: dict[str, set[str]] = {name: set() for name in _own_words(words)}
     inside, name = set[str](), ""
@@ -195,12 +195,12 @@ def _loop_bodies(words: Sequence[str]) -> list[list[str]]:
 
 def _moves(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
     most, is_ahead = int(criterion.numbers["at_most"]), bool(criterion.numbers["ahead"])
-    result = kept.ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
+    result = kept.count_ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
     values = {"found": str(result), "most": str(most)}
     return Finding("moves", f"moves{'/ahead' * is_ahead}", values) if result > most else None
 
 
-def without(word: str, text: str) -> str:
+def without_word(word: str, text: str) -> str:
     """Return a program whose loops are done once (LOOP), without its own words (DEF) or tasks."""
     tokens = scan(text).tokens
     own = _own_words(_words(tokens))
@@ -225,7 +225,7 @@ def _end_of_block(tokens: Sequence[Token], at: int) -> int:
     return next(ends, tokens[-1].end)
 
 
-def idle(word: str, text: str) -> Finding:
+def idle_finding(word: str, text: str) -> Finding:
     """Return what is missing where the task is done without a word of BLOCKS, too."""
     own = _own_words(_words(scan(text).tokens))
     return Finding("needs", f"needs/{word}", {"name": own[0] if own else ""})

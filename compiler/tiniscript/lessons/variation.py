@@ -12,13 +12,13 @@ from typing import TypeVar
 
 from tiniscript.lessons.lesson import Lesson, Place, Press, Variation
 from tiniscript.robots.kinematics import Pose
-from tiniscript.virtual.geometry import Point, Segment, joined
+from tiniscript.virtual.geometry import Point, Segment, join_points
 from tiniscript.virtual.world import World
 
 T = TypeVar("T")
 
 
-def varied(lesson: Lesson, seed: int) -> World:
+def vary(lesson: Lesson, seed: int) -> World:
     """Return the world of a seed."""
     chance = Random(seed)
     world = lesson.world
@@ -27,13 +27,13 @@ def varied(lesson: Lesson, seed: int) -> World:
             chance.uniform(*span) for span in (variation.x_cm, variation.y_cm, variation.heading)
         )
         world = _with_part_moved(world, variation, dx, dy, turn)
-    return _mirrored(world) if is_mirrored(lesson, seed) else world
+    return _mirror(world) if is_mirrored(lesson, seed) else world
 
 
 OTHER_SIDE = {"KEY_LEFT": "KEY_RIGHT", "KEY_RIGHT": "KEY_LEFT"}
 
 
-def pressed(lesson: Lesson, seed: int) -> tuple[Press, ...]:
+def presses_of(lesson: Lesson, seed: int) -> tuple[Press, ...]:
     """Return what is held in the world of a seed."""
     if not is_mirrored(lesson, seed):
         return lesson.presses
@@ -65,11 +65,11 @@ def shape_of(place: Place, world: World, mirrored: bool) -> list[Segment]:
     """Return the outline of a part of a world; of anything else its point."""
     k = place.number - 1
     if place.part == "walls":
-        return joined(list(world.walls[k]))
+        return join_points(list(world.walls[k]))
     if place.part == "boxes":
-        return joined([*world.boxes[k], world.boxes[k][0]])
+        return join_points([*world.boxes[k], world.boxes[k][0]])
     if place.part == "lines":
-        return joined(list(world.lines[k].points))
+        return join_points(list(world.lines[k].points))
     point = point_of(place, world, mirrored)
     return [Segment(point, point)]
 
@@ -79,7 +79,7 @@ def _with_part_moved(
 ) -> World:
     part, k = variation.place.part, variation.place.number - 1
 
-    def shifted(points: tuple[Point, ...]) -> tuple[Point, ...]:
+    def shift(points: tuple[Point, ...]) -> tuple[Point, ...]:
         middle = _center(points)
         cos, sin = math.cos(math.radians(turn)), math.sin(math.radians(turn))
         return tuple(
@@ -94,33 +94,33 @@ def _with_part_moved(
         x_cm, y_cm, heading = world.start
         return world._replace(start=Pose(x_cm + dx, y_cm + dy, heading + turn))
     if part == "walls":
-        return world._replace(walls=_changed(world.walls, k, shifted(world.walls[k])))
+        return world._replace(walls=_replace_row(world.walls, k, shift(world.walls[k])))
     if part == "boxes":
-        return world._replace(boxes=_changed(world.boxes, k, shifted(world.boxes[k])))
+        return world._replace(boxes=_replace_row(world.boxes, k, shift(world.boxes[k])))
     if part == "lines":
         line = world.lines[k]
-        line = line._replace(points=shifted(line.points))
-        return world._replace(lines=_changed(world.lines, k, line))
+        line = line._replace(points=shift(line.points))
+        return world._replace(lines=_replace_row(world.lines, k, line))
     x, y = world.lamps[k].place
     lamp = world.lamps[k]._replace(place=Point(x + dx, y + dy))
-    return world._replace(lamps=_changed(world.lamps, k, lamp))
+    return world._replace(lamps=_replace_row(world.lamps, k, lamp))
 
 
-def _changed(rows: tuple[T, ...], k: int, row: T) -> tuple[T, ...]:
+def _replace_row(rows: tuple[T, ...], k: int, row: T) -> tuple[T, ...]:
     return (*rows[:k], row, *rows[k + 1 :])
 
 
-def _mirrored(world: World) -> World:
-    def over(point: Point) -> Point:
+def _mirror(world: World) -> World:
+    def mirror(point: Point) -> Point:
         return Point(point.x, world.height_cm - point.y)
 
     x_cm, y_cm, heading = world.start
     return world._replace(
         start=Pose(x_cm, world.height_cm - y_cm, -heading),
-        walls=tuple(tuple(map(over, wall)) for wall in world.walls),
-        boxes=tuple(tuple(map(over, box)) for box in world.boxes),
-        lines=tuple(line._replace(points=tuple(map(over, line.points))) for line in world.lines),
-        lamps=tuple(lamp._replace(place=over(lamp.place)) for lamp in world.lamps),
+        walls=tuple(tuple(map(mirror, wall)) for wall in world.walls),
+        boxes=tuple(tuple(map(mirror, box)) for box in world.boxes),
+        lines=tuple(line._replace(points=tuple(map(mirror, line.points))) for line in world.lines),
+        lamps=tuple(lamp._replace(place=mirror(lamp.place)) for lamp in world.lamps),
     )
 
 

@@ -69,12 +69,12 @@ class Client:
         self.server: Server | None = None
         try:
             if is_shared and not self.line.held_by:
-                self.server = self._shared(speed, verb, is_latched)
+                self.server = self._share(speed, verb, is_latched)
         except BaseException:
             self.line.close()
             raise
 
-    def _shared(self, baud: int, verb: str, is_latched: Callable[[], bool]) -> Server | None:
+    def _share(self, baud: int, verb: str, is_latched: Callable[[], bool]) -> Server | None:
         """Share the port with other commands, so that `tsc stop` works meanwhile."""
         from tiniscript.link.port_connection import PortConnection
         from tiniscript.link.sharing.server import Server
@@ -153,21 +153,21 @@ class Client:
 
     def search(self, limit_ms: int | None = None) -> PendingRequest[HelloReply]:
         """Begin a session. HELLO is repeated until the robot answers, as a reset takes a while."""
-        return self.do(lambda session: session.hello(), limit_ms or opening.ANSWER_MS)
+        return self.begin_request(lambda session: session.hello(), limit_ms or opening.ANSWER_MS)
 
-    def do(
+    def begin_request(
         self, make: Callable[[Requester], PendingRequest[T]], limit_ms: int | None = None
     ) -> PendingRequest[T]:
         """Begin a request with a timeout."""
 
-        def limited(session: Requester) -> PendingRequest[T]:
+        def with_limit(session: Requester) -> PendingRequest[T]:
             request = make(session)
             request.limit_ms = limit_ms or PATIENCE_MS
             return request
 
         self._heed()  # a robot that answers at once makes nobody wait
-        with self._connected():
-            return self.line.do(limited)
+        with self._convert_loss():
+            return self.line.begin(with_limit)
 
     def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
         def watch() -> None:
@@ -175,14 +175,14 @@ class Client:
             if look is not None:
                 look()
 
-        with self._connected():
+        with self._convert_loss():
             return self.line.wait(request, watch)
 
-    def ask(
+    def request(
         self, make: Callable[[Requester], PendingRequest[T]], taken: Collection[int] = ()
     ) -> Reply[T]:
         """Make a request and return its reply, which is OK or `taken`. Raises RobotError."""
-        reply = self.wait(self.do(make))
+        reply = self.wait(self.begin_request(make))
         if reply.status and reply.status not in taken:
             raise self.failure(reply)
         return reply
@@ -190,7 +190,7 @@ class Client:
     def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
         """Return the time (ms) and the next event, or None if none arrives in time."""
         self._heed()
-        with self._connected():
+        with self._convert_loss():
             return self.line.event(limit_s)
 
     def send_program(
@@ -208,7 +208,9 @@ class Client:
         if refused is not None:
             return refused
         kit = profile.kit.fingerprint
-        request = self.do(lambda session: session.upload(image, runs, saves, is_detached, kit))
+        request = self.begin_request(
+            lambda session: session.upload(image, runs, saves, is_detached, kit)
+        )
         return self.wait(request, lambda: draw(request.done_bytes))
 
     def stop(self, limit_s: float | None = None) -> bool:
@@ -230,21 +232,21 @@ class Client:
         return False
 
     @contextmanager
-    def _connected(self) -> Iterator[None]:
+    def _convert_loss(self) -> Iterator[None]:
         try:
             yield
-        except ConnectionLost as gone:
-            raise self.gone(gone) from None
+        except ConnectionLost as loss:
+            raise self.error_for_loss(loss) from None
 
     # -- failures ---------------------------------------------------------------------------------
 
-    def gone(self, gone: ConnectionLost) -> Exception:
+    def error_for_loss(self, loss: ConnectionLost) -> Exception:
         """Return the error for a connection that has ended."""
-        return self.lost(gone)
+        return self.robot_error_for_loss(loss)
 
-    def lost(self, gone: ConnectionLost) -> RobotError:
-        reason = self._reason_of_end(gone)
-        values = {"port": opening.shown(self.port), "verb": self.line.held_by}
+    def robot_error_for_loss(self, loss: ConnectionLost) -> RobotError:
+        reason = self._reason_of_end(loss)
+        values = {"port": opening.printable_name(self.port), "verb": self.line.held_by}
         return RobotError(reason, self.language, values)
 
     def _reason_of_end(self, loss: ConnectionLost) -> str:
@@ -260,17 +262,17 @@ class Client:
 
     def foreign(self) -> tuple[str, str]:
         """Return the sentences on the board that answers instead of a robot."""
-        from tiniscript.link.foreign import told
+        from tiniscript.link.foreign import explain
 
         found = stranger(self.line)
         assert found is not None
-        return told(found, self.language)
+        return explain(found, self.language)
 
     def failure(self, reply: Reply[object]) -> Exception:
         """Return the error for a reply that is not OK."""
         reason = reason_of(self.line, reply)
         if reason != "status":
-            values = {"port": opening.shown(self.port), "id": f"{reply.detail:08x}"}
+            values = {"port": opening.printable_name(self.port), "id": f"{reply.detail:08x}"}
             if reason == FOREIGN:
                 values["what"], values["then"] = self.foreign()
             return RobotError(reason, self.language, values)

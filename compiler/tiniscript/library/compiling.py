@@ -23,7 +23,7 @@ from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
 from tiniscript.semantics.lint import lint
-from tiniscript.semantics.optimizer import optimized
+from tiniscript.semantics.optimizer import optimize_program
 from tiniscript.syntax.parser import parse
 
 
@@ -57,7 +57,7 @@ class Compiled(NamedTuple):
 
 def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
-    compiled = analyzed(text, kit, name)
+    compiled = analyze(text, kit, name)
     return compiled if compiled.is_right else _with_findings(compiled, kit)
 
 
@@ -65,12 +65,14 @@ def _with_findings(compiled: Compiled, kit: Kit) -> Compiled:
     """Return a wrong program with what is told of it."""
     from tiniscript.recovery.told import told_of
 
-    read = cache(lambda text: analyzed(text, kit).diagnostics)  # a repair is asked for again
-    its = _kit_in(compiled.source.text, kit)
-    return compiled._replace(diagnostics=told_of(compiled.source, compiled.diagnostics, read, its))
+    read = cache(lambda text: analyze(text, kit).diagnostics)  # a repair is asked for again
+    own_kit = _kit_in(compiled.source.text, kit)
+    return compiled._replace(
+        diagnostics=told_of(compiled.source, compiled.diagnostics, read, own_kit)
+    )
 
 
-def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
+def analyze(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and what is wrong with it; no repair is vouched for."""
     source = Source(text, name)
     parsed = parse(source)
@@ -80,9 +82,9 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     if not any(diagnostic.is_mistake for diagnostic in diagnostics):
         diagnostics += lint(checked.program, kit, source, parsed.scan)
         if kit.given:
-            from tiniscript.syntax.later_words import given_way
+            from tiniscript.syntax.later_words import report_given_way
 
-            diagnostics += given_way(parsed.scan.tokens, kit, source)
+            diagnostics += report_given_way(parsed.scan.tokens, kit, source)
     return Compiled(source, codes.in_order(diagnostics), checked.program)
 
 
@@ -91,12 +93,12 @@ def _kit_in(text: str, kit: Kit) -> Kit:
     sentence = text.upper()
     if not any(word in sentence for word in KIT_WORDS_SINCE):
         return kit
-    from tiniscript.syntax.later_words import in_program
+    from tiniscript.syntax.later_words import kit_for_text
 
-    return in_program(text, kit)
+    return kit_for_text(text, kit)
 
 
-def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
+def check_size(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
     """Return `compiled` with a message if the robot's memory is too small."""
     over = len(compiled.code) - robot.board.program_bytes
     if over <= 0:
@@ -158,23 +160,23 @@ def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> 
     was_enabled = gc.isenabled()
     gc.disable()
     try:
-        return _compiled(text, kit, name, optimize)
+        return _compile(text, kit, name, optimize)
     finally:
         if was_enabled:
             gc.enable()
 
 
-def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
+def _compile(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     compiled = check_text(text, kit, name)
     program = compiled.program
     if program is None or not compiled.is_right:
         return compiled
     if program.tasks and any(procedure.values for procedure in program.procedures):
-        from tiniscript.semantics.task_copies import separated
+        from tiniscript.semantics.task_copies import copy_defs_per_task
 
-        program = separated(program)
+        program = copy_defs_per_task(program)
     yes_no = tuple(ir.are_yes_no(program, kit))
-    program = optimized(program) if optimize else program
+    program = optimize_program(program) if optimize else program
     lowered = lower(program)
     if len(lowered.code) > CODE_BYTES:
         over = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
@@ -211,15 +213,15 @@ def compile_source(
         return Compiled(Source(text, name), [unknown])
     result = compile_text(text, robot.kit, name, optimize)
     if not result.is_right:
-        return naming(result, robot, is_chosen) if names_robots else result
-    return fitting(result, robot, is_strict)
+        return with_robot_hints(result, robot, is_chosen) if names_robots else result
+    return check_size(result, robot, is_strict)
 
 
-def naming(compiled: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
+def with_robot_hints(compiled: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
     """Return `compiled` with hints to the robots that have a word that this robot lacks."""
-    from tiniscript.library.other_robots import naming_robots
+    from tiniscript.library.other_robots import with_robot_hints
 
-    named = naming_robots(compiled.diagnostics, compiled.source.text, robot, is_chosen)
+    named = with_robot_hints(compiled.diagnostics, compiled.source.text, robot, is_chosen)
     return compiled._replace(diagnostics=named)
 
 
@@ -241,14 +243,14 @@ def image_of(compiled: Compiled, robot: Robot) -> Image:
                  checksum(compiled.image), isa_of(needs), needs=needs)  # fmt: skip
 
 
-def maker(robot: Robot) -> Callable[[str], Image | None]:
+def image_maker(robot: Robot) -> Callable[[str], Image | None]:
     """Return what makes the image of a text for a robot, or None where the text has mistakes."""
 
-    def made(text: str) -> Image | None:
+    def make(text: str) -> Image | None:
         result = compile_source(text.encode(), robot, "", is_strict=True)
         return image_of(result, robot) if result.is_right else None
 
-    return made
+    return make
 
 
 def kit_of(compiled: Compiled, robot: Robot) -> int:

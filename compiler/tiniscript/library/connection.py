@@ -22,17 +22,17 @@ from tiniscript.library.client import Client, Saving
 from tiniscript.library.endings import Follower
 from tiniscript.library.errors import RobotError, StopNotConfirmed, UsageError
 from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
-from tiniscript.library.known_kits import of_kit
+from tiniscript.library.known_kits import robot_of_kit
 from tiniscript.library.programs import Language, Program, profile_of, program_of
 from tiniscript.library.refusing import refusal
-from tiniscript.library.runs import whole, within
+from tiniscript.library.runs import check_whole_number, checked_number
 from tiniscript.link import known_ports, ports
 from tiniscript.link.connection import Requester
 from tiniscript.link.messages import MOST_PAD, REMOTE_KEYS, STATE_RUNNING
 from tiniscript.link.names import saved_name
 from tiniscript.link.outcomes import CANCELLED, LOST, Event
 from tiniscript.link.payloads import ReceiptReply
-from tiniscript.link.remote import pressed
+from tiniscript.link.remote import pressed_of
 from tiniscript.link.requests import OK
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
@@ -104,7 +104,7 @@ class RobotConnection:
     def info(self) -> RobotInfo:
         """What the robot reports of itself."""
         device_info = self._client.device_info
-        profile = of_kit(device_info.kit)
+        profile = robot_of_kit(device_info.kit)
         name = None if profile is None else profile.name
         return RobotInfo(
             printable(device_info.name), device_info.id, name, self.port, device_info.room
@@ -146,7 +146,7 @@ class RobotConnection:
         refused = refusal(image, ready._profile, self._client.device_info)
         if refused is not None:
             raise self._client.failure(refused)
-        reply = self._client.ask(
+        reply = self._client.request(
             lambda session: session.live(image.code, kit if image.devices else 0)
         )
         return self._begin_run(reply.values, True, False)
@@ -154,7 +154,7 @@ class RobotConnection:
     def start(self, *, detached: bool = False) -> Receipt:
         """Start the program that the robot holds."""
         self._check_open()
-        reply = self._client.ask(lambda session: session.start(detached))
+        reply = self._client.request(lambda session: session.start(detached))
         return self._begin_run(reply.values, True, detached)
 
     def undo(self) -> Receipt:
@@ -165,7 +165,7 @@ class RobotConnection:
         that is saved. Raises RobotError, with the reason `NO_PREVIOUS` where there is none.
         """
         self._check_open()
-        reply = self._client.ask(lambda session: session.undo())
+        reply = self._client.request(lambda session: session.undo())
         self._saving = Saving(reply.values)
         receipt = self._begin_run(reply.values, False, False)
         self._follower = None
@@ -178,16 +178,16 @@ class RobotConnection:
         """
         self._check_open()
         if timeout is not None:
-            within("timeout", timeout, 0, LONGEST_S, self.language)
+            checked_number("timeout", timeout, 0, LONGEST_S, self.language)
         end_s = None if timeout is None else monotonic() + timeout
-        anything = Follower(None)
+        any_run = Follower(None)
         while self._follower is None or self._ending is None:
-            follower = self._follower or anything
+            follower = self._follower or any_run
             left_s = LOOK_S if end_s is None else min(LOOK_S, end_s - monotonic())
             result = self._client.event(max(left_s, 0.0))
             robot_event = None
             if result is not None and self._concerns_us(follower, result[1]):
-                robot_event = self._reader.told(*result)
+                robot_event = self._reader.to_robot_event(*result)
                 if (
                     robot_event is not None
                     and follower.end(result[1]) is not None
@@ -204,7 +204,7 @@ class RobotConnection:
     def _concerns_us(self, follower: Follower, event: Event) -> bool:
         """The same for sentences of this connection, which knows from then on what has happened."""
         try:
-            return follower.is_about(event, opening.shown(self.port), self.language)
+            return follower.is_about(event, opening.printable_name(self.port), self.language)
         except RobotError as error:
             self._is_replaced = error.reason == "replaced"
             raise
@@ -235,13 +235,13 @@ class RobotConnection:
         """
         self._check_open()
         for way, percent in (("x", x), ("y", y)):
-            whole(way, percent, -MOST_PAD, MOST_PAD, self.language)
+            check_whole_number(way, percent, -MOST_PAD, MOST_PAD, self.language)
         for key in keys:
             if key not in REMOTE_KEYS:
                 values = {"found": printable(repr(key)), "known": ", ".join(REMOTE_KEYS)}
                 raise UsageError("bad_key", self.language, values)
-        held = pressed(keys, x, y)
-        reply = self._client.wait(self._client.do(lambda session: session.press(*held)))
+        held = pressed_of(keys, x, y)
+        reply = self._client.wait(self._client.begin_request(lambda session: session.press(*held)))
         if reply.status not in (OK, CANCELLED, LOST):
             raise self._client.failure(reply)
 
@@ -281,7 +281,7 @@ class RobotConnection:
     def _stop(self) -> None:
         if not self._client.stop():
             raise StopNotConfirmed(
-                "not_confirmed", self.language, {"port": opening.shown(self.port)}
+                "not_confirmed", self.language, {"port": opening.printable_name(self.port)}
             )
         self._is_detached = False
         if self._follower is not None and self._ending is None:
@@ -294,7 +294,9 @@ class RobotConnection:
             self._client.close()
             return
         text = languages.text("library", "holds_for_others", self.language)
-        warnings.warn(text.format(port=opening.shown(self.port)), RuntimeWarning, stacklevel=4)
+        warnings.warn(
+            text.format(port=opening.printable_name(self.port)), RuntimeWarning, stacklevel=4
+        )
         Thread(target=self._hold, name="holder").start()
 
     def _hold(self) -> None:
@@ -309,14 +311,14 @@ class RobotConnection:
         saving, self._saving = self._saving, None
         if saving is None:
             return
-        status = self._client.ask(Requester.status).values
+        status = self._client.request(Requester.status).values
         if status.state == STATE_RUNNING:  # detached: it saves later
             self._saving = saving
             return
 
         saving.learn(status)
         for _ in saving.rounds():
-            saving.learn(self._client.ask(Requester.status).values)
+            saving.learn(self._client.request(Requester.status).values)
             if not saving.is_over:
                 self._client.event(LOOK_S)
         if saving.reason:
@@ -327,7 +329,7 @@ class RobotConnection:
     def _meet(self, is_named: bool) -> None:
         device_info = self._client.meet()
         if not is_named and device_info.kit != self._profile.kit.fingerprint:
-            self._profile = of_kit(device_info.kit) or self._profile
+            self._profile = robot_of_kit(device_info.kit) or self._profile
         opening.remember(self.port, device_info.name)
 
     def _check_open(self) -> None:
@@ -365,7 +367,7 @@ def connect(
     """
     profile = profile_of(robots.DEFAULT if robot is None else robot, language)
     if baud is not None:
-        whole("baud", baud, opening.SLOWEST_BAUD, opening.FASTEST_BAUD, language)
+        check_whole_number("baud", baud, opening.SLOWEST_BAUD, opening.FASTEST_BAUD, language)
     if port is None:
         port = _usual_port(language)
     elif not isinstance(port, str) or not port.strip() or not port.isprintable():
@@ -377,13 +379,15 @@ def _usual_port(language: Language) -> str:
     """Return the last used port, else that of the only virtual robot. Raises RobotError."""
     if (there := opening.last_port()) is not None:
         return there
-    last = known_ports.known().last
+    last = known_ports.remembered_ports().last
     running = directory.for_all()
     if len(running) == 1:
         return running[0].address
-    listed = [item.port for item in ports.listed()]
-    values = {"known": opening.shown(", ".join(listed)) or "-",
+    listed = [item.port for item in ports.list_ports()]
+    values = {"known": opening.printable_name(", ".join(listed)) or "-",
               "example": listed[0] if listed else "/dev/ttyUSB0"}  # fmt: skip
     if last is not None:
-        raise RobotError("last_port_missing", language, {**values, "port": opening.shown(last)})
+        raise RobotError(
+            "last_port_missing", language, {**values, "port": opening.printable_name(last)}
+        )
     raise RobotError("which_port", language, values)

@@ -56,12 +56,12 @@ class Reader:
         """Note that a run begins: all that it tells is of the text that its program has now."""
         self._shows.begin(run, program)
 
-    def told(self, time_ms: int, event: Event) -> RobotEvent | None:
+    def to_robot_event(self, time_ms: int, event: Event) -> RobotEvent | None:
         """Return an event as data, or None for an internal event of the link."""
         found: dict[str, Value] = {}
         if event.name == "SHOW":
             found = {"value": value_of(event.value, bool(event.is_yes_no))}
-            show = self._shows.of(event)
+            show = self._shows.show_of(event)
             if show is not None:
                 found |= {"name": show.text, "line": show.line, "column": show.column}
         elif event.name == "STARTED":

@@ -26,16 +26,16 @@ LOCKS = {STUDIO: CLONE / "tools" / "studio" / "requirements.txt"}
 
 def command(extra: str) -> str:
     """Return the command to type."""
-    expected = " ".join(map(quoted, requirements(extra)))
+    expected = " ".join(map(quote, requirements(extra)))
     if is_pipx() and expected:
         return f"pipx inject tiniscript {expected}"
     if is_clone(CLONE):
-        place = quoted(f"{CLONE}[{extra}]")
+        place = quote(f"{CLONE}[{extra}]")
         return f"pipx install {place}" if is_managed() else f"{_pip()} install -e {place}"
-    return f"{_pip()} install {expected or quoted(f'tiniscript[{extra}]')}"
+    return f"{_pip()} install {expected or quote(f'tiniscript[{extra}]')}"
 
 
-def installing(extra: str) -> list[str] | None:
+def install_command(extra: str) -> list[str] | None:
     """Return the command with which this Python installs the packages of an extra for itself.
 
     None where that is not its business: it has no pip, or pipx or the system manages it.
@@ -80,10 +80,10 @@ def _pip() -> str:
     active = os.environ.get("VIRTUAL_ENV")
     if active and Path(active).resolve() == Path(sys.prefix).resolve():
         return "pip"
-    return f"{quoted(sys.executable)} -m pip"
+    return f"{quote(sys.executable)} -m pip"
 
 
-def quoted(word: str) -> str:
+def quote(word: str) -> str:
     """Return a word quoted for the shell of this system."""
     plain = r"[\w./:=,@+-]+" if sys.platform != "win32" else r"[\w./:=,@+\\-]+"
     if re.fullmatch(plain, word):

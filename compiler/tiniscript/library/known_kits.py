@@ -21,11 +21,11 @@ def shipped_of_kit(fingerprint: int) -> str | None:
 
 def name_of(fingerprint: int) -> str | None:
     """Return the name of the robot that has this kit, or None where this computer knows none."""
-    robot = of_kit(fingerprint)
+    robot = robot_of_kit(fingerprint)
     return None if robot is None else robot.name
 
 
-def of_kit(fingerprint: int) -> Robot | None:
+def robot_of_kit(fingerprint: int) -> Robot | None:
     """Return the profile that has this kit: a shipped one, or one that a user has given before."""
     name = shipped_of_kit(fingerprint)
     return given.recall(fingerprint) if name is None else robots.load(name)
@@ -38,11 +38,11 @@ def may_run(image: Image, profile: Robot, kit: int) -> bool:
     """
     if not image.devices or kit == profile.kit.fingerprint:
         return True
-    robot = of_kit(kit)
+    robot = robot_of_kit(kit)
     return robot is None or fits(image, robot)
 
 
-def fitting(image: Image, first: Robot) -> Robot | None:
+def find_robot_for(image: Image, first: Robot) -> Robot | None:
     """Return a robot that may run an image: `first`, a shipped one, or one given before.
 
     Returns None if no such robot is known.
@@ -81,7 +81,7 @@ def has_remote(robot: Robot) -> bool:
     return not robot.board.discs or AVRS.get(robot.board.chip) is not AVR_328P
 
 
-def lacking(needs: int, robot: Robot) -> str:
+def missing_need(needs: int, robot: Robot) -> str:
     """Return the name of the text that says what the firmware lacks of `needs`, or nothing."""
     if lacks(needs & TASKS, robot):
         return "no_tasks"

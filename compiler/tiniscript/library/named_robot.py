@@ -9,7 +9,7 @@ import re
 from typing import NamedTuple
 
 from tiniscript import robots
-from tiniscript.base.source import SPACES, Edit, Span, Unreadable, applied, decode
+from tiniscript.base.source import SPACES, Edit, Span, Unreadable, apply_edits, decode
 from tiniscript.diagnostics.codes import NO_SUCH_ROBOT, Diagnostic, Repair
 from tiniscript.robots.profile import Robot
 
@@ -22,27 +22,27 @@ _LINE = re.compile(
 )
 
 
-class Named(NamedTuple):
+class NamedRobot(NamedTuple):
     """The name as it is written, and its place."""
 
     name: str
     span: Span
 
 
-def named_robot(text: str) -> Named | None:
+def named_robot(text: str) -> NamedRobot | None:
     """Return the robot that a program names first, or None."""
     at = 0
     while at < len(text) and (line := _LINE.match(text, at)):
         if line["name"]:
-            return Named(line["name"], Span(*line.span("name")))
+            return NamedRobot(line["name"], Span(*line.span("name")))
         at = line.end()
     return None
 
 
-def renamed(text: str, name: str) -> str:
+def rename_robot(text: str, name: str) -> str:
     """Return a program that names a robot with another name; any other stays as it is."""
     result = named_robot(text)
-    return text if result is None else applied(text, [Edit(result.span, name)])
+    return text if result is None else apply_edits(text, [Edit(result.span, name)])
 
 
 def robot_of(data: bytes, usual: Robot) -> Robot:
@@ -53,11 +53,11 @@ def robot_of(data: bytes, usual: Robot) -> Robot:
 
 def name_in(data: bytes) -> str | None:
     """Return the name of the shipped robot that a program's text names, or None."""
-    result = (named(data) or "").lower()
+    result = (robot_name(data) or "").lower()
     return result if result in robots.names() else None
 
 
-def named(data: bytes) -> str | None:
+def robot_name(data: bytes) -> str | None:
     """Return how a program's text names its robot, or None; an image names none."""
     try:
         result = named_robot(decode(data))

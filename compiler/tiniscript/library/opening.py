@@ -22,7 +22,7 @@ from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import PSEUDO, is_address, is_at_broker, is_name
 from tiniscript.link.sharing import registry
-from tiniscript.link.sharing.shared_connection import OtherVersion, SharedConnection, joined
+from tiniscript.link.sharing.shared_connection import OtherVersion, SharedConnection, join
 from tiniscript.virtual import directory
 
 if TYPE_CHECKING:
@@ -67,8 +67,8 @@ def connection_to(
             begun_s = monotonic()
             continue
         try:
-            lock = _claimed(address, language)
-            line = _opened_line(address, baud, kit, limit_s, lock, language, port, verb)
+            lock = _claim(address, language)
+            line = _open_line(address, baud, kit, limit_s, lock, language, port, verb)
             for name in {port, address}:
                 registry.forget(name)  # the port is ours: its former owner has crashed
             return line
@@ -104,19 +104,17 @@ def _connect_past_holder(
         if sys.platform == "linux" and not is_address(address):
             speed = baud if registration is None else registration.baud
             with suppress(RobotError):
-                return _opened_line(
-                    address, speed, kit, limit_s, None, language, port, "stop", True
-                )
+                return _open_line(address, speed, kit, limit_s, None, language, port, "stop", True)
         holder.wake()
     if waited_s <= STOP_BUSY_S:
         return None
     if holder is None:
-        raise RobotError("stop_held_unknown", language, {"port": shown(port)})
-    values = {"port": shown(port), "holder": holder.name, "pid": str(holder.pid)}
+        raise RobotError("stop_held_unknown", language, {"port": printable_name(port)})
+    values = {"port": printable_name(port), "holder": holder.name, "pid": str(holder.pid)}
     raise RobotError("stop_held", language, values)
 
 
-def _opened_line(
+def _open_line(
     address: str, baud: int, kit: int, limit_s: float, lock: IO[bytes] | None, language: str,
     port: str, verb: str = "", is_past: bool = False,
 ) -> PortConnection:  # fmt: skip
@@ -127,20 +125,20 @@ def _opened_line(
     """
     from tiniscript.link.keys import KeyFile
     from tiniscript.link.port_connection import PortConnection
-    from tiniscript.link.ports import opened, opened_past_lock
+    from tiniscript.link.ports import open_past_lock, open_port
     from tiniscript.link.session import Session
 
     with ExitStack() as unless_it_fails:
         if lock is not None:
             unless_it_fails.callback(lock.close)
-        open_it = opened_past_lock if is_past else opened
+        open_it = open_past_lock if is_past else open_port
         try:
             device = open_it(address, baud, limit_s)
         except PortError as failure:
             raise port_error(port, failure, language) from None
         unless_it_fails.callback(device.close)
         if directory.is_of_another(address):  # asked of who has let us in, before anything is sent
-            raise RobotError("port_of_another", language, {"port": shown(port)})
+            raise RobotError("port_of_another", language, {"port": printable_name(port)})
         # who claims a robot has it before them: one of many, perhaps, at the same cable
         keys = KeyFile(is_for_virtual=is_virtual(address), accepts_all=verb == "set owner")
         place = port_names.same_for_all(port)  # an address may be another robot's tomorrow
@@ -154,7 +152,7 @@ def _opened_line(
 def port_error(port: str, failure: PortError, language: str = "en") -> RobotError:
     """Return the error for a port that does not open."""
     reason = f"port_{failure.reason}"
-    values = {"port": shown(port), "why": shown(failure.why)}
+    values = {"port": printable_name(port), "why": printable_name(failure.why)}
     if failure.reason == errors.NOT_INSTALLED:
         from tiniscript.library import install_advice
 
@@ -169,9 +167,9 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
     if failure.reason == errors.MISSING:
         from tiniscript.link import ports
 
-        known = ", ".join(item.port for item in ports.listed())
+        known = ", ".join(item.port for item in ports.list_ports())
         if known:
-            reason, values["known"] = "port_missing_but", shown(known)
+            reason, values["known"] = "port_missing_but", printable_name(known)
     return RobotError(reason, language, values)
 
 
@@ -184,7 +182,7 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
 
 def last_port() -> str | None:
     """Return the last used port, unless it is known that it is not there."""
-    last = known_ports.known().last
+    last = known_ports.remembered_ports().last
     is_there = last is not None and port_names.is_there(last) and not directory.is_gone(last)
     return last if is_there else None
 
@@ -195,24 +193,24 @@ def is_virtual(port: str) -> bool:
     return directory.is_virtual(port)
 
 
-def shown(name: str) -> str:
+def printable_name(name: str) -> str:
     """Return a name in a form for sentences: printable, at most SHOWN characters."""
     return printable(name, SHOWN)
 
 
 def _join_shared(port: str, verb: str, baud: int | None, language: str) -> SharedConnection | None:
     try:
-        client = joined(port, verb)
+        client = join(port, verb)
     except OtherVersion as other:
         values = {
             "verb": other.registration.verb,
-            "theirs": shown(other.version),
-            "port": shown(port),
+            "theirs": printable_name(other.version),
+            "port": printable_name(port),
         }
         raise RobotError("holder_other", language, values) from None
     if client is not None and baud not in (None, client.baud) and verb != "stop":
         client.close()
-        values = {"verb": client.held_by, "baud": str(client.baud), "port": shown(port)}
+        values = {"verb": client.held_by, "baud": str(client.baud), "port": printable_name(port)}
         raise RobotError("holder_baud", language, values)
     return client
 
@@ -222,19 +220,19 @@ def _resolve_address(port: str, language: str) -> str:
     from tiniscript.link import ports
 
     try:
-        return ports.resolved(port)
+        return ports.resolve(port)
     except errors.PortError as failure:
         raise port_error(port, failure, language) from None
 
 
-def _claimed(port: str, language: str) -> IO[bytes] | None:
+def _claim(port: str, language: str) -> IO[bytes] | None:
     """Return the lock of an address, or None for other ports and where no file can be locked."""
     if not is_address(port):
         return None
     try:
-        lock = registry.claimed(port)
+        lock = registry.claim(port)
     except OSError:
         return None
     if lock is None:
-        raise RobotError("port_busy", language, {"port": shown(port), "why": ""})
+        raise RobotError("port_busy", language, {"port": printable_name(port), "why": ""})
     return lock

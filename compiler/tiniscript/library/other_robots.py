@@ -29,7 +29,7 @@ BUTTON = "BUTTON"  # of some kits; each robot has one that starts it
 _NUMBERS = ("first", "second", "third")
 
 
-def naming_robots(
+def with_robot_hints(
     diagnostics: list[Diagnostic], text: str, robot: Robot, is_chosen: bool
 ) -> list[Diagnostic]:
     """Return diagnostics with hints to the robots that have a word that `robot` lacks.
@@ -38,7 +38,7 @@ def naming_robots(
     """
     if not any(diagnostic.code in (*_UNKNOWN, OTHER_ROBOT) for diagnostic in diagnostics):
         return diagnostics
-    result = named_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
+    result = hints_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
     return result if is_chosen else [_with_robot_names(diagnostic, text) for diagnostic in result]
 
 
@@ -53,7 +53,7 @@ def _with_robot_names(diagnostic: Diagnostic, text: str) -> Diagnostic:
     return diagnostic._replace(values=values, repair=Repair((edit,), False))
 
 
-def named_among(
+def hints_among(
     others: Mapping[str, Kit], diagnostics: Sequence[Diagnostic], text: str, name: str, kit: Kit
 ) -> list[Diagnostic]:
     """Return diagnostics that name the robots that have an unknown word; at most three of them.
@@ -62,11 +62,11 @@ def named_among(
     lead to the same robots are one mistake, of the first of them.
     """
     own = set(kit.names)
-    known = {robot: set(its.names) for robot, its in others.items() if robot != name}
+    known = {robot: set(own_kit.names) for robot, own_kit in others.items() if robot != name}
     of_kits = own.union(*known.values())
     texts = {token.text for token in scan(text).tokens if token.kind is WORD}
     used = {word if word in of_kits else concept_of(word) for word in texts} & of_kits
-    whole = [robot for robot, its in known.items() if used <= its]
+    whole = [robot for robot, own_kit in known.items() if used <= own_kit]
     named: list[Diagnostic] = []
     messages: list[set[str]] = []  # robots that words have led to
     codes = {*_UNKNOWN, NO_BUTTON} if used - own - {BUTTON} else {*_UNKNOWN}
@@ -76,7 +76,7 @@ def named_among(
         word = word if word in of_kits else concept_of(word) or word
         side = f"{''.join(said_of(word, 'stem')) or word}_L"  # `LINEA`, where others have LINE_L
         word = side if side in of_kits - own else word
-        having = [robot for robot, its in known.items() if word in its - own]
+        having = [robot for robot, own_kit in known.items() if word in own_kit - own]
         if diagnostic.code in codes and having:
             having = [item for item in having if item in whole] or having
             if any(item <= {*having} for item in messages):

@@ -18,7 +18,7 @@ from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compile_source, image_of
 from tiniscript.library.errors import ProgramError, UsageError, sentence
-from tiniscript.library.known_kits import fitting
+from tiniscript.library.known_kits import find_robot_for
 from tiniscript.library.named_robot import robot_of
 from tiniscript.library.source_map import Map
 from tiniscript.robots.profile import ProfileRefused, Robot
@@ -74,7 +74,7 @@ class Program:
         from."""
         kit = self._profile.kit if self._image.devices else None
         variables = self._map.variables if self._map is not None else ()
-        return disassemble(self.code, remarks(self._map, _checked(language)), kit, variables)
+        return disassemble(self.code, remarks(self._map, _check_language(language)), kit, variables)
 
     def __repr__(self) -> str:
         name = "image" if self.text is None else repr(self.text[:40])
@@ -92,7 +92,7 @@ def compile(
     in messages and disassemblies; `language` (en, es) is that of diagnostics.
     """
     if not isinstance(text, str):
-        raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
+        raise UsageError("bad_program", _check_language(language), {"found": type(text).__name__})
     _refuse_file_name(text, language)
     return _program(text, robot, name, optimize, language)
 
@@ -104,8 +104,8 @@ def check(
     `compile`. Never raises ProgramError. A program that is too large for the robot's board gives a
     warning."""
     if not isinstance(text, str):
-        raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
-    result = _compiled(text, robot, "", language, is_strict=False)[0]
+        raise UsageError("bad_program", _check_language(language), {"found": type(text).__name__})
+    result = _compile_for(text, robot, "", language, is_strict=False)[0]
     return diagnostics_of(result, language)
 
 
@@ -124,7 +124,7 @@ def _refuse_file_name(text: str, language: Language) -> None:
     """Raise UsageError where a text is the name of a program's file."""
     if text.lower().endswith(FILES) and "\n" not in text and os.path.exists(text):  # noqa: PTH110
         values = {"path": printable(text, SHOWN)}
-        raise UsageError("file_name", _checked(language), values)
+        raise UsageError("file_name", _check_language(language), values)
 
 
 def _contents(path: os.PathLike[str], language: Language) -> str | bytes:
@@ -135,7 +135,7 @@ def _contents(path: os.PathLike[str], language: Language) -> str | bytes:
     except (OSError, ValueError) as why:
         text = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
         values = {"path": printable(str(path), 200), "why": printable(text, 200)}
-        raise UsageError("unreadable", _checked(language), values) from None
+        raise UsageError("unreadable", _check_language(language), values) from None
 
 
 def program_of(
@@ -162,17 +162,19 @@ def program_of(
         return Program(program.text, program.image, parsed, profile, program._map,
                        program.diagnostics)  # fmt: skip
     if not isinstance(program, bytes | bytearray):
-        raise UsageError("bad_program", _checked(language), {"found": type(program).__name__})
+        raise UsageError(
+            "bad_program", _check_language(language), {"found": type(program).__name__}
+        )
     data = bytes(program)
     if robot is None:
-        profile = fitting(_unpacked(data, language), profile) or profile
+        profile = find_robot_for(_unpack(data, language), profile) or profile
     parsed = _read(data, profile, language)
     return Program(None, data, parsed, profile, source_map.recall(parsed.checksum), ())
 
 
 def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
     """Return a robot's profile. Raises UsageError if it is missing or invalid."""
-    _checked(language)
+    _check_language(language)
     if not isinstance(robot, str | os.PathLike):
         raise UsageError("bad_robot", language, {"found": type(robot).__name__})
     try:
@@ -202,7 +204,7 @@ def remarks(places: Map | None, language: Language) -> dict[int, str]:
     return result
 
 
-def _compiled(
+def _compile_for(
     text: str, robot: str | os.PathLike[str] | Robot | None, name: str, language: Language,
     is_strict: bool = True, optimize: bool = True,
 ) -> tuple[Compiled, Robot]:  # fmt: skip
@@ -221,7 +223,7 @@ def _program(
     text: str, robot: str | os.PathLike[str] | Robot | None, name: str, optimize: bool,
     language: Language,
 ) -> Program:  # fmt: skip
-    found, profile = _compiled(text, robot, name, language, optimize=optimize)
+    found, profile = _compile_for(text, robot, name, language, optimize=optimize)
     diagnostics = tuple(diagnostics_of(found, language))
     if not found.is_right:
         texts = [as_text(message(diagnostic, found.source, language), found.source, language)
@@ -229,7 +231,7 @@ def _program(
         error = ProgramError("mistakes", language, said="\n".join(texts))
         error.diagnostics = diagnostics
         raise error
-    places = source_map.made(found)
+    places = source_map.map_of_compiled(found)
     return Program(text, found.image, image_of(found, profile), profile, places, diagnostics)
 
 
@@ -239,7 +241,7 @@ def _data(text: str) -> bytes:
 
 def _read(data: bytes, profile: Robot, language: Language) -> Image:
     """Return an image, verified for this robot. Raises ProgramError."""
-    image = _unpacked(data, language)
+    image = _unpack(data, language)
     try:
         verify.check(image, profile.kit)
     except Refused as refused:
@@ -253,14 +255,14 @@ def _read(data: bytes, profile: Robot, language: Language) -> Image:
     return image
 
 
-def _unpacked(data: bytes, language: Language) -> Image:
+def _unpack(data: bytes, language: Language) -> Image:
     try:
         return unpack(data)
     except ImageRefused as refused:
-        raise ProgramError(refused.name, _checked(language)) from None
+        raise ProgramError(refused.name, _check_language(language)) from None
 
 
-def _checked(language: Language) -> Language:
+def _check_language(language: Language) -> Language:
     if language not in languages():
         values = {"found": printable(repr(language), SHOWN), "known": ", ".join(languages())}
         raise UsageError("bad_language", "en", values)

@@ -94,9 +94,9 @@ def run(
     """
     ready = program_of(program, robot, language)
     profile, image = ready._profile, ready._image
-    max_ms = round(within("max_time", max_time, 0, LONGEST_S, language) * 1000)
-    whole("max_steps", max_steps, 0, MOST_STEPS, language)
-    whole("seed", seed, 1, LARGEST_SEED, language)
+    max_ms = round(checked_number("max_time", max_time, 0, LONGEST_S, language) * 1000)
+    check_whole_number("max_steps", max_steps, 0, MOST_STEPS, language)
+    check_whole_number("seed", seed, 1, LARGEST_SEED, language)
     lists = thousandths(sensors or {}, profile, language)
     if machine not in ("python", "cpp"):
         raise UsageError("bad_choice", language, {"found": printable(repr(machine))})
@@ -110,11 +110,13 @@ def run(
             how = install_advice.command(install_advice.VIRTUAL)
             raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None
     return _trace(
-        begun(image, profile, lists, max_ms, max_steps, seed, machine_of), profile.kit, ready._map
+        iter_actions(image, profile, lists, max_ms, max_steps, seed, machine_of),
+        profile.kit,
+        ready._map,
     )
 
 
-def begun(
+def iter_actions(
     image: Image, robot: Robot, lists: Mapping[int, Sequence[int]], max_ms: int, max_steps: int,
     seed: int, machine_of: MachineOf | None = None,
 ) -> Iterator[Event | Ending]:  # fmt: skip
@@ -214,18 +216,18 @@ def _reading(device: Device, found: object, language: Language) -> int:
     return value
 
 
-def within(name: str, found: object, low: float, high: float, language: Language) -> float:
+def checked_number(name: str, found: object, low: float, high: float, language: Language) -> float:
     """Return an argument that must be a number in a range. Raises UsageError."""
     if isinstance(found, int | float) and not isinstance(found, bool) and low <= found <= high:
         return found
     raise _bad_number(name, found, low, high, language)
 
 
-def whole(name: str, found: object, low: int, high: int, language: Language) -> None:
+def check_whole_number(name: str, found: object, low: int, high: int, language: Language) -> None:
     """Check an argument that must be a whole number in a range. Raises UsageError."""
     if isinstance(found, float):
         raise _bad_number(name, found, low, high, language)
-    within(name, found, low, high, language)
+    checked_number(name, found, low, high, language)
 
 
 def _bad_number(

@@ -79,7 +79,7 @@ class Finder:
                 self._runs[run] = program, places
         return places
 
-    def of(self, event: ShownEvent) -> Show | None:
+    def show_of(self, event: ShownEvent) -> Show | None:
         places = self.map_of(event.run, event.program) if event.at >= 0 else None
         if places is None:
             return None

@@ -10,7 +10,13 @@ from tiniscript.library import install_advice
 from tiniscript.library.connection import VERB, RobotConnection
 from tiniscript.library.errors import UsageError
 from tiniscript.library.programs import Language, profile_of
-from tiniscript.library.runs import LARGEST_SEED, Readings, thousandths, whole, within
+from tiniscript.library.runs import (
+    LARGEST_SEED,
+    Readings,
+    check_whole_number,
+    checked_number,
+    thousandths,
+)
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.refusals import describe
@@ -21,7 +27,7 @@ from tiniscript.virtual.simulator import SimulatorThread
 from tiniscript.virtual.world import WorldRefused
 
 MOST_NOISE = 0.5
-SLOWEST_HURRY, FASTEST_HURRY = 0.1, 10_000
+MIN_SPEEDUP, MAX_SPEEDUP = 0.1, 10_000
 LEAST_MOTOR, MOST_MOTOR = 10, 200  # percent
 
 
@@ -46,12 +52,12 @@ def virtual_robot(
     """
     profile = profile_of(robot, language)
     if hurry != math.inf:
-        within("hurry", hurry, SLOWEST_HURRY, FASTEST_HURRY, language)
-    whole("seed", seed, 1, LARGEST_SEED, language)
-    within("noise", noise, 0, MOST_NOISE, language)
+        checked_number("hurry", hurry, MIN_SPEEDUP, MAX_SPEEDUP, language)
+    check_whole_number("seed", seed, 1, LARGEST_SEED, language)
+    checked_number("noise", noise, 0, MOST_NOISE, language)
     left, right = motors
     for motor in (left, right):
-        within("motors", motor, LEAST_MOTOR, MOST_MOTOR, language)
+        checked_number("motors", motor, LEAST_MOTOR, MOST_MOTOR, language)
     message = thousandths(sensors or {}, profile, language)
     settings = Settings(seed=seed, noise=noise, motors=(left, right), told=message)
     simulated = Simulated(
@@ -107,10 +113,10 @@ class DriveState(NamedTuple):
 class Simulated(SimulatorThread):
     def __init__(self, robot: VirtualRobot, hurry: float) -> None:
         super().__init__(robot, VERB, hurry)
-        self.took_turn()
+        self.on_turn()
         self._thread.start()
 
-    def took_turn(self) -> None:
+    def on_turn(self) -> None:
         self.robot.take_events()  # discarded: nothing draws them
         driving = self.robot.driving
         self.seen = DriveState(self.robot.pose, driving.driven_cm, driving.bumps)
@@ -119,7 +125,7 @@ class Simulated(SimulatorThread):
 def _make_robot(profile: Robot, world: str, settings: Settings, language: Language) -> VirtualRobot:
     """Return the robot in its world. Raises UsageError."""
     try:
-        return VirtualRobot(profile.speaking(language), worlds.load(world), settings)
+        return VirtualRobot(profile.with_language(language), worlds.load(world), settings)
     except NoWebAssembly as why:
         how = install_advice.command(install_advice.VIRTUAL)
         raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None

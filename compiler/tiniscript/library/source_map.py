@@ -77,7 +77,7 @@ class Map(NamedTuple):
         return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""
 
 
-def made(compiled: Compiled) -> Map:
+def map_of_compiled(compiled: Compiled) -> Map:
     """Return the map of a program that has just been compiled."""
     source = compiled.source
     map_locations = tuple(

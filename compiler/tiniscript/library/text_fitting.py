@@ -9,7 +9,7 @@ from __future__ import annotations
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
 from tiniscript.base.words import WORDS
-from tiniscript.codegen.text.line import PlainCode, plain_code, spelled_out
+from tiniscript.codegen.text.line import PlainCode, plain_code, spell_out
 from tiniscript.codegen.text.memory import MOST_BRACKETS, Reader
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
@@ -23,7 +23,7 @@ from tiniscript.syntax.parser import parse
 def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return what a robot of this level lacks for a checked program."""
     parsed = parse(source)
-    tokens = list(spelled_out(parsed.scan.tokens))
+    tokens = list(spell_out(parsed.scan.tokens))
     ends = ("end", "alias")  # what begins their block says it
     lacked = {word for word in level.lacks if WORDS[word].role.name not in ends}
     diagnostics = [

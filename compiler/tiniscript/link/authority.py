@@ -65,11 +65,11 @@ class KeyRing:
         """Return the keys of a robot, or of all."""
         return [key for key in self._stored_keys() if robot in (None, key.id)]
 
-    def made(self, robot: int, which: int, name: str) -> RobotKey | None:
+    def create_pending_key(self, robot: int, which: int, name: str) -> RobotKey | None:
         """Make a key and keep it as a pending one; None if it cannot be kept."""
         key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
 
-        def with_it(before: list[RobotKey]) -> list[RobotKey]:
+        def with_key_added(before: list[RobotKey]) -> list[RobotKey]:
             pending = [
                 robot_key
                 for robot_key in before
@@ -80,7 +80,7 @@ class KeyRing:
                 key,
             ]
 
-        return key if self._change(with_it) else None
+        return key if self._change(with_key_added) else None
 
     def robot_at(self, place: str) -> int | None:
         """Return the robot of ours that has proved at a place who it is."""
@@ -97,12 +97,12 @@ class KeyRing:
         """The robot has taken a pending key: it replaces the one before."""
         settled = key._replace(is_pending=False, is_stale=False)
 
-        def with_it(before: list[RobotKey]) -> list[RobotKey]:
+        def with_key_settled(before: list[RobotKey]) -> list[RobotKey]:
             if settled in before:
                 return before
             return [*(robot_key for robot_key in before if robot_key.place != key.place), settled]
 
-        self._change(with_it)
+        self._change(with_key_settled)
 
     def refuse(self, key: RobotKey) -> None:
         """The robot has another key than this one: it is stale, until it is right after all."""
@@ -115,7 +115,7 @@ class KeyRing:
         self._change(lambda before: [robot_key for robot_key in before if robot_key.key != key.key])
 
 
-def whose(robot: DeviceInfo) -> str:
+def ownership_of(robot: DeviceInfo) -> str:
     """Return whether a robot is FREE, YOUR_OWN or OF_ANOTHER."""
     features = robot.values.features
     if not features & OWNED:
@@ -189,7 +189,7 @@ def _show(
     key: RobotKey, robot: DeviceInfo, nonce: int, epoch: Callable[[], int]
 ) -> Exchange[AuthenticateReply]:
     ask = Request("AUTHENTICATE", {"which": key.which, "tag": b""})
-    reply = yield from requests.patient(ask, AuthenticateReply)
+    reply = yield from requests.retry_while_busy(ask, AuthenticateReply)
     if reply.status != OK:
         return reply
     challenge = reply.values.challenge
@@ -200,18 +200,20 @@ def _show(
         seal = Seal(session_key(key.key, challenge, nonce, own, epoch(), key.which))
     tag = siphash(key.key, text)
     answer = Request("AUTHENTICATE", {"which": key.which, "tag": tag}, seal=seal)
-    return (yield from requests.patient(answer, AuthenticateReply))
+    return (yield from requests.retry_while_busy(answer, AuthenticateReply))
 
 
 def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
     """Give the robot a new key, when its button was held down in the time of the request."""
-    key = ring.made(robot.id, which, robot.name)
+    key = ring.create_pending_key(robot.id, which, robot.name)
     if key is None:
         return Reply(UNKEPT)
     request = Request("CLAIM", {"which": which, "key": key.key})
-    reply = yield from requests.kept(request, EmptyReply)
+    reply = yield from requests.save_and_confirm(request, EmptyReply)
     while reply.status == HOLD_BUTTON:
-        reply = yield from requests.kept(request._replace(pause_ms=HOLD_PAUSE_MS), EmptyReply)
+        reply = yield from requests.save_and_confirm(
+            request._replace(pause_ms=HOLD_PAUSE_MS), EmptyReply
+        )
     if reply.status == OK:
         ring.settle(key._replace(uses_seals=_can_seal(robot)))
     elif reply.status not in TAKEN:
@@ -222,7 +224,7 @@ def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
 def disown(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
     """Take a key away from the robot."""
     request = Request("CLAIM", {"which": which, "key": b""})
-    reply = yield from requests.kept(request, EmptyReply)
+    reply = yield from requests.save_and_confirm(request, EmptyReply)
     if reply.status == OK:
         for key in ring.of_robot(robot.id):
             if key.which == which:

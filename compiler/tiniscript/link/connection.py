@@ -212,7 +212,7 @@ class LinkConnection:
         """Whether the connection is gone."""
         return False
 
-    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+    def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         """Start a request; return while it is in progress."""
         raise NotImplementedError
 

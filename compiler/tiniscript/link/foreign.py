@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 from tiniscript.base import languages
 from tiniscript.base.source import printable
-from tiniscript.link.frames import decoded
+from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import FIRST_EVENT
 
 CATALOGUE = "foreign"
@@ -76,7 +76,7 @@ def _line_with(pattern: str) -> Callable[[bytes], tuple[str, bool] | None]:
             return None
         first = max(heard.rfind(end, 0, match.start() + 1) for end in (b"\n", b"\r")) + 1
         rest = re.split(rb"[\r\n]", heard[first:], maxsplit=1)[0]
-        return _shown(rest.decode("utf-8", "replace")), True
+        return _printable(rest.decode("utf-8", "replace")), True
 
     return recognise
 
@@ -89,7 +89,7 @@ def _firmata(heard: bytes) -> tuple[str, bool] | None:
     if match is None:
         return None
     name = match[3][::2].decode("ascii")
-    return _shown(f"{name} {match[1][0]}.{match[2][0]}"), True
+    return _printable(f"{name} {match[1][0]}.{match[2][0]}"), True
 
 
 _VERSION_OF_MBOT = re.compile(rb"(?:^|[\r\n])(Version: [0-9]{2}\.[0-9]{2}\.[0-9]{3})(?:[\r\n]|$)")
@@ -107,7 +107,7 @@ def _mbot(heard: bytes) -> tuple[str, bool] | None:
     line = _VERSION_OF_MBOT.search(heard)
     if line is not None:
         return line[1].decode("ascii"), bool(said)  # another sketch may print such a line
-    return (_shown(said), True) if said else None
+    return (_printable(said), True) if said else None
 
 
 _PYTHON = _line_with(r"(?:MicroPython|Adafruit CircuitPython) v?[0-9]|raw REPL; CTRL-B to exit")
@@ -158,7 +158,7 @@ GENERAL = ("esp32", TEXT)  # of whatever runs there: a question may tell what th
 ASKS_AT = b"\r\nAT+GMR\r\n"  # what an AT firmware says of itself; modules of radio refuse it
 
 
-def recognised(heard: bytes) -> Foreign | None:
+def identify_board(heard: bytes) -> Foreign | None:
     """Return what has sent these bytes, if it has a row; None for a robot's, for text and noise."""
     if is_robot(heard):
         return None
@@ -174,7 +174,7 @@ def stranger(heard: bytes) -> Foreign | None:
 
     Sure text has a whole line. None for a robot's bytes, and for noise.
     """
-    found = recognised(heard)
+    found = identify_board(heard)
     if found is not None or is_robot(heard):
         return found
     said = readable(heard)
@@ -184,7 +184,7 @@ def stranger(heard: bytes) -> Foreign | None:
 def is_robot(heard: bytes) -> bool:
     """Whether a robot of ours has sent some of these bytes: a whole frame, or a line of text."""
     for packet in heard.split(b"\0"):
-        frame = decoded(packet) if packet else None
+        frame = decode_frame(packet) if packet else None
         if frame is not None and (frame.is_reply or frame.number >= FIRST_EVENT):
             return True
     return our_line(heard) != ""
@@ -193,7 +193,7 @@ def is_robot(heard: bytes) -> bool:
 def our_line(heard: bytes) -> str:
     """Return the last whole line of a robot's text, `// OK`, or nothing."""
     lines = re.findall(rb"(?:^|[\r\n\x00])(// [\x20-\x7e]+)[\r\n]", heard)
-    return _shown(lines[-1].decode("ascii")) if lines else ""
+    return _printable(lines[-1].decode("ascii")) if lines else ""
 
 
 def readable(heard: bytes) -> str:
@@ -209,33 +209,33 @@ def readable(heard: bytes) -> str:
     if not text or good < least * len(text):
         return ""
     rows = [row.strip() for row in text.splitlines() if row.strip()]
-    return _shown(rows[len(rows) // 2]) if rows else ""
+    return _printable(rows[len(rows) // 2]) if rows else ""
 
 
 def _has_line(heard: bytes) -> bool:
     return b"\n" in heard or b"\r" in heard
 
 
-def _shown(line: str) -> str:
+def _printable(line: str) -> str:
     plain = re.sub(r"\x1b\[[0-9;]*m", "", line).strip()
     return "".join(letter for letter in plain if letter.isprintable())[:MOST_TEXT]
 
 
-class Sentence(NamedTuple):
+class Explanation(NamedTuple):
     """What such a board is, perhaps with what it says, and what to do next."""
 
     said: str
     advice: str
 
 
-def sentence(name: str, language: str) -> Sentence:
+def sentence(name: str, language: str) -> Explanation:
     """Return the sentences of a row, or of ECHO or TEXT."""
     said = languages.text(CATALOGUE, f"{name}/said", language)
-    return Sentence(said, languages.text(CATALOGUE, f"{name}/try", language))
+    return Explanation(said, languages.text(CATALOGUE, f"{name}/try", language))
 
 
-def told(found: Foreign, language: str) -> Sentence:
+def explain(found: Foreign, language: str) -> Explanation:
     """Return the sentences of a board, with what it says in the first one."""
     said, advice = sentence(found.name, language)
     says = languages.text(CATALOGUE, "says", language)
-    return Sentence(says.format(what=said, said=printable(found.said, MOST_TEXT)), advice)
+    return Explanation(says.format(what=said, said=printable(found.said, MOST_TEXT)), advice)

@@ -38,7 +38,7 @@ class Frame(NamedTuple):
     is_sealed: bool = False
 
 
-def encoded(frame: Frame) -> bytes:
+def encode_frame(frame: Frame) -> bytes:
     """Return the bytes on the wire, including the 0x00 at the end."""
     kind = frame.number | REPLY * frame.is_reply | SEALED * frame.is_sealed
     data = bytes((kind, frame.seq, frame.epoch))
@@ -50,7 +50,7 @@ def encoded(frame: Frame) -> bytes:
     return wire + b"\0"
 
 
-def decoded(wire: bytes) -> Frame | None:
+def decode_frame(wire: bytes) -> Frame | None:
     """Return the frame in a packet's bytes (without the 0x00), or None if it is damaged."""
     try:
         data: bytes = cobs.decode(wire)

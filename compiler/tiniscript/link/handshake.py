@@ -37,7 +37,7 @@ from tiniscript.link.payloads import (
     TextReply,
     TrimReply,
 )
-from tiniscript.link.requests import OK, DeviceInfo, Exchange, Reply, Request, refused
+from tiniscript.link.requests import OK, DeviceInfo, Exchange, Reply, Request, as_refusal
 from tiniscript.link.robot_state import RobotState
 from tiniscript.link.sealing import NEED_NO_KEY
 
@@ -84,9 +84,9 @@ class Handshake:
             "kit": self._kit,
             "nonce": self._nonce,
         }
-        reply = yield from requests.single(Request("HELLO", values), HelloReply)
+        reply = yield from requests.send_single(Request("HELLO", values), HelloReply)
         if reply.status == OK:
-            device_info = requests.described(reply.values)
+            device_info = requests.device_info_of(reply.values)
             if authority.is_other(self._keys, self._place, device_info):
                 self.is_open = False
                 return Reply(OTHER_ROBOT, device_info.id)
@@ -103,7 +103,7 @@ class Handshake:
             if is_owned or must_seal:
                 shown = yield from self.show_keys(is_needed=must_seal and not is_owned)
                 if shown.status == STATUSES["STALE"]:  # the robot was reset meanwhile
-                    return refused(shown)
+                    return as_refusal(shown)
                 # what is shown is sealed, and says whether HELLO has told the truth
                 if not is_owned and (shown.status != OK or shown.values.features & OWNED):
                     self.is_open = False
@@ -118,7 +118,7 @@ class Handshake:
         if not self.is_open or self.is_in_doubt:
             hello = yield from self.hello()
             if hello.status != OK:
-                return refused(hello)
+                return as_refusal(hello)
         boot = self._boot
         reply = yield from self.with_key(make)
         if reply.status != STATUSES["STALE"]:
@@ -126,7 +126,7 @@ class Handshake:
         hello = yield from self.hello()
         ended = STATE_FAULTED if self._boot == boot else STATE_IDLE
         if hello.status in (OTHER_ROBOT, UNPROVEN):
-            return refused(hello)
+            return as_refusal(hello)
         if hello.status != OK or self._state.state != ended:
             return reply
         return (yield from self.with_key(make))  # that came before, and nothing of this was done
@@ -139,10 +139,10 @@ class Handshake:
         if not self.is_open:
             hello = yield from self.hello()
             if hello.status != OK:
-                return refused(hello)
+                return as_refusal(hello)
         shown = yield from self.show_keys()
         if shown.status != OK:
-            return refused(reply if shown.status == NOT_OWNER else shown)
+            return as_refusal(reply if shown.status == NOT_OWNER else shown)
         return (yield from make())
 
     def show_keys(
@@ -160,7 +160,7 @@ class Handshake:
 
     def _take_features(self, features: int) -> None:
         assert self.robot
-        self.robot = requests.described(self.robot.values._replace(features=features))
+        self.robot = requests.device_info_of(self.robot.values._replace(features=features))
 
     @property
     def _boot(self) -> int | None:
@@ -177,11 +177,11 @@ class Handshake:
         features = self.robot.values.features if self.robot else 0
         return name in NEED_NO_KEY or features & (OWNED | SEALS) != OWNED | SEALS
 
-    def stopped(self, is_sealed: Callable[[], bool]) -> Exchange[StatusReply]:
+    def prove_stopped(self, is_sealed: Callable[[], bool]) -> Exchange[StatusReply]:
         """Have the robot prove that it is stopped, if it is one that seals."""
         hello = yield from self.hello()
         if hello.status != OK:
-            return refused(hello)
+            return as_refusal(hello)
         reply = yield from status()
         if reply.status == OK and self.is_doubted:
             if not (is_sealed() and reply.values.state > STATE_RUNNING):
@@ -209,12 +209,12 @@ class Handshake:
         """Stop the robot so that only the teacher's key, or its button, lets it go on."""
         shown = yield from self.show_keys(KEY_TEACHER)
         if shown.status != OK:
-            return refused(shown)
-        return (yield from requests.single(Request("STOP"), EmptyReply))
+            return as_refusal(shown)
+        return (yield from requests.send_single(Request("STOP"), EmptyReply))
 
     def allow_text(self, is_allowed: bool) -> Exchange[TextReply]:
         request = Request("TEXT", {"is_allowed": int(is_allowed)})
-        reply = yield from requests.single(request, TextReply)
+        reply = yield from requests.send_single(request, TextReply)
         if reply.status == OK:
             self._take_features(reply.values.features)
         return reply
@@ -239,12 +239,14 @@ class Handshake:
         assert self.robot
         if places and not self.robot.values.features & BREAKPOINTS:
             return Reply(STATUSES["NO_BREAKPOINTS"])
-        return (yield from requests.patient(Request("BREAK", {"places": places}), EmptyReply))
+        return (
+            yield from requests.retry_while_busy(Request("BREAK", {"places": places}), EmptyReply)
+        )
 
     def name(self, name: bytes) -> Exchange[EmptyReply]:
-        reply = yield from requests.kept(Request("NAME", {"name": name}), EmptyReply)
+        reply = yield from requests.save_and_confirm(Request("NAME", {"name": name}), EmptyReply)
         if reply.status in (OK, *requests.TAKEN) and self.robot:
-            self.robot = requests.described(self.robot.values._replace(name=name))
+            self.robot = requests.device_info_of(self.robot.values._replace(name=name))
         return reply
 
     def _speak_for(self, kit: int) -> Generator[Request, Reply[SentReply], DeviceInfo]:
@@ -261,35 +263,37 @@ class Handshake:
 
 
 def ping(asks: bytes = b"") -> Exchange[PingReply]:
-    return requests.single(Request("PING", {"asks": asks}), PingReply)
+    return requests.send_single(Request("PING", {"asks": asks}), PingReply)
 
 
 def status() -> Exchange[StatusReply]:
-    return requests.single(Request("STATUS"), StatusReply)
+    return requests.send_single(Request("STATUS"), StatusReply)
 
 
 # What carries out the requests of a `Requester` that are more than the message of their name.
 _EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
     "hello": Handshake.hello,
-    "ping": lambda its: ping(),
-    "clear": lambda its: requests.clear(),
+    "ping": lambda handshake: ping(),
+    "clear": lambda handshake: requests.clear(),
     "start": Handshake.start,
     "live": Handshake.live,
     "upload": Handshake.upload,
-    "undo": lambda its: requests.patient(Request("UNDO"), ReceiptReply),
+    "undo": lambda handshake: requests.retry_while_busy(Request("UNDO"), ReceiptReply),
     "break_at": Handshake.break_at,
     "name": Handshake.name,
-    "trim": lambda its, trim: requests.kept(Request("TRIM", {"trim": trim}), TrimReply),
-    "fetch": lambda its: requests.fetch(),
+    "trim": lambda handshake, trim: requests.save_and_confirm(
+        Request("TRIM", {"trim": trim}), TrimReply
+    ),
+    "fetch": lambda handshake: requests.fetch(),
     "claim": Handshake.claim,
     "disown": Handshake.disown,
     "hold_back": Handshake.hold_back,
     "allow_text": Handshake.allow_text,
-    "wifi": lambda its: wifi.tell("TELL"),
-    "join": lambda its, network: wifi.give(network),
-    "forget_wifi": lambda its: wifi.forget(),
-    "broker": lambda its: wifi.tell("TELL_BROKER"),
-    "use_broker": lambda its, broker: wifi.use_broker(broker),
+    "wifi": lambda handshake: wifi.tell("TELL"),
+    "join": lambda handshake, network: wifi.give(network),
+    "forget_wifi": lambda handshake: wifi.forget(),
+    "broker": lambda handshake: wifi.tell("TELL_BROKER"),
+    "use_broker": lambda handshake, broker: wifi.use_broker(broker),
 }
 
 
@@ -298,7 +302,9 @@ def exchange_of(name: str) -> Callable[..., Exchange[Any]]:
     if name in _EXCHANGES:
         return _EXCHANGES[name]
     message = name.upper()
-    return lambda its, **given: requests.single(Request(message, given), REPLIES[message])
+    return lambda handshake, **given: requests.send_single(
+        Request(message, given), REPLIES[message]
+    )
 
 
 NEED_NO_HELLO = ("ping", "status", "fetch")

@@ -65,7 +65,7 @@ class KeyFile(KeyRing):
             return []
         except OSError as failure:
             raise BadKeys(failure.strerror or str(failure)) from None
-        return read(data)
+        return decode_keys(data)
 
     def add(self, keys: Iterable[RobotKey]) -> int:
         """Put keys into the file in the place of those before; return how many are new or other.
@@ -110,14 +110,16 @@ class KeyFile(KeyRing):
         return self.path.with_name("robots.json")
 
     def robot_at(self, place: str) -> int | None:
-        return met_robots.met(self._met_robots_path).places.get(place)
+        return met_robots.read_met_robots(self._met_robots_path).places.get(place)
 
     def meet(self, place: str, robot: int) -> None:
         if not self._is_for_virtual:
             met_robots.meet(self._met_robots_path, place, robot)
 
     def accepts(self, robot: int) -> bool:
-        return self._accepts_all or robot in met_robots.met(self._met_robots_path).accepted
+        return (
+            self._accepts_all or robot in met_robots.read_met_robots(self._met_robots_path).accepted
+        )
 
     def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         try:
@@ -136,7 +138,7 @@ class KeyFile(KeyRing):
         with _LOCK:
             try:
                 self._make_folder()
-                with files.alone(self.path, MODE):
+                with files.lock_file(self.path, MODE):
                     yield
             except OSError as failure:
                 raise BadKeys(failure.strerror or str(failure)) from None
@@ -149,7 +151,7 @@ class KeyFile(KeyRing):
         if len(keys) > MOST:
             raise TooManyKeys
         try:
-            files.replace(self.path, written(keys), MODE)
+            files.replace(self.path, encode_keys(keys), MODE)
         except (OSError, ValueError) as failure:
             raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
 
@@ -170,7 +172,7 @@ def is_shared(path: Path) -> bool:
         return False
 
 
-def written(keys: Iterable[RobotKey]) -> bytes:
+def encode_keys(keys: Iterable[RobotKey]) -> bytes:
     """Return keys as a file."""
     rows = [
         {
@@ -185,7 +187,7 @@ def written(keys: Iterable[RobotKey]) -> bytes:
     return (json.dumps({"tiniscript_keys": 1, "keys": rows}, indent=1) + "\n").encode()
 
 
-def read(data: bytes) -> list[RobotKey]:
+def decode_keys(data: bytes) -> list[RobotKey]:
     """Return the keys in a file. Raises BadKeys where it is none, without anything from it."""
     try:
         result = json.loads(data)

@@ -19,22 +19,22 @@ FILE_BYTES = 1_000_000
 KEPT = 2000  # ports; the oldest go first
 
 
-class Known(NamedTuple):
+class KnownPorts(NamedTuple):
     """`names` maps ports to robots' names, the newest first; a name may be empty."""
 
     last: str | None
     names: dict[str, str]
 
 
-def known() -> Known:
+def remembered_ports() -> KnownPorts:
     """Return the remembered ports."""
     try:
         fields = json.loads(contents(_path(), FILE_BYTES))
         last = fields["last"]
         names = {str(port): printable(str(name)) for port, name in fields["ports"]}
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
-        return Known(None, {})
-    return Known(last if isinstance(last, str) else None, names)
+        return KnownPorts(None, {})
+    return KnownPorts(last if isinstance(last, str) else None, names)
 
 
 def remember(port: str, name: str, is_used: bool = True) -> None:
@@ -42,8 +42,8 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
     path = _path()
     with suppress(OSError, ValueError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with files.alone(path):  # other commands do the same
-            before = known()
+        with files.lock_file(path):  # other commands do the same
+            before = remembered_ports()
             first = next(iter(before.names.items()), None)
             if first == (port, name) and (before.last == port or not is_used):
                 return

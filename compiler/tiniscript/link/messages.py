@@ -451,7 +451,7 @@ class Malformed(Exception):
     """A payload that does not fit the table."""
 
 
-def written(fields: tuple[Field, ...], values: Mapping[str, int | bytes]) -> bytes:
+def encode_payload(fields: tuple[Field, ...], values: Mapping[str, int | bytes]) -> bytes:
     """Return the payload with these values, one for each field; a rest that may be empty is, where
     it has none."""
     assert set(values) <= {field.name for field in fields}, (fields, values)
@@ -466,7 +466,7 @@ def written(fields: tuple[Field, ...], values: Mapping[str, int | bytes]) -> byt
     return b"".join(parts)
 
 
-def read(fields: tuple[Field, ...], payload: bytes) -> dict[str, int | bytes]:
+def decode_payload(fields: tuple[Field, ...], payload: bytes) -> dict[str, int | bytes]:
     """Return the values in a payload. Raises Malformed if its length does not fit."""
     result: dict[str, int | bytes] = {}
     at = 0

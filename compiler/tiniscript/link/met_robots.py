@@ -19,50 +19,50 @@ KEPT = 2000  # places, and robots; the oldest go first
 MODE = 0o600  # only this person reads it
 
 
-class Met(NamedTuple):
+class MetRobots(NamedTuple):
     """`places` maps each port to the id of the robot that has proved there who it is."""
 
     places: dict[str, int]
     accepted: list[int]
 
 
-def met(path: Path) -> Met:
+def read_met_robots(path: Path) -> MetRobots:
     """Return what is in the file."""
     try:
         fields = json.loads(files.contents(path, FILE_BYTES))
         places = {str(place): int(robot, 16) for place, robot in fields["places"].items()}
-        return Met(places, [int(robot, 16) for robot in fields["accepted"]])
+        return MetRobots(places, [int(robot, 16) for robot in fields["accepted"]])
     except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
-        return Met({}, [])
+        return MetRobots({}, [])
 
 
 def meet(path: Path, place: str, robot: int) -> None:
     """Remember which robot is at a place. Where the file cannot be written it is not remembered."""
-    if met(path).places.get(place) == robot:
+    if read_met_robots(path).places.get(place) == robot:
         return
 
-    def with_it(before: Met) -> Met:
+    def with_place_added(before: MetRobots) -> MetRobots:
         others = {value: other for value, other in before.places.items() if value != place}
         return before._replace(places={**others, place: robot})
 
     with suppress(OSError, ValueError):
-        _change(path, with_it)
+        _change(path, with_place_added)
 
 
 def accept(path: Path, robot: int) -> None:
     """Remember that a robot may answer where another one did. Raises OSError."""
 
-    def with_it(before: Met) -> Met:
+    def with_robot_accepted(before: MetRobots) -> MetRobots:
         others = [item for item in before.accepted if item != robot]
         return before._replace(accepted=[*others, robot])
 
-    _change(path, with_it)
+    _change(path, with_robot_accepted)
 
 
-def _change(path: Path, change: Callable[[Met], Met]) -> None:
+def _change(path: Path, change: Callable[[MetRobots], MetRobots]) -> None:
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    with files.alone(path, MODE):
-        now = change(met(path))
+    with files.lock_file(path, MODE):
+        now = change(read_met_robots(path))
         fields = {
             "places": {place: f"{robot:08x}" for place, robot in list(now.places.items())[-KEPT:]},
             "accepted": [f"{robot:08x}" for robot in now.accepted[-KEPT:]],

@@ -68,7 +68,7 @@ class PortConnection(LinkConnection):
         return self.session.robot
 
     @property
-    def gone(self) -> str | None:
+    def end_reason(self) -> str | None:
         """Return why the port is gone, or None while it is open."""
         return self._gone
 
@@ -76,7 +76,7 @@ class PortConnection(LinkConnection):
     def has_ended(self) -> bool:
         return self._gone is not None
 
-    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+    def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         with self._news:
             request = make(self.session)
             self._under_way.append(request)

@@ -19,7 +19,7 @@ from tiniscript.link.transports import Port, Transport
 
 if TYPE_CHECKING:
     from tiniscript.link.transports.bluetooth_search import SeenDevice
-    from tiniscript.link.transports.network import Announced
+    from tiniscript.link.transports.network import AnnouncedRobot
 
 OPEN_S = 20.0  # timeout of opening: a radio that is out of reach takes long
 # which ports a transport has; all others are of `serial`
@@ -33,12 +33,12 @@ class ListedPort(NamedTuple):
     description: str
 
 
-def listed() -> list[ListedPort]:
+def list_ports() -> list[ListedPort]:
     """Return the ports that the system knows. Opens none of them, because that resets boards."""
     from tiniscript.link.transports import serial
 
     matches = []
-    for item in serial.listed():
+    for item in serial.list_serial_ports():
         description = item.description if item.description != "n/a" else ""
         matches.append(ListedPort(item.device, printable(description)))  # a device says it
     return sorted(matches)
@@ -54,56 +54,56 @@ def is_radio(port: str) -> bool:
     if sys.platform == "win32":
         from tiniscript.link.transports import serial
 
-        known = {item.device.lower(): item.hwid or "" for item in serial.listed()}
+        known = {item.device.lower(): item.hwid or "" for item in serial.list_serial_ports()}
         return "BTHENUM" in known.get(name, "")
     return False
 
 
-def resolved(port: str) -> str:
+def resolve(port: str) -> str:
     """Return the address of the robot that `ble://name` or `tcp://name` means: a port, too.
 
     Any other port is its own address. Raises PortError.
     """
-    return _transport(port).resolved(port)
+    return _transport(port).resolve(port)
 
 
-def opened(port: str, baud: int, limit_s: float = OPEN_S) -> Port:
+def open_port(port: str, baud: int, limit_s: float = OPEN_S) -> Port:
     """Open a port for exclusive use. Raises PortError, at the latest after `limit_s`.
 
     A connection by Bluetooth LE has limits of its own.
     """
-    return _transport(port).opened(port, baud, limit_s)
+    return _transport(port).open_port(port, baud, limit_s)
 
 
-def opened_past_lock(port: str, baud: int, limit_s: float = OPEN_S) -> Port:
+def open_past_lock(port: str, baud: int, limit_s: float = OPEN_S) -> Port:
     """Open a serial port that another program has locked: both hear then. Raises PortError."""
     from tiniscript.link.transports import serial
 
-    return cast(Port, serial.opened(port, baud, limit_s, is_exclusive=False))
+    return cast(Port, serial.open_port(port, baud, limit_s, is_exclusive=False))
 
 
-def in_reach() -> list[SeenDevice]:
+def find_in_reach() -> list[SeenDevice]:
     """Search with Bluetooth LE for some seconds, and return the robots. Raises PortError."""
-    with _installed():
+    with _convert_import_error():
         from tiniscript.link.transports import bluetooth
-    return bluetooth.listed()
+    return bluetooth.list_robots()
 
 
-def announced() -> list[Announced]:
+def find_announced() -> list[AnnouncedRobot]:
     """Return the robots that announce themselves in the network. Raises PortError."""
-    with _installed():
+    with _convert_import_error():
         from tiniscript.link.transports import network
-    return network.listed()
+    return network.list_robots()
 
 
 def _transport(port: str) -> Transport:
     name = next((name for has, name in _TRANSPORTS if has(port)), "serial")
-    with _installed():
+    with _convert_import_error():
         return cast(Transport, import_module(f"tiniscript.link.transports.{name}"))
 
 
 @contextmanager
-def _installed() -> Iterator[None]:
+def _convert_import_error() -> Iterator[None]:
     """Raise PortError where a package is missing."""
     try:
         yield

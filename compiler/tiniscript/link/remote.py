@@ -39,7 +39,7 @@ class Pressed(NamedTuple):
 NOTHING = Pressed()
 
 
-def pressed(names: Iterable[str], x: int = 0, y: int = 0) -> Pressed:
+def pressed_of(names: Iterable[str], x: int = 0, y: int = 0) -> Pressed:
     """Return what is held, by the names of the keys. Raises ValueError for others, or too much."""
     keys = 0
     for name in names:

@@ -29,8 +29,8 @@ from tiniscript.link.messages import (
     STATUSES,
     YOURS,
     Malformed,
+    decode_payload,
     payload_bytes,
-    read,
 )
 from tiniscript.link.payloads import (
     REPLIES,
@@ -131,7 +131,7 @@ def reply_of(name: str, payload: bytes) -> Reply[SentReply] | None:
     if payload[0] != OK:
         return Reply(payload[0], int.from_bytes(payload[1:3], "little"))
     try:
-        values: Mapping[str, Any] = read(BY_NAME[name].reply, payload[1:])
+        values: Mapping[str, Any] = decode_payload(BY_NAME[name].reply, payload[1:])
     except Malformed:
         return None
     if values.get("saved") in NOT_HELD and "length" in values:  # of one that is gone
@@ -139,24 +139,24 @@ def reply_of(name: str, payload: bytes) -> Reply[SentReply] | None:
     return Reply(OK, 0, REPLIES[name](**values))
 
 
-def described(values: HelloReply) -> DeviceInfo:
+def device_info_of(values: HelloReply) -> DeviceInfo:
     """Return the device info in the reply to HELLO. Its name has no control characters."""
     name = printable(values.name.decode("utf-8", "replace"))
     isa = values.isa_major, values.isa_minor
     return DeviceInfo(name, values.id, isa, values.kit, values.room, values)
 
 
-def refused(reply: Reply[object]) -> Reply[Any]:
+def as_refusal(reply: Reply[object]) -> Reply[Any]:
     """Return a reply that is not OK as the outcome of a whole exchange."""
     assert reply.status != OK
     return Reply(reply.status, reply.detail)
 
 
-def single(request: Request, kind: type[T]) -> Exchange[T]:
+def send_single(request: Request, kind: type[T]) -> Exchange[T]:
     """Send one request; its reply has this type."""
     reply = yield request
     if reply.status != OK:
-        return refused(reply)
+        return as_refusal(reply)
     values = reply.values
     assert isinstance(values, kind), (request, values)
     return Reply(OK, 0, values)
@@ -182,7 +182,7 @@ def live(code: bytes, is_latched: bool, kit: int, robot: DeviceInfo) -> Exchange
     if kit not in (0, robot.kit):
         return Reply(STATUSES["WRONG_KIT"], robot.kit)
     request = Request("LIVE", {"mode": RUN, "code": code})
-    reply = yield from _after_clear(is_latched, patient(request, ReceiptReply))
+    reply = yield from _after_clear(is_latched, retry_while_busy(request, ReceiptReply))
     is_older = robot.isa < (ISA_MAJOR, ISA_MINOR)
     if is_older and reply.status == RULES["UNKNOWN_OPCODE"][0]:  # LIVE names no version
         return _other_machine(robot)
@@ -195,13 +195,13 @@ def _other_machine(robot: DeviceInfo) -> Reply[Any]:
 
 def clear() -> Exchange[EmptyReply]:
     """Release the latch."""
-    return single(Request("CLEAR"), EmptyReply)
+    return send_single(Request("CLEAR"), EmptyReply)
 
 
 def start(is_detached: bool, is_latched: bool) -> Exchange[ReceiptReply]:
     """Start the program that the robot holds."""
     request = Request("START", {"mode": DETACHED * is_detached})
-    return _after_clear(is_latched, patient(request, ReceiptReply))
+    return _after_clear(is_latched, retry_while_busy(request, ReceiptReply))
 
 
 def _after_clear(is_latched: bool, exchange: Exchange[T]) -> Exchange[T]:
@@ -209,7 +209,7 @@ def _after_clear(is_latched: bool, exchange: Exchange[T]) -> Exchange[T]:
     if is_latched:
         cleared = yield from clear()
         if cleared.status != OK:
-            return refused(cleared)
+            return as_refusal(cleared)
     return (yield from exchange)
 
 
@@ -236,7 +236,7 @@ def upload(
     is_short = len(image.code) <= room and image.isa == isa and not image.later
     if is_short and is_its_kit:
         request = Request("PROGRAM", {"mode": mode, "code": image.code})
-        reply = yield from _after_clear(is_latched, patient(request, ReceiptReply))
+        reply = yield from _after_clear(is_latched, retry_while_busy(request, ReceiptReply))
     else:
         reply = yield from _after_clear(is_latched, _in_pieces(image, mode, robot))
         if not is_its_kit and reply.status == RULES["NO_SUCH_DEVICE"][0]:
@@ -257,48 +257,48 @@ def _in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[ReceiptRe
         "devices": image.devices,
         "code_length": len(image.code),
     }
-    reply = yield from patient(Request("BEGIN", header), NextReply)
+    reply = yield from retry_while_busy(Request("BEGIN", header), NextReply)
     rest = bytes([image.needs]) + image.later + image.code  # the bytes after the checksum
     if reply.status == OK:
         pieces = Pieces(rest, most, robot.values.window)
-        reply = yield from single(Request("DATA", pieces=pieces), NextReply)
+        reply = yield from send_single(Request("DATA", pieces=pieces), NextReply)
     if reply.status != OK:
-        return refused(reply)
-    return (yield from single(Request("COMMIT", {"checksum": image.checksum}), ReceiptReply))
+        return as_refusal(reply)
+    return (yield from send_single(Request("COMMIT", {"checksum": image.checksum}), ReceiptReply))
 
 
 def fetch() -> Exchange[FetchedImage]:
     """Read back the image that the robot holds."""
     image = b""
     while True:
-        reply = yield from patient(Request("FETCH", {"offset": len(image)}), FetchReply)
+        reply = yield from retry_while_busy(Request("FETCH", {"offset": len(image)}), FetchReply)
         if reply.status != OK:
-            return refused(reply)
+            return as_refusal(reply)
         piece = reply.values.bytes
         image += piece
         if len(image) >= reply.values.length or not piece:
             return Reply(OK, 0, FetchedImage(image))
 
 
-def patient(request: Request, kind: type[T]) -> Exchange[T]:
+def retry_while_busy(request: Request, kind: type[T]) -> Exchange[T]:
     """Repeat a request while the robot is busy saving."""
-    reply = yield from single(request, kind)
+    reply = yield from send_single(request, kind)
     for _ in range(BUSY_TRIES):
         if reply.status != STATUSES["BUSY"]:
             break
-        reply = yield from single(request._replace(pause_ms=100), kind)
+        reply = yield from send_single(request._replace(pause_ms=100), kind)
     return reply
 
 
-def kept(request: Request, kind: type[T]) -> Exchange[T]:
+def save_and_confirm(request: Request, kind: type[T]) -> Exchange[T]:
     """Have the robot save data, and repeat the request until it confirms or the tries are over.
 
     If it has not saved, the outcome gives the reason: a program that drives, a low voltage.
     """
-    reply = yield from patient(request, kind)
+    reply = yield from retry_while_busy(request, kind)
     tries = low = 0
     while reply.status in TAKEN[:2] and tries < KEPT_TRIES and low < LOW_TRIES:
         tries += 1
-        reply = yield from patient(request._replace(pause_ms=KEPT_PAUSE_MS), kind)
+        reply = yield from retry_while_busy(request._replace(pause_ms=KEPT_PAUSE_MS), kind)
         low = low + 1 if reply.status == STATUSES["LOW_SUPPLY"] else 0
     return reply

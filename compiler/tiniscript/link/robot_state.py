@@ -57,7 +57,7 @@ class Unnamed(NamedTuple):
         return _Run(self.epoch, self.show.place[0])
 
 
-def lost_packets(status: StatusReply) -> int:
+def line_error_count(status: StatusReply) -> int:
     """Return how many errors of its line a robot has counted since its reset."""
     return status.damaged + status.dropped + status.framing + status.overrun
 
@@ -91,7 +91,7 @@ class RobotState:
         self._event_seq = self.run = self._ended = self._place = None
         self._known = self._asked = self.halted = None
 
-    def missed(self, seq: int) -> int:
+    def count_missed(self, seq: int) -> int:
         """Take the number of an event; return how many events before it are missing."""
         before, self._event_seq = self._event_seq, seq
         return 0 if before is None else (seq - before - 1) & 0xFF
@@ -133,7 +133,7 @@ class RobotState:
             if self._known is not None and self._known[0] != (epoch, values.run):
                 self._known = None
 
-    def must_ask(self, value: Unnamed) -> bool:
+    def claim_query(self, value: Unnamed) -> bool:
         """Whether only the robot knows the program of a value, and was not asked. It is now."""
         run = value._run
         if run is None or run == self._asked or (self._known and self._known[0] == run):
@@ -141,7 +141,7 @@ class RobotState:
         self._asked = run
         return True
 
-    def named(self, value: Unnamed) -> ShownEvent:
+    def to_shown_event(self, value: Unnamed) -> ShownEvent:
         """Return a value as the event that it is: with its program and its SHOW, if both are
         known."""
         number, is_yes_no, place, _ = value.show
@@ -158,7 +158,7 @@ class RobotState:
         """Note that it is known how our run has ended, of which no event has told."""
         self._ended, self._is_asked = self.run, False
 
-    def replaced(self) -> list[Event]:
+    def note_replaced(self) -> list[Event]:
         """Note that a program which waits to be started has ended our run; return what tells so."""
         is_going, run = self._is_going, self.run
         self.clear()
@@ -167,7 +167,7 @@ class RobotState:
         self.end()
         return [DoneEvent(run)]
 
-    def moved(self, values: SentReply) -> list[PlaceEvent]:
+    def update_place(self, values: SentReply) -> list[PlaceEvent]:
         """Take a reply; return where the program is now, if that is another place than before."""
         if not isinstance(values, PingReply):
             return []

@@ -80,7 +80,7 @@ class Seal:
         """Whether no further frame may be sealed: a counter is never used twice."""
         return self.sent >= LAST
 
-    def closed(self, frame: Frame) -> Frame:
+    def seal_frame(self, frame: Frame) -> Frame:
         """Return a frame with the next counter and its MAC, ready to be encoded."""
         assert not self.is_spent
         self.sent += 1
@@ -92,7 +92,7 @@ class Seal:
         whole = frame._replace(payload=payload, is_sealed=True)
         return whole._replace(payload=payload + self._mac(whole))
 
-    def opened(self, frame: Frame) -> Frame | None:
+    def open_frame(self, frame: Frame) -> Frame | None:
         """Return what a sealed frame of the robot says, or None if it is not its next one."""
         if not (frame.is_sealed and frame.is_reply) or len(frame.payload) < _BEFORE + TAG_BYTES:
             return None

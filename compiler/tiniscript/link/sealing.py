@@ -26,26 +26,26 @@ class Sealing:
         self.sealed_ms = 0
         self._seq: int | None = None
 
-    def of_request(self, request: Request) -> Seal | None:
+    def seal_for(self, request: Request) -> Seal | None:
         """Return what a request is sealed with. HELLO and AUTHENTICATE end a seal."""
         if request.name not in UNSEALED:
             return self.seal
         self.seal = request.seal
         return None
 
-    def numbered(self, seq: int) -> int:
+    def next_number(self, seq: int) -> int:
         """Return the number of a sealed request: not that of the last one, or it would be that."""
         self._seq = (seq + (seq == self._seq)) & 0xFF
         return self._seq
 
-    def opened(self, frame: Frame, sent: Transmission, now_ms: int) -> Frame | None:
+    def open_frame(self, frame: Frame, sent: Transmission, now_ms: int) -> Frame | None:
         """Return what a frame says, or None if it need not be the robot's.
 
         A robot that has not heard our seal for some time has dropped it, and says so without one.
         Nor can it seal that a tag is wrong: so the tag is sent again first, for a sealed reply.
         """
         if frame.is_sealed:
-            return self.seal.opened(frame) if self.seal else None
+            return self.seal.open_frame(frame) if self.seal else None
         if not frame.is_reply or self.seal is None:
             return frame
         if frame.number >= FIRST_EVENT:

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, TypeVar
 from tiniscript.bytecode.image import isa_of
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest, Requester
-from tiniscript.link.frames import Frame, decoded
+from tiniscript.link.frames import Frame, decode_frame
 from tiniscript.link.handshake import NEED_NO_HELLO, Handshake, exchange_of, ping, status
 from tiniscript.link.messages import (
     BY_NAME,
@@ -35,8 +35,8 @@ from tiniscript.link.messages import (
     STATE_STOPPED,
     STATUSES,
     Malformed,
-    read,
-    written,
+    decode_payload,
+    encode_payload,
 )
 from tiniscript.link.outcomes import (
     CANCELLED,
@@ -75,9 +75,9 @@ from tiniscript.link.requests import (
     Exchange,
     Reply,
     Request,
-    refused,
+    as_refusal,
     reply_of,
-    single,
+    send_single,
 )
 from tiniscript.link.robot_state import RobotState, Unnamed
 from tiniscript.link.round_trips import RoundTrips
@@ -134,7 +134,7 @@ class PendingExchange(PendingRequest[T]):
         self.resumes: Interrupted | None = None
 
     @property
-    def wanted(self) -> PendingExchange[Any]:
+    def target(self) -> PendingExchange[Any]:
         """The exchange itself, or the one before which something else is done first."""
         return self if self.resumes is None else self.resumes.pending
 
@@ -236,10 +236,10 @@ class Session(Requester):
                 for pending_exchange in self._waiting
                 if pending_exchange is not request
             )
-        elif self._pending is None or self._pending.wanted is not request:
+        elif self._pending is None or self._pending.target is not request:
             return
         elif self._may_start():
-            self._pending.wanted.is_void = True
+            self._pending.target.is_void = True
             return
         else:
             self._pending = None
@@ -258,9 +258,9 @@ class Session(Requester):
             if packet.is_text:
                 self._events.append(TextEvent(packet.data))
                 continue
-            frame = decoded(packet.data)
+            frame = decode_frame(packet.data)
             if frame is not None:
-                frame = self._sealing.opened(frame, self._transmission, now_ms)
+                frame = self._sealing.open_frame(frame, self._transmission, now_ms)
             if frame is None:
                 self.damaged += 1
             elif not frame.is_reply:
@@ -290,7 +290,7 @@ class Session(Requester):
             return b""
         if self._transmission.is_of("KEYS"):
             keys = BY_NAME["KEYS"].request
-            self._transmission.fill(written(keys, self._remote.say(now_ms)))
+            self._transmission.fill(encode_payload(keys, self._remote.say(now_ms)))
         seal = self._transmission.seal
         if seal is not None and seal.is_spent:
             self._authenticate_again(now_ms)
@@ -305,7 +305,7 @@ class Session(Requester):
             self._pending.is_midway = True
         if seal is not None:
             self._sealing.sealed_ms = now_ms
-        return self._transmission.sent(now_ms, self._sender)
+        return self._transmission.bytes_to_send(now_ms, self._sender)
 
     def wakes_at(self) -> int | None:
         """Return when to call `poll` next if nothing arrives, or None."""
@@ -334,7 +334,7 @@ class Session(Requester):
         count = len(self._events) - waiting
         found, self._events = self._events[:count], self._events[count:]
         return [
-            self._state.named(unnamed) if isinstance(unnamed, Unnamed) else unnamed
+            self._state.to_shown_event(unnamed) if isinstance(unnamed, Unnamed) else unnamed
             for unnamed in found
         ]
 
@@ -378,7 +378,7 @@ class Session(Requester):
         assert self.robot
         if not has_remote(self.robot):
             return Reply(STATUSES["NO_REMOTE"])
-        return (yield from single(Request("KEYS", self._remote.word()), PingReply))
+        return (yield from send_single(Request("KEYS", self._remote.word()), PingReply))
 
     def _end_press(self) -> None:
         """Go on with what was under way before a key was pressed."""
@@ -452,7 +452,7 @@ class Session(Requester):
     def _begin(self, request: Request, now_ms: int) -> None:
         """Send a request, and repeat it until it is answered."""
         message = BY_NAME[request.name]
-        seal = self._sealing.of_request(request)
+        seal = self._sealing.seal_for(request)
         number = partial(self._number, seal is not None)
         if request.pieces is not None:
             self._transmission = Window(
@@ -460,7 +460,7 @@ class Session(Requester):
             )
             self._transmission.begin_again(now_ms, seal)
             return
-        payload = written(message.request, request.values)
+        payload = encode_payload(message.request, request.values)
         frame = Frame(message.number, number(), self._epoch, payload)
         largest = self.robot.values.largest if self.robot else 0
         self._transmission = Transmission(self._trips, largest, self.is_running)
@@ -472,7 +472,7 @@ class Session(Requester):
         """Return the number of the next frame."""
         self._seq = (self._seq + 1) & 0xFF
         if is_sealed:
-            self._seq = self._sealing.numbered(self._seq)
+            self._seq = self._sealing.next_number(self._seq)
         return self._seq
 
     def _authenticate_again(self, now_ms: int) -> None:
@@ -528,7 +528,7 @@ class Session(Requester):
         ):
             return
         self._orphan = None
-        stop = single(Request("STOP"), EmptyReply)
+        stop = send_single(Request("STOP"), EmptyReply)
         halt = PendingExchange(stop, DEAF_MS, is_own=True, halts=True)
         if pending is None:
             self._waiting.appendleft(halt)
@@ -558,14 +558,14 @@ class Session(Requester):
             self._is_lost = False  # its zeros keep no run alive
             return b""
         self._talked_ms = now_ms
-        return self._stop.sent(now_ms, self._sender)
+        return self._stop.bytes_to_send(now_ms, self._sender)
 
     # -- what arrives -----------------------------------------------------------------------------
 
     def _lose_seal(self, frame: Frame, now_ms: int) -> None:
         """The robot does not know our seal. Anybody may say so: nothing is done twice for that."""
         if self._pending and not self._pending.presses:
-            self._pending.wanted.may_be_done = True
+            self._pending.target.may_be_done = True
         if frame.epoch == self._epoch:
             self._authenticate_again(now_ms)
             return
@@ -619,7 +619,7 @@ class Session(Requester):
                 self._tell_stop(StoppedEvent(_BY_MESSAGE))
             has_ended = self._state.learn(values, frame.epoch)
             if self.tells_places:
-                self._events += self._state.moved(values)
+                self._events += self._state.update_place(values)
             if has_ended and not is_other and isinstance(values, StatusReply):
                 self._tell_end(values)
             elif has_ended or (is_other and self._handshake.is_open):
@@ -676,8 +676,8 @@ class Session(Requester):
         self._epoch = frame.epoch
         if not is_same:
             self._told_epoch = None  # its epochs begin anew
-        if is_same and self._pending and self._pending.wanted.may_be_done:
-            self._pending.wanted.is_void = True
+        if is_same and self._pending and self._pending.target.may_be_done:
+            self._pending.target.is_void = True
         if self._handshake.is_in_doubt:
             is_fault = self._is_one_fault(robot.state, frame.epoch)
             # HELLO is not sealed: where that counts, anybody may have said what it says
@@ -694,8 +694,8 @@ class Session(Requester):
         """
         self._remote.let_go()
         for pending in (*self._waiting, *([self._pending] if self._pending else [])):
-            if began is None or pending.wanted.epoch != began:
-                pending.wanted.is_void = True
+            if began is None or pending.target.epoch != began:
+                pending.target.is_void = True
 
     def _tell_stop(self, event: StoppedEvent) -> None:
         """Tell that STOP has stopped the robot, if its event has not."""
@@ -708,7 +708,7 @@ class Session(Requester):
         still for so long. An answer to DATA that brings nothing new is no progress.
         """
         pending = self._pending
-        if pending is None or pending.wanted.is_whole or reply.status != OK:
+        if pending is None or pending.target.is_whole or reply.status != OK:
             return
         if isinstance(reply.values, NextReply):
             is_data = isinstance(self._transmission, Window)
@@ -740,7 +740,7 @@ class Session(Requester):
         if is_other:
             hello = yield from self._handshake.hello()
             if hello.status != OK:
-                return refused(hello)
+                return as_refusal(hello)
         reply = yield from self._handshake.with_key(status)
         is_told = self._state.has_ended(run)  # by an event that has come meanwhile
         if reply.status == OK and has_ended and self._state.run == run and not is_told:
@@ -767,11 +767,11 @@ class Session(Requester):
         if message is None:
             return  # a message of a newer robot
         try:
-            values: dict[str, Any] = read(message.reply, frame.payload)
+            values: dict[str, Any] = decode_payload(message.reply, frame.payload)
         except Malformed:
             self.damaged += 1
             return
-        missed = self._state.missed(frame.seq)
+        missed = self._state.count_missed(frame.seq)
         if missed:
             self._events.append(MissedEvent(missed))
         if message.name == ShowEvent._field_defaults["name"]:
@@ -806,12 +806,12 @@ class Session(Requester):
     def _take_value(self, value: Unnamed) -> None:
         """Tell a value. If nobody here has started its run the robot is asked which program it is,
         unless that would have to wait."""
-        event = self._state.named(value)
+        event = self._state.to_shown_event(value)
         self._events.append(value if event.at < 0 else event)
         is_free = not self._waiting and (self._pending is None or self._pending.is_own)
         if not (is_free and self._handshake.is_open and self._has_places):
             return
-        if self._state.must_ask(value):
+        if self._state.claim_query(value):
             ask = self._handshake.with_key(lambda: ping(ASKS_PLACE))
             self._asks_program = PendingExchange(ask, DEAF_MS, is_own=True)
             self._waiting.append(self._asks_program)
@@ -853,7 +853,7 @@ class Session(Requester):
             self._waiting.append(PendingExchange(self._proof(event), DEAF_MS, is_own=True))
 
     def _proof(self, event: StoppedEvent) -> Exchange[StatusReply]:
-        reply = yield from self._handshake.stopped(lambda: self._sealing.seal is not None)
+        reply = yield from self._handshake.prove_stopped(lambda: self._sealing.seal is not None)
         if reply.status == OK:
             self._state.take(event)
             self._events.append(event)
@@ -898,7 +898,7 @@ class Session(Requester):
         if outcome.status == OK and pending.ends_runs:
             self._orphan = None
             if not pending.starts:
-                self._events += self._state.replaced()
+                self._events += self._state.note_replaced()
         if not pending.starts or outcome.status != OK:
             return
         receipt: ReceiptReply = outcome.values
@@ -909,7 +909,7 @@ class Session(Requester):
     def _lose(self, now_ms: int) -> None:
         """Give up: the robot does not answer, or is not ready."""
         assert self._pending
-        pending, self._pending = self._pending.wanted, None
+        pending, self._pending = self._pending.target, None
         # a robot that answers, but waits for too long, is not lost
         is_there = pending.waits_for and now_ms - pending.answered_ms <= DEAF_MS
         if pending.waits_for and not self._transmission.is_sent:
@@ -937,7 +937,7 @@ class Session(Requester):
 
     def _cancel(self, status: int) -> None:
         if self._pending:
-            expected = self._pending.wanted
+            expected = self._pending.target
             is_midway = status == CANCELLED and expected.is_midway
             expected.outcome = Reply(status, MIDWAY if is_midway else 0)
         self._pending = self._orphan = self._handshake.doubted = None

@@ -37,7 +37,7 @@ def name_of(status: int) -> str:
 def sentence(status: int, detail: int, lang: str) -> Sentence:
     """Return the sentence for a status and its detail number."""
     name = name_of(status)
-    if languages.found(CATALOGUE, f"{name}/said", lang) is not None:
+    if languages.find_text(CATALOGUE, f"{name}/said", lang) is not None:
         key = name
     elif 0 < status < FIRST_STATUS:
         key = "IMAGE" if status < FIRST_RULE else "RULE"
@@ -50,5 +50,5 @@ def sentence(status: int, detail: int, lang: str) -> Sentence:
         "name": name,
     }
     text = languages.text(CATALOGUE, f"{key}/said", lang)
-    advice = languages.found(CATALOGUE, f"{key}/try", lang) or ""
+    advice = languages.find_text(CATALOGUE, f"{key}/try", lang) or ""
     return Sentence(text.format(**values), advice.format(**values))

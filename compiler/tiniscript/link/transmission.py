@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
     CRC_BYTES,
@@ -18,8 +18,8 @@ from tiniscript.link.messages import (
     LARGE_WINDOW,
     SMALL_FRAME,
     STOP_BYTES,
+    encode_payload,
     payload_bytes,
-    written,
 )
 from tiniscript.link.requests import OFFSET_BYTES, Pieces
 from tiniscript.link.round_trips import RoundTrips
@@ -106,10 +106,10 @@ class Transmission:
         count = self._wire_bytes + HEAD_BYTES + len(reply.payload) + CRC_BYTES
         self._trips.learn(now_ms - self._began_ms, count, self.tries == 1)
 
-    def sent(self, now_ms: int, sender: Sender) -> bytes:
+    def bytes_to_send(self, now_ms: int, sender: Sender) -> bytes:
         """Return the bytes to send now."""
         assert self.frame is not None
-        wire = encoded(self.frame if self.seal is None else self.seal.closed(self.frame))
+        wire = encode_frame(self.frame if self.seal is None else self.seal.seal_frame(self.frame))
         is_hello = self.is_of("HELLO")  # which looks for a robot that is not there yet
         if self.tries > 0:
             self._trips.double()
@@ -118,7 +118,9 @@ class Transmission:
         self.tries += 1
         self.is_sent = True
         for _ in range(self._copies(len(wire))):
-            wire += encoded(self.frame if self.seal is None else self.seal.closed(self.frame))
+            wire += encode_frame(
+                self.frame if self.seal is None else self.seal.seal_frame(self.frame)
+            )
         count = len(wire) + self._largest + 2
         self.due_ms = now_ms + self._trips.wait_ms(count, self._is_lively or is_hello)
         return sender.frames(wire, now_ms, self.tries > 1 or is_hello)
@@ -210,7 +212,7 @@ class Window(Transmission):
                     0, self._room + (piece.wire_bytes if is_quick else -piece.wire_bytes)
                 )
 
-    def sent(self, now_ms: int, sender: Sender) -> bytes:
+    def bytes_to_send(self, now_ms: int, sender: Sender) -> bytes:
         """Return the frames that may be sent now."""
         self.is_sent = True
         if self._under_way and now_ms >= self._lost_ms:
@@ -222,7 +224,7 @@ class Window(Transmission):
             if self.seal is not None and self.seal.is_spent:
                 break
             frame = self._frame(self._sent, length)
-            wire += encoded(frame if self.seal is None else self.seal.closed(frame))
+            wire += encode_frame(frame if self.seal is None else self.seal.seal_frame(frame))
             self._sent += length
             wire_bytes = len(frame.payload) + FRAME_BYTES + REPLY_BYTES
             self._under_way.append(SentPiece(frame.seq, self._sent, now_ms, wire_bytes))
@@ -274,7 +276,9 @@ class Window(Transmission):
 
     def _frame(self, at: int, length: int) -> Frame:
         values: dict[str, int | bytes] = {"offset": at, "bytes": self._data[at : at + length]}
-        return Frame(_DATA.number, self._number(), self.epoch, written(_DATA.request, values))
+        return Frame(
+            _DATA.number, self._number(), self.epoch, encode_payload(_DATA.request, values)
+        )
 
     def _count(self) -> int:
         """Return how many bytes are under way, with their answers."""
@@ -313,7 +317,7 @@ class StopSequence:
     def is_over(self, now_ms: int) -> bool:
         return now_ms >= self._began_ms + CONFIRM_MS
 
-    def sent(self, now_ms: int, sender: Sender) -> bytes:
+    def bytes_to_send(self, now_ms: int, sender: Sender) -> bytes:
         """Return the bytes to send now."""
         self.due_ms = now_ms + STOP_MS
         return sender.zeros(bytes(STOP_BYTES), now_ms)

@@ -65,7 +65,7 @@ class Trim(NamedTuple):
         return {**self._asdict(), "pace": None if self.pace is None else self.pace._asdict()}
 
 
-def told(reply: TrimReply) -> Trim:
+def trim_from_reply(reply: TrimReply) -> Trim:
     """Return the trim in the reply to TRIM."""
     pace = None
     if len(reply.pace) == PACE_BYTES:

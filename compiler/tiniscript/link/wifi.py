@@ -88,11 +88,11 @@ def is_class(name: str) -> bool:
 
 def tell(step: str) -> Exchange[WifiReply]:
     """TELL: ask what the WiFi is set to; TELL_BROKER: what the broker is."""
-    return requests.single(_request(step), WifiReply)
+    return requests.send_single(_request(step), WifiReply)
 
 
 def forget() -> Exchange[WifiReply]:
-    return requests.kept(_request("FORGET"), WifiReply)
+    return requests.save_and_confirm(_request("FORGET"), WifiReply)
 
 
 def give(network: Network) -> Exchange[WifiReply]:
@@ -132,7 +132,7 @@ def _parts(step: str, text: bytes) -> list[Request]:
 def _run_steps(steps: list[Request], last: str) -> Exchange[WifiReply]:
     """Take the steps up to the first that is refused, then the one that has them kept."""
     for step in steps:
-        reply = yield from requests.single(step, WifiReply)
+        reply = yield from requests.send_single(step, WifiReply)
         if reply.status != OK:
             return reply
-    return (yield from requests.kept(_request(last), WifiReply))
+    return (yield from requests.save_and_confirm(_request(last), WifiReply))

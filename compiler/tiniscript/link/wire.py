@@ -26,7 +26,7 @@ class Wire:
         except TypeError as why:  # from pyserial, if the port is closed
             raise OSError(str(why)) from None
 
-    def heard(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
+    def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
         """Wait `wait_ms` for a byte at most; return it and what follows until a silence."""
         result = b""
         wait = wait_ms
@@ -63,7 +63,7 @@ class Wire:
             with suppress(OSError, NotImplementedError, TypeError):  # a port without such lines
                 self._port.dtr = self._port.rts = is_on
             if not is_on:
-                self.heard(RESTART_MS, RESTART_MS)
+                self.receive(RESTART_MS, RESTART_MS)
         self._drop_input()
 
     def _drop_input(self) -> None:

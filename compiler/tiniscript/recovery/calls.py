@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import POWER, UNIT_OF, WAYS, WORDS, Word, shortened
+from tiniscript.base.words import POWER, UNIT_OF, WAYS, WORDS, Word, expand_short
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import LONG_S, MOST_POWER
@@ -150,7 +150,7 @@ def likely_word(word: str, text: str) -> str:
     if not values or len(numbers) != len(values):
         return ""
     is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
-    short = shortened(word)
+    short = expand_short(word)
     if is_tone:
         result = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
     elif len(short) == 1:

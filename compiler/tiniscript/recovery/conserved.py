@@ -15,7 +15,7 @@ from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, Span, applied
+from tiniscript.base.source import Edit, Span, apply_edits
 from tiniscript.base.words import (
     ALIASES,
     BLOCK_ENDS,
@@ -162,7 +162,7 @@ def _losses_of_sure_repairs(
     """Return what is lost by which sure repairs: by one alone, or by all of them together."""
     edits = [it.repair.edits for it in sure if it.repair]
     joint = [it for k in _layers(dict(enumerate(edits)))[0] for it in edits[k]]
-    if not joint or not any(difference(text, applied(text, joint), kit)):
+    if not joint or not any(difference(text, apply_edits(text, joint), kit)):
         return {}
     lost = {id(it): its for it, its in zip(sure, _losses(sure, text, kit), strict=True)}
     is_joint = not any(any(item) for item in lost.values())  # none alone: then all together do it
@@ -192,7 +192,7 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
             differences[k] = UNKNOWN
     while groups:
         group, left = groups.popleft(), left - 1
-        joint = difference(text, applied(text, [it for k in group for it in edits[k]]), kit)
+        joint = difference(text, apply_edits(text, [it for k in group for it in edits[k]]), kit)
         half = len(group) // 2
         if half and any(joint) and left > len(groups) + 1:
             groups += [group[:half], group[half:]]
@@ -327,7 +327,7 @@ class _Said:
         for sign, meant in _ESCAPED.items():
             text = re.sub(rf"(?<=\d) ?{sign}", meant, text) if meant[0] == "." else text
             text = text.replace(sign, f"0{meant}" if meant[0] == "." else meant)
-        text = applied(text, [Edit(span, "") for span in labels(text)])
+        text = apply_edits(text, [Edit(span, "") for span in labels(text)])
         return _FRAME.sub(";", text)
 
     def _apart(self, line: str) -> str:
@@ -649,8 +649,8 @@ class _Said:
 
 @lru_cache(2)
 def _words_of_wrong(text: str, others: frozenset[str], kit: Kit) -> _Said:
-    text = applied(text, note_edits(text))
-    return _Said(applied(text, key_edits(text, kit)), others, kit, is_right=False)
+    text = apply_edits(text, note_edits(text))
+    return _Said(apply_edits(text, key_edits(text, kit)), others, kit, is_right=False)
 
 
 @lru_cache(2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tiniscript.base.source import Edit, Source, Span, applied
+from tiniscript.base.source import Edit, Source, Span, apply_edits
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery.consequences import without_consequences
@@ -77,7 +77,7 @@ def _unquoted(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnos
         if len(same) > 1 and any(diagnostic.code is codes.QUOTE for diagnostic in same):
             line = source.line_span(row)
             shift = [Edit(Span(a - line.start, b - line.start), it) for (a, b), it in edits]
-            fix = applied(source[line], shift).strip("\r\n \t")
+            fix = apply_edits(source[line], shift).strip("\r\n \t")
             repair = Repair(tuple(edits), all(repair.is_sure for repair in repairs))
             span = Span(edits[0].span.start, edits[-1].span.end)
             same = [Diagnostic(codes.QUOTE, span, {"fix": fix}, span, repair)]

@@ -13,7 +13,7 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.syntax.free_names import names_in, numbered
+from tiniscript.syntax.free_names import names_in, numbered_names
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token, scan
 
 _ENDS = (";", NEWLINE, "|", "end")  # what an instruction ends at, or begins behind
@@ -36,7 +36,7 @@ def given_back(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
     told: list[Diagnostic] = []
     edits: list[Edit] = []
     returned: set[str] = set()
-    result = _RESULT if _RESULT not in names_in(text) else next(numbered(text, _RESULT))
+    result = _RESULT if _RESULT not in names_in(text) else next(numbered_names(text, _RESULT))
     for name, word, value in _returns(tokens):
         used = calls.get(name, [])
         values = {"word": name, "back": text[slice(*value)]}

@@ -20,7 +20,7 @@ from tiniscript.base.words import said_of as said_of
 from tiniscript.syntax.blocks import ENDS
 from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
-from tiniscript.syntax.outline import Known
+from tiniscript.syntax.outline import KnownNames
 
 ENDED = ENDS
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
@@ -173,7 +173,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
     if found := _sensor_with_side(parts):
         return (Meaning(found, KNOWN),)
-    alike, near = _speller().alike(word), _speller().near(word)
+    alike, near = _speller().find_sound_alike(word), _speller().find_near_miss(word)
     guesses = (
         (concept_of(alike or ""), KNOWN),
         (concept_of(near or ""), MISSPELT),
@@ -365,7 +365,7 @@ class Names:
         alone = {name for name, count in counts.items() if not count}
         calls = {*counts.items(), *((name, 1) for name in self.actuators)}
         values, instructions = self.sensors | self.variables, self.sensors | alone
-        self.known = Known(frozenset(values), instructions, frozenset(calls))
+        self.known = KnownNames(frozenset(values), instructions, frozenset(calls))
         # What nobody knows, and is compared, is no reason not to read what is around it.
         compared = {name for line in of_lines for name in line.compared if name not in WORDS}
         meant = {name: self.meant(name, NEAR) for name in compared - values}

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, Source, Span, applied
+from tiniscript.base.source import Edit, Source, Span, apply_edits
 from tiniscript.base.spelling import is_slip, nearest
 from tiniscript.base.words import MOVES, UNIT_OF, WAYS, said_of
 from tiniscript.diagnostics import codes
@@ -203,4 +203,4 @@ def _in_bodies(written: str, meant: str) -> Iterator[tuple[Span, re.Match[str], 
 def _with_units(written: str, meant: str) -> str:
     """Return a program in whose DEFs the moves have the units that stood at their values."""
     edits = [Edit(Span(*it.span("unit")), f" {way}") for _, it, way in _in_bodies(written, meant)]
-    return applied(meant, edits)
+    return apply_edits(meant, edits)

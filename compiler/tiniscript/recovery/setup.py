@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Sequence
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, Source, Span, applied
+from tiniscript.base.source import Edit, Source, Span, apply_edits
 from tiniscript.base.words import WORDS, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
@@ -31,7 +31,7 @@ def beginning(
     """Return what is told of a text by the way that it begins: with it the rest is read."""
     text = setup(source.text)
     if text and text.repair:
-        after = check(applied(source.text, text.repair.edits))
+        after = check(apply_edits(source.text, text.repair.edits))
         is_call = _CALL.match(source.text, text.repair.edits[0].span.end) is not None
         if is_call or is_better(after, diagnostics, text.repair.edits):
             return [text]

@@ -11,7 +11,7 @@ from math import nan
 from typing import NamedTuple
 
 from tiniscript.base.words import MOVES, OTHER_WAY, UNIT_OF, WAYS, WORDS, Argument, said_of
-from tiniscript.base.words import names as is_called
+from tiniscript.base.words import names_argument as is_called
 from tiniscript.recovery import rows
 from tiniscript.recovery.meanings import (
     CALLED,

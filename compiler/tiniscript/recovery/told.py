@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, Source, Span, applied, overlap
+from tiniscript.base.source import Edit, Source, Span, apply_edits, overlap
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, without_wrong
@@ -101,7 +101,7 @@ def _read(wrong: Wrong, rounds: int) -> list[Diagnostic]:
     if not message:
         message = with_usage(wrong.diagnostics, wrong.source, wrong.kit)
     elif len(message) <= ENOUGH:
-        rest = applied(wrong.source.text, edits)
+        rest = apply_edits(wrong.source.text, edits)
         left = wrong.check(rest)
         if any(each.is_mistake for each in left):  # else its warnings come when it is repaired
             later = _read(Wrong(Source(rest), left, wrong.check, wrong.kit), rounds - 1)

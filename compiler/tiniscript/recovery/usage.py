@@ -27,7 +27,7 @@ from tiniscript.base.words import (
     WORDS,
     Argument,
     Word,
-    said_instead,
+    hints_for_foreign,
 )
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
@@ -255,7 +255,7 @@ class Usage:
             labels |= {
                 "@strange": True,
                 "@pressed": self._is_pressed(),
-                "@instead": said_instead(self.signs[0]),
+                "@instead": hints_for_foreign(self.signs[0]),
                 "@switched": any(said_of(each, "on", "off") for each in text),
                 "@button": any(map(self.is_button, self.words)) and self.signs[1:2] != ["("],
                 "@turned": any(said_of(each, "turn", "lap") for each in self.words),
@@ -1038,7 +1038,7 @@ _PLACES: dict[str, Callable[[Usage], Span]] = {
 _SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "amount": lambda it, _: it.amount, "button": lambda it, _: it.button(),
     "dots": lambda it, _: it.dots(), "unended": lambda it, _: it.unended(),
-    "instead": lambda it, _: said_instead(it.signs[0]), "in_words": Usage.in_words,
+    "instead": lambda it, _: hints_for_foreign(it.signs[0]), "in_words": Usage.in_words,
     "in_brackets": Usage.in_brackets, "one_number": Usage.one_number,
     "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
 }  # fmt: skip

@@ -44,9 +44,9 @@ def load(name_or_path: str, chip: str | None = None) -> Robot:
         return read(text_of(name_or_path), Path(name_or_path).stem, chip)
 
     from tiniscript.base.spelling import nearest
-    from tiniscript.robots.refusals import shown
+    from tiniscript.robots.refusals import printable_value
 
-    values = {"name": shown(name_or_path), "known": ", ".join(names())}
+    values = {"name": printable_value(name_or_path), "known": ", ".join(names())}
     raise ProfileRefused(
         ("no_such_robot", {**values, "near": nearest(name_or_path.lower(), names()) or ""})
     )
@@ -64,9 +64,9 @@ def is_path(text: str) -> bool:
 
 def text_of(path: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
     """Return the text of a file of at most FILE_BYTES bytes of UTF-8. Raises `refused`."""
-    from tiniscript.robots.refusals import shown
+    from tiniscript.robots.refusals import printable_value
 
-    values = {"file": shown(path)}
+    values = {"file": printable_value(path)}
     if is_pipe(path):
         raise refused(("file_unreadable", values))
     try:
@@ -78,14 +78,14 @@ def text_of(path: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
         is_directory = os.path.isdir(path)  # noqa: PTH112 - Path raises for those names
         code = "file_is_directory" if is_directory else "file_unreadable"
         raise refused((code, values)) from None
-    return decoded(result, path, refused)
+    return decode_profile(result, path, refused)
 
 
-def decoded(found: bytes, name: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
+def decode_profile(found: bytes, name: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
     """Return the text of a file's bytes, as `text_of` does. Raises `refused`."""
-    from tiniscript.robots.refusals import shown
+    from tiniscript.robots.refusals import printable_value
 
-    values = {"file": shown(name)}
+    values = {"file": printable_value(name)}
     if len(found) > FILE_BYTES:
         limit = f"{FILE_BYTES // 1024} KB"
         raise refused(("file_too_large", {**values, "limit": limit}))

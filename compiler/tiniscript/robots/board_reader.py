@@ -16,7 +16,7 @@ from tiniscript.robots.driver import AT_STOP, Setting
 from tiniscript.robots.drivers import DRIVERS, drivers_for
 from tiniscript.robots.ledc import FREQUENCIES, timers_of
 from tiniscript.robots.profile import Board, Wiring
-from tiniscript.robots.refusals import shown
+from tiniscript.robots.refusals import printable_value
 from tiniscript.robots.toml_table import Table
 
 LONGEST_RUN_SECONDS = 3600
@@ -55,7 +55,7 @@ class Pins:
             return None
         pin = chip.pin_number(text)
         if pin is None:
-            table.complain("no_such_pin", key, found=shown(text), chip=chip.name)
+            table.complain("no_such_pin", key, found=printable_value(text), chip=chip.name)
             return None
         named = {"pin": chip.pin_name(pin), "chip": chip.name}
         before = next((use for use in self._uses if use.pin == pin), None)
@@ -130,12 +130,12 @@ def read_board(table: Table, kit: Kit) -> Board:
     most = chip.program_bytes if chip else 0
     program_bytes = most
     if table.has("program_bytes") and chip:
-        program_bytes = table.whole("program_bytes", 1, most)
-    baud = table.whole("baud", BAUDS[0], BAUDS[-1], "baud = 9600")
+        program_bytes = table.whole_number("program_bytes", 1, most)
+    baud = table.whole_number("baud", BAUDS[0], BAUDS[-1], "baud = 9600")
     if baud and baud not in BAUDS:
         known = ", ".join(map(str, BAUDS))
         table.complain("not_one_of", "baud", found=str(baud), choices=known)
-    max_run = table.whole("max_run_seconds", 1, LONGEST_RUN_SECONDS, default=TEN_MINUTES)
+    max_run = table.whole_number("max_run_seconds", 1, LONGEST_RUN_SECONDS, default=TEN_MINUTES)
     start_button = pins.take(table, "start_button", "pull_up")
     buzzer = pins.take(table, "buzzer", "tone")
     status_led = pins.take(table, "status_led", "output", is_optional=True)
@@ -171,10 +171,10 @@ def device_tables(table: Table, key: str, devices: Sequence[Device]) -> dict[str
     group = table.table(key)
     known = tuple(device.name for device in devices if device.name)
     result: dict[str, Table] = {}
-    for item in group.written():
+    for item in group.key_names():
         name = item.upper()
         if name not in known:
-            group.not_in_kit(item, known)
+            group.complain_not_in_kit(item, known)
         elif name in result:
             group.complain("name_twice", item, found=name)
         else:
@@ -208,7 +208,7 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
     driver = DRIVERS[used_by, name]
     known = {setting.key for setting in driver.settings}
     is_actuator = used_by.startswith("actuators")
-    if is_actuator and AT_STOP not in known and AT_STOP in table.written():
+    if is_actuator and AT_STOP not in known and AT_STOP in table.key_names():
         table.has(AT_STOP)  # counted as known: one complaint is enough
         table.complain("at_stop_of_no_servo", AT_STOP)
     settings = {setting.key: _read_setting(table, setting) for setting in driver.settings}
@@ -230,5 +230,5 @@ def _read_setting(table: Table, setting: Setting) -> int:
         return setting.words.index(text) if text else default
     if kind == "yes/no":
         return int(table.yes_no(key, bool(default)))
-    read = table.number if kind == "number" else table.whole
+    read = table.number if kind == "number" else table.whole_number
     return read(key, low, high, default=default)

@@ -43,7 +43,7 @@ def header(wired: Sequence[Robot], made_by: str) -> str:
         names = ", ".join(robot.board.chip for robot in robots)
         own = [paragraph for paragraph in paragraphs if paragraph not in shared]
         lines += [f"#{'elif' if number else 'if'} {_condition(robots)}  // {names}", ""]
-        lines += [defines, "", *_spaced(own), ""]
+        lines += [defines, "", *_separate(own), ""]
     boards = ", ".join(robot.board.chip for robot in wired)
     lines += [
         "#else",
@@ -51,11 +51,11 @@ def header(wired: Sequence[Robot], made_by: str) -> str:
         "#endif",
     ]
     if shared:
-        lines += ["", *_spaced(shared)]
+        lines += ["", *_separate(shared)]
     return "\n".join(lines) + "\n"
 
 
-def _spaced(paragraphs: Sequence[str]) -> list[str]:
+def _separate(paragraphs: Sequence[str]) -> list[str]:
     more = [line for paragraph in paragraphs for line in (paragraph, "")]
     return [f"namespace {SPACE} {{", "", *more, f"}}  // namespace {SPACE}"]
 

@@ -26,7 +26,7 @@ def remember(path: str, kit: int) -> None:
         return
     with contextlib.suppress(OSError):
         _path().parent.mkdir(mode=files.OWN, parents=True, exist_ok=True)
-        with files.alone(_path()):  # other commands do the same
+        with files.lock_file(_path()):  # other commands do the same
             kept = [
                 entry,
                 *(

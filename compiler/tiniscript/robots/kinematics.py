@@ -30,7 +30,7 @@ class Pose(NamedTuple):
 START = Pose(0.0, 0.0, 0.0)
 
 
-def moved(body: Body, pose: Pose, left: float, right: float, duration_ms: float) -> Pose:
+def move_pose(body: Body, pose: Pose, left: float, right: float, duration_ms: float) -> Pose:
     """Return the pose after the motors ran at `left` and `right` percent for `duration_ms`."""
     left_cm, right_cm = (
         body.speed_cm_s * percent / 100 * duration_ms / 1000 for percent in (left, right)
@@ -53,14 +53,14 @@ def points(body: Body, pose: Pose, left: float, right: float, duration_ms: float
     A straight line and a turn on the spot need only their end. An arc has a point at least every
     STEP degrees, for at most two full circles: further rounds repeat the same circle.
     """
-    end = moved(body, pose, left, right, duration_ms)
+    end = move_pose(body, pose, left, right, duration_ms)
     turn = abs(end.heading - pose.heading)
     if turn == 0 or left == -right:
         return [end]
     drawn = turn if turn <= 360 else 360 + turn % 360
     steps = math.ceil(drawn / STEP)
     step_ms = duration_ms * drawn / turn / steps
-    return [*(moved(body, pose, left, right, step_ms * k) for k in range(1, steps)), end]
+    return [*(move_pose(body, pose, left, right, step_ms * k) for k in range(1, steps)), end]
 
 
 class Way:
@@ -76,15 +76,15 @@ class Way:
     def set_motors(self, now_ms: float, left: int, right: int) -> None:
         if (left, right) == (self.left, self.right):
             return
-        self.corners += self.ahead(now_ms)
+        self.corners += self.points_ahead(now_ms)
         self.begun, self.since_ms = self.pose(now_ms), now_ms
         self.left, self.right = left, right
 
     def pose(self, now_ms: float) -> Pose:
         """Return the pose at a time that is not before the last setting."""
-        return moved(self.body, self.begun, self.left, self.right, now_ms - self.since_ms)
+        return move_pose(self.body, self.begun, self.left, self.right, now_ms - self.since_ms)
 
-    def ahead(self, now_ms: float) -> list[Pose]:
+    def points_ahead(self, now_ms: float) -> list[Pose]:
         """Return the points of the path since the last corner; none if the robot has not moved."""
         if self.left == -self.right:
             return []

@@ -21,11 +21,11 @@ def own_words(kit: Kit) -> bytes:
     """Return the words of the profile: its sensors and actuators."""
     table = bytearray()
     for device in kit.sensors:
-        table += packed(device.name) + bytes((_SENSOR | _YES_NO * device.is_yes_no,))
+        table += pack_word(device.name) + bytes((_SENSOR | _YES_NO * device.is_yes_no,))
     for device in kit.actuators:
-        table += packed(device.name) + bytes((_ACTUATOR | _YES_NO * device.is_yes_no,))
+        table += pack_word(device.name) + bytes((_ACTUATOR | _YES_NO * device.is_yes_no,))
         if not device.is_yes_no:
-            table += packed_range(device.low, device.high)
+            table += pack_range(device.low, device.high)
     return bytes(table)
 
 
@@ -33,7 +33,9 @@ def remote_words(kit: Kit) -> bytes:
     """Return the words of the remote control."""
     table = bytearray()
     for device in REMOTE if kit.has_remote else ():
-        table += packed(device.name) + bytes((_GIVES_WAY | _SENSOR | _YES_NO * device.is_yes_no,))
+        table += pack_word(device.name) + bytes(
+            (_GIVES_WAY | _SENSOR | _YES_NO * device.is_yes_no,)
+        )
     return bytes(table)
 
 
@@ -42,11 +44,11 @@ def end_of_words(kit: Kit) -> bytes:
     return bytes((0, _GOES * bool(kit.speed) | _TURNS * bool(kit.turn)))
 
 
-def packed(word: str) -> bytes:
+def pack_word(word: str) -> bytes:
     """Return the letters of a word, the last one marked."""
     return word[:-1].encode() + bytes((ord(word[-1]) | LAST_LETTER,))
 
 
-def packed_range(low: int, high: int) -> bytes:
+def pack_range(low: int, high: int) -> bytes:
     """Return the least and the largest plain number that an argument may be."""
     return b"".join(item.to_bytes(4, "little", signed=True) for item in (low, high))

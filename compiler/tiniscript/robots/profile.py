@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import ClassVar, NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.languages import told_in
+from tiniscript.base.languages import translated_languages
 
 Reason = tuple[str, Mapping[str, str]]
 
@@ -30,15 +30,15 @@ class ProfileRefused(Exception):
         self.reasons: tuple[Reason, ...] = reasons
 
 
-def answered() -> list[str]:
+def answer_languages() -> list[str]:
     """Return the languages in which a robot answers to text, English first."""
-    return told_in("robot", "remark/STOPPED")
+    return translated_languages("robot", "remark/STOPPED")
 
 
 def language_number(language: str) -> int:
     """Return by what firmware knows a language: the letters of its code; 0 for English."""
     code = int.from_bytes(language[:2].encode(), "big")
-    return code if language in answered()[1:] else 0
+    return code if language in answer_languages()[1:] else 0
 
 
 class Wiring(NamedTuple):
@@ -120,7 +120,7 @@ class Robot(NamedTuple):
     body: Body
     labels: Mapping[str, Mapping[str, str]]
 
-    def speaking(self, language: str) -> Robot:
+    def with_language(self, language: str) -> Robot:
         """Return the robot with a language: this one, where its profile names none."""
         board = self.board._replace(language=self.board.language or language)
         return self._replace(board=board)

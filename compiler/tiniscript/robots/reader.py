@@ -14,7 +14,7 @@ from tiniscript.base.languages import SOURCE, ByLanguage, languages
 from tiniscript.base.words import WORDS
 from tiniscript.robots.board_reader import device_tables, read_board
 from tiniscript.robots.profile import SEES, Body, Place, ProfileRefused, Robot
-from tiniscript.robots.refusals import shown
+from tiniscript.robots.refusals import printable_value
 from tiniscript.robots.toml_table import Table, root_of
 
 NAME_CHARACTERS = 24
@@ -37,8 +37,8 @@ def read(text: str, name: str, chip: str | None = None) -> Robot:
             wired.put("chip", chip)
         board = read_board(wired, kit)
         body = _read_body(root.table("body", "[body]"), kit)
-        labels = _read_labels(root.table("labels"), kit, shown(name))
-    return Robot(shown(name), kit, board, body, labels)
+        labels = _read_labels(root.table("labels"), kit, printable_value(name))
+    return Robot(printable_value(name), kit, board, body, labels)
 
 
 def _read_kit(table: Table) -> Kit:
@@ -87,9 +87,11 @@ def _read_name(table: Table, taken: set[str]) -> str:
         return ""
     name = text.upper()
     if not _is_name(text):
-        table.complain("name_bad", "name", found=shown(text))
+        table.complain("name_bad", "name", found=printable_value(text))
     elif len(name) > NAME_CHARACTERS:
-        table.complain("name_too_long", "name", found=shown(name), most=str(NAME_CHARACTERS))
+        table.complain(
+            "name_too_long", "name", found=printable_value(name), most=str(NAME_CHARACTERS)
+        )
     elif name in WORDS:
         table.complain("name_is_word", "name", found=name)
     elif name in taken:
@@ -105,7 +107,7 @@ def _is_name(text: str) -> bool:
 def _read_unit(table: Table) -> str:
     unit = table.text("unit") or ""
     if len(unit) > UNIT_CHARACTERS or not unit.isprintable() or " " in unit:
-        table.complain("unit_bad", "unit", found=shown(unit), most=str(UNIT_CHARACTERS))
+        table.complain("unit_bad", "unit", found=printable_value(unit), most=str(UNIT_CHARACTERS))
     return unit
 
 
@@ -170,10 +172,10 @@ def _read_language(table: Table, language: str, devices: Sequence[Device]) -> di
     labels = table.table(language)
     known = {device.name: device.name for device in devices}
     result = {}
-    for key in labels.written():
+    for key in labels.key_names():
         name = "robot" if key == "robot" else known.get(key.upper())
         if name is None:
-            labels.not_in_kit(key, tuple(known))
+            labels.complain_not_in_kit(key, tuple(known))
         elif (label := labels.label(key, LABEL_CHARACTERS)) is not None:
             result[name] = label
     return result

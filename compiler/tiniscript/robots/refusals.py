@@ -26,12 +26,12 @@ def describe(refused: ProfileRefused, lang: str) -> list[str]:
         group = {"wrong_type": "type", "pin_cannot": "need"}.get(code)
         if group:
             words = {
-                key: languages.found(CATALOGUE, f"{group}/{word}", lang) or word
+                key: languages.find_text(CATALOGUE, f"{group}/{word}", lang) or word
                 for key, word in words.items()
             }
         key = f"{code}/near" if words.get("near") else code
         text = (
-            languages.found(CATALOGUE, f"{kind}/{key}", lang)
+            languages.find_text(CATALOGUE, f"{kind}/{key}", lang)
             for kind in (*refused.kinds, "profile")
         )
         sentences.append(next(filter(None, text)).format_map(words))
@@ -63,7 +63,7 @@ def _causes(reasons: Sequence[Reason]) -> list[Reason]:
     return causes
 
 
-def shown(value: object) -> str:
+def printable_value(value: object) -> str:
     """Return a value from a file or a person in a form for a sentence: short and printable."""
     if isinstance(value, int) and value.bit_length() > 100:
         return "…"  # Python refuses to print very long integers

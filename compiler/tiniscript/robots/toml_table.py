@@ -14,10 +14,10 @@ from contextlib import contextmanager
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.base.spelling import nearest
 from tiniscript.robots.profile import ProfileRefused, Reason
-from tiniscript.robots.refusals import shown
+from tiniscript.robots.refusals import printable_value
 
 
-class Written(str):
+class DecimalText(str):
     """A decimal as written in the file: a float would not keep it exactly."""
 
 
@@ -29,7 +29,7 @@ def parse_toml(text: str) -> dict[str, object] | Reason:
         import tomli as tomllib
 
     try:
-        return tomllib.loads(text, parse_float=Written)
+        return tomllib.loads(text, parse_float=DecimalText)
     except (ValueError, RecursionError) as error:  # ValueError: also for a very long integer
         message = str(error)
         line = message.rpartition("at line ")[2].partition(",")[0]
@@ -62,7 +62,7 @@ class Table:
 
     def path_of(self, key: str) -> str:
         """Return the path of a key in the file, such as `board.motors`."""
-        return f"{self.path}.{shown(key)}" if self.path else shown(key)
+        return f"{self.path}.{printable_value(key)}" if self.path else printable_value(key)
 
     def complain(self, code: str, key: str, **values: str) -> None:
         self.reasons.append((code, {"path": self.path_of(key), **values}))
@@ -76,7 +76,7 @@ class Table:
         """Replace the value at `key`, whatever is written there."""
         self._values = {**self._values, key: value}
 
-    def written(self) -> Iterable[str]:
+    def key_names(self) -> Iterable[str]:
         return self._values.keys()
 
     def get(self, key: str, example: str) -> object:
@@ -106,7 +106,7 @@ class Table:
         value = self.text(key, f'{key} = "{choices[0]}"')
         if value is None or value in choices:
             return value or ""
-        self.complain(code, key, found=shown(value), choices=", ".join(choices))
+        self.complain(code, key, found=printable_value(value), choices=", ".join(choices))
         return ""
 
     def yes_no(self, key: str, default: bool) -> bool:
@@ -116,7 +116,9 @@ class Table:
         self.expect("yes_no", key, value)
         return default
 
-    def whole(self, key: str, low: int, high: int, example: str = "", default: int = 0) -> int:
+    def whole_number(
+        self, key: str, low: int, high: int, example: str = "", default: int = 0
+    ) -> int:
         """Return a whole number (not thousandths) from `low` to `high`."""
         value = self.get(key, example)
         if type(value) is not int:
@@ -124,7 +126,9 @@ class Table:
         elif low <= value <= high:
             return value
         else:
-            self.complain("out_of_range", key, found=shown(value), low=str(low), high=str(high))
+            self.complain(
+                "out_of_range", key, found=printable_value(value), low=str(low), high=str(high)
+            )
         return default
 
     def number(self, key: str, low: int, high: int, example: str = "", default: int = 0) -> int:
@@ -192,9 +196,9 @@ class Table:
         if value is not None:
             self.complain("wrong_type", key, wanted=wanted, found=_type_of(value))
 
-    def not_in_kit(self, key: str, known: Sequence[str]) -> None:
+    def complain_not_in_kit(self, key: str, known: Sequence[str]) -> None:
         suggestion = nearest(key.upper(), list(known)) or ""
-        self.complain("not_in_kit", key, name=shown(key), near=suggestion)
+        self.complain("not_in_kit", key, name=printable_value(key), near=suggestion)
 
     def finish(self) -> None:
         """Complain about every key that was never read."""
@@ -204,16 +208,16 @@ class Table:
                 self.complain("unknown_key", key, near=suggestion, known=", ".join(self._asked))
 
     def _thousandths(self, key: str, value: object, low: int, high: int) -> int:
-        if isinstance(value, Written):
+        if isinstance(value, DecimalText):
             digits = value.lstrip("+-").replace("_", "")
             if not digits.replace(".", "").isdigit():  # 1e3, inf, nan
-                self.complain("number_odd", key, found=shown(value))
+                self.complain("number_odd", key, found=printable_value(value))
                 return 0
             number, is_exact = read_literal(digits)
             if value.startswith("-"):
                 number = -number
             if not is_exact:
-                self.complain("too_precise", key, found=shown(value))
+                self.complain("too_precise", key, found=printable_value(value))
                 return 0
         elif type(value) is int:
             number = value * 1000
@@ -222,13 +226,13 @@ class Table:
             return 0
         if not low <= number <= high:
             limits = {"low": as_text(low), "high": as_text(high)}
-            self.complain("out_of_range", key, found=shown(value), **limits)
+            self.complain("out_of_range", key, found=printable_value(value), **limits)
             return 0
         return number
 
 
 def _type_of(value: object) -> str:
-    if isinstance(value, Written):
+    if isinstance(value, DecimalText):
         return "decimal"
     names = {str: "text", bool: "yes_no", int: "number", list: "list", dict: "table"}
     return names.get(type(value), "date")

@@ -119,16 +119,16 @@ class _Checker(Scope):
 
     # -- readings -----------------------------------------------------------------------------
 
-    def take(self, values: Sequence[Value], span: Span, made: list[Statement]) -> int:
+    def take(self, values: Sequence[Value], span: Span, output: list[Statement]) -> int:
         """Add the readings that come before an instruction; return them as bits."""
         result = 0
-        for sensor in self.missing(values, self.surely_read):
-            made.append(ir.Read(sensor, span))
+        for sensor in self.unread_sensors(values, self.surely_read):
+            output.append(ir.Read(sensor, span))
             result |= 1 << sensor
         return result
 
     @staticmethod
-    def missing(values: Sequence[Value], read: int) -> tuple[int, ...]:
+    def unread_sensors(values: Sequence[Value], read: int) -> tuple[int, ...]:
         """Return the sensors in `values`, each once, in order, that `read` does not hold."""
         expected: list[int] = []
         for value in values:
@@ -139,13 +139,13 @@ class _Checker(Scope):
 
     # -- instructions -------------------------------------------------------------------------
 
-    def assign(self, node: ast.Assign, made: list[Statement]) -> None:
+    def assign(self, node: ast.Assign, output: list[Statement]) -> None:
         name = self.names.get(node.name)
         if name is not None and name.what in ("sensor", "actuator"):
-            self.wrong.device_set(node, name)
+            self.wrong.report_device_set(node, name)
             return
         if node.name in self.def_names:
-            self.wrong.def_set(node, self.procedures)
+            self.wrong.report_def_set(node, self.procedures)
             return
         if node.value is None:
             if name is None:
@@ -160,8 +160,8 @@ class _Checker(Scope):
             other = f"{free} = {self.source[node.value.span]}"
             self.report(codes.TYPE_CHANGES, node.value.span, name=node.name, other=other,
                         old="@" + known, new="@" + value.type)  # fmt: skip
-        self.take([value], node.span, made)
-        made.append(ir.Assign(number, value.terms, node.span))
+        self.take([value], node.span, output)
+        output.append(ir.Assign(number, value.terms, node.span))
 
     def variable(self, node: ast.Assign, value: Value) -> int:
         """Make a new variable; its type is that of its first assignment."""
@@ -177,22 +177,22 @@ class _Checker(Scope):
         self.types.of_variables.append(kind)
         return number
 
-    def command(self, node: ast.Command, made: list[Statement]) -> None:
+    def command(self, node: ast.Command, output: list[Statement]) -> None:
         word = WORDS.get(node.word)
         if node.until is not None and (word is None or not word.role.lasts):
-            self.wrong.until_not_here(node, node.until, word)
+            self.wrong.report_until_not_here(node, node.until, word)
             node = node._replace(until=None)
         if word is None:
-            self.kit_or_def(node, made)
+            self.kit_or_def(node, output)
             return
         arguments = node.arguments or ()
         span = node.span
         if len(arguments) != len(word.arguments):
-            self.wrong.count(word, arguments, span)
+            self.wrong.report_count(word, arguments, span)
             return
         forever = word.role.lasts and arguments[0].expression[0].op == "FOREVER"
         if forever and node.until is None and not self.has_tasks:
-            self.wrong.forever(arguments[0].span, word, span)
+            self.wrong.report_forever(arguments[0].span, word, span)
         expected, way = word.arguments, arguments[0].unit if word.role.is_move else None
         if way is not None:
             self.way(node, way)
@@ -201,40 +201,40 @@ class _Checker(Scope):
         text = len(self.diagnostics)
         values = [
             self.types.value(argument)
-            if its is VALUE
-            else self.number(argument, its, word.text, (node, word))
-            for argument, its in zip(arguments[forever:], expected[forever:], strict=True)
+            if spec is VALUE
+            else self.number(argument, spec, word.text, (node, word))
+            for argument, spec in zip(arguments[forever:], expected[forever:], strict=True)
         ]
         if len(self.diagnostics) > text:
-            self.wrong.values(node, word, text)
+            self.wrong.report_values(node, word, text)
         if word.stands_for:
             if len(self.diagnostics) == text:
-                self.spelled_out(word, arguments, span, made)
+                self.spell_out(word, arguments, span, output)
             return
         self.stack_fits(values, span)
-        self.take(values, span, made)
+        self.take(values, span, output)
         terms = [value.terms for value in values]
         if word.role.lasts:
             until = None if node.until is None else self.until(node.until)
             time, power = None if forever else terms[0], terms[-1] if word.role.is_move else None
             unit = "" if way is None else way.op
-            made.append(ir.Move(node.word, time, power, until, span, unit))
+            output.append(ir.Move(node.word, time, power, until, span, unit))
         elif word.role.is_instruction:  # START does nothing
-            made.append(_MAKES[word.role.name](values, span))
+            output.append(_MAKES[word.role.name](values, span))
 
-    def spelled_out(
-        self, word: Word, arguments: Sequence[ast.Argument], span: Span, made: list[Statement]
+    def spell_out(
+        self, word: Word, arguments: Sequence[ast.Argument], span: Span, output: list[Statement]
     ) -> None:
         """Make what the instructions make that a word stands for, with these values."""
         names = [argument.name.upper() for argument in word.arguments]
         given = dict(zip(names, arguments, strict=True))
         for instruction in parse(Source(word.stands_for)).program.body:
-            _CHECKS[type(instruction)](self, _relocated(instruction, span, given), made)
+            _CHECKS[type(instruction)](self, _relocate(instruction, span, given), output)
 
     def way(self, node: ast.Command, unit: ast.Part) -> None:
         """Check the unit of a move, and whether the robot's speed is known."""
         if unit.op != UNIT_OF[node.word]:
-            self.wrong.unit_pair(node, unit)
+            self.wrong.report_unit_pair(node, unit)
         elif not (self.kit.speed if unit.op == "CM" else self.kit.turn):
             line = "speed = 45" if unit.op == "CM" else "turn = 360"
             self.report(codes.NO_SPEED, Span(unit.start, unit.end), unit=unit.op, line=line)
@@ -242,7 +242,7 @@ class _Checker(Scope):
     def number(
         self,
         argument: ast.Argument,
-        its: Argument,
+        spec: Argument,
         word: str,
         of: tuple[ast.Command, Word] | None = None,
     ) -> Value:
@@ -250,17 +250,17 @@ class _Checker(Scope):
         if argument.is_plain:
             part = argument.expression[0]
             assert isinstance(part.value, int)
-            if not its.low <= part.value <= its.high:
-                self.wrong.out_of_range(argument.span, part.value, its, word, of)
+            if not spec.low <= part.value <= spec.high:
+                self.wrong.report_out_of_range(argument.span, part.value, spec, word, of)
         value = self.types.value(argument)
         if value.type == "yes_no":
-            self.wrong.no_number(argument.span, word)
+            self.wrong.report_not_number(argument.span, word)
         return value
 
     def until(self, argument: ast.Argument, word: str = "UNTIL") -> ir.Until:
         """Return the check of an UNTIL or a WHEN."""
         value = self.condition(argument, word)
-        return ir.Until(self.missing([value], 0), value.terms)
+        return ir.Until(self.unread_sensors([value], 0), value.terms)
 
     def condition(self, argument: ast.Argument, word: str) -> Value:
         value = self.types.value(argument)
@@ -280,23 +280,23 @@ class _Checker(Scope):
 
     # -- names as instructions ----------------------------------------------------------------
 
-    def kit_or_def(self, node: ast.Command, made: list[Statement]) -> None:
+    def kit_or_def(self, node: ast.Command, output: list[Statement]) -> None:
         name = self.names.get(node.word)
         if name is None:
-            self.wrong.unknown(node, self.inside)
+            self.wrong.report_unknown(node, self.inside)
         elif node.arguments is not None and name.what not in _TAKE_VALUES:
-            self.wrong.not_callable(node)
+            self.wrong.report_not_callable(node)
         else:
-            _NAMED[name.what](self, node, name.number, made)
+            _NAMED[name.what](self, node, name.number, output)
 
-    def reading(self, node: ast.Command, number: int, made: list[Statement]) -> None:
-        made.append(ir.Read(number, node.span))
+    def reading(self, node: ast.Command, number: int, output: list[Statement]) -> None:
+        output.append(ir.Read(number, node.span))
         self.surely_read |= 1 << number
 
-    def variable_alone(self, node: ast.Command, number: int, made: list[Statement]) -> None:
+    def variable_alone(self, node: ast.Command, number: int, output: list[Statement]) -> None:
         self.report(codes.VARIABLE_ALONE, node.span, name=node.word)
 
-    def actuator(self, node: ast.Command, number: int, made: list[Statement]) -> None:
+    def actuator(self, node: ast.Command, number: int, output: list[Statement]) -> None:
         device = self.kit.actuators[number]
         word = device.word
         if node.arguments is None:
@@ -304,7 +304,7 @@ class _Checker(Scope):
                         fix=word.example)  # fmt: skip
             return
         if len(node.arguments) != 1:
-            self.wrong.count(word, node.arguments, node.span)
+            self.wrong.report_count(word, node.arguments, node.span)
             return
         argument = node.arguments[0]
         if device.is_yes_no:
@@ -314,10 +314,10 @@ class _Checker(Scope):
         else:
             value = self.number(argument, word.arguments[0], device.name)
         self.stack_fits([value], node.span)
-        self.take([value], node.span, made)
-        made.append(ir.Set(number, value.terms, node.span))
+        self.take([value], node.span, output)
+        output.append(ir.Set(number, value.terms, node.span))
 
-    def call(self, node: ast.Command, number: int, made: list[Statement]) -> None:
+    def call(self, node: ast.Command, number: int, output: list[Statement]) -> None:
         facts = self.facts[number]
         if facts.calls + 1 + self.beside_calls > CALLS:
             self.report(codes.CALLS_TOO_DEEP, node.span, name=node.word, limit=str(CALLS))
@@ -326,21 +326,23 @@ class _Checker(Scope):
         if depth + self.beside_blocks > BLOCKS:
             self.report(codes.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
         self.deepest = max(self.deepest, depth)
-        self.give(node, self.procedures[number], made)
+        self.give(node, self.procedures[number], output)
         self.surely_read |= facts.surely_read
-        made.append(ir.Call(number, node.span))
+        output.append(ir.Call(number, node.span))
 
-    def give(self, node: ast.Command, procedure: ir.Procedure, made: list[Statement]) -> None:
+    def give(self, node: ast.Command, procedure: ir.Procedure, output: list[Statement]) -> None:
         """Add what sets the values of a DEF before it is called."""
         arguments = node.arguments or ()
         if len(arguments) != len(procedure.values):
-            self.wrong.call_values(node, procedure, [self.variables[k] for k in procedure.values])
+            self.wrong.report_call_values(
+                node, procedure, [self.variables[k] for k in procedure.values]
+            )
             return
         if arguments:
             from tiniscript.semantics.parameters import names_one  # loaded for its DEF
 
             names = [self.variables[k] for k in procedure.values]
-            if names_one(node, names) and self.wrong.named_values(node, names):
+            if names_one(node, names) and self.wrong.report_named_values(node, names):
                 return
         values = [self.types.value(item) for item in arguments]
         for argument, value, number in zip(arguments, values, procedure.values, strict=True):
@@ -349,13 +351,15 @@ class _Checker(Scope):
                 self.report(codes.CALL_KIND, argument.span, name=self.variables[number],
                             word=node.word, old="@" + expected, new="@" + value.type)  # fmt: skip
         self.stack_fits(values, node.span)
-        self.take(values, node.span, made)
+        self.take(values, node.span, output)
         for value, number in zip(values, procedure.values, strict=True):
-            made.append(ir.Assign(number, value.terms, node.span))
+            output.append(ir.Assign(number, value.terms, node.span))
 
     # -- blocks -------------------------------------------------------------------------------
 
-    def deeper(self, instructions: Sequence[ast.Instruction], is_loop: bool, span: Span) -> ir.Body:
+    def nested_body(
+        self, instructions: Sequence[ast.Instruction], is_loop: bool, span: Span
+    ) -> ir.Body:
         self.depth += 1
         self.loops += is_loop
         self.deepest = max(self.deepest, self.depth)
@@ -366,14 +370,14 @@ class _Checker(Scope):
         self.loops -= is_loop
         return body
 
-    def repeated(self, node: ast.Loop | ast.While) -> ir.Body:
+    def loop_body(self, node: ast.Loop | ast.While) -> ir.Body:
         """Check a body in which no turn surely finds what was read before it."""
         before, self.surely_read = self.surely_read, 0
-        body = self.deeper(node.body, True, node.span)
+        body = self.nested_body(node.body, True, node.span)
         self.surely_read = before
         return body
 
-    def if_(self, node: ast.If, made: list[Statement]) -> None:
+    def if_(self, node: ast.If, output: list[Statement]) -> None:
         before, chain = self.surely_read, 0
         after = -1  # what all arms make surely read
         arms: list[ir.Arm] = []
@@ -383,43 +387,43 @@ class _Checker(Scope):
                 value = self.condition(arm.condition, "ELSEIF" if arms else "IF")
             reads: tuple[int, ...] = ()
             if arms:
-                reads = self.missing([value], before | chain)
+                reads = self.unread_sensors([value], before | chain)
                 for sensor in reads:
                     chain |= 1 << sensor
             else:
-                chain = self.take([value], arm.span, made)
-            body = self.deeper(arm.body, False, arm.span)
+                chain = self.take([value], arm.span, output)
+            body = self.nested_body(arm.body, False, arm.span)
             after &= self.surely_read
             self.surely_read = before
             arms.append(ir.Arm(reads, value.terms, body, arm.span))
-        otherwise = self.deeper(node.otherwise, False, node.span)
+        otherwise = self.nested_body(node.otherwise, False, node.span)
         self.surely_read &= after
-        made.append(ir.If(tuple(arms), otherwise, node.span, node.has_else))
+        output.append(ir.If(tuple(arms), otherwise, node.span, node.has_else))
 
-    def loop(self, node: ast.Loop, made: list[Statement]) -> None:
+    def loop(self, node: ast.Loop, output: list[Statement]) -> None:
         count = None
         if node.times is not None:
             value = self.number(node.times, Argument("n", ""), "LOOP")
             self.stack_fits([value], node.times.span)
-            self.take([value], node.span, made)
+            self.take([value], node.span, output)
             count = value.terms
-        body = self.repeated(node)
-        made.append(ir.Loop(count, body, node.span))
+        body = self.loop_body(node)
+        output.append(ir.Loop(count, body, node.span))
 
-    def while_(self, node: ast.While, made: list[Statement]) -> None:
+    def while_(self, node: ast.While, output: list[Statement]) -> None:
         value = self.types.nothing
         if node.condition is not None:
             value = self.condition(node.condition, "WHILE")
-        body = self.repeated(node)
-        reads = self.missing([value], 0)
-        made.append(ir.While(reads, value.terms, body, node.span))
+        body = self.loop_body(node)
+        reads = self.unread_sensors([value], 0)
+        output.append(ir.While(reads, value.terms, body, node.span))
 
-    def break_(self, node: ast.Break, made: list[Statement]) -> None:
+    def break_(self, node: ast.Break, output: list[Statement]) -> None:
         if not self.loops:
-            self.wrong.break_outside(node)
-        made.append(ir.Break(node.span))
+            self.wrong.report_break_outside(node)
+        output.append(ir.Break(node.span))
 
-    def def_(self, node: ast.Def, made: list[Statement]) -> None:
+    def def_(self, node: ast.Def, output: list[Statement]) -> None:
         known = self.names.get(node.name)
         if known is not None:
             code = codes.DEF_TWICE if known.what == "def" else codes.NAME_TAKEN
@@ -427,7 +431,7 @@ class _Checker(Scope):
             self.report(code, node.name_span, name=node.name, other=other)
         if len(self.procedures) == DEFS:
             self.report(codes.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
-        outside = self.apart()
+        outside = self.enter_scope()
         self.beside_blocks = self.beside_calls = 0
         self.inside = node.name
         values = self.parameters(node) if node.parameters else []
@@ -437,7 +441,7 @@ class _Checker(Scope):
                 del self.names[self.variables[number]]
         self.inside = None
         self.facts.append(_Procedure(self.surely_read, self.deepest, self.calls))
-        self.back_in(outside)
+        self.restore_scope(outside)
         if known is None:
             self.names[node.name] = Name("def", len(self.procedures))
         procedure = ir.Procedure(node.name, body, node.span, values=tuple(values))
@@ -449,7 +453,7 @@ class _Checker(Scope):
             self.report(codes.TOO_MANY_PARAMETERS, node.parameters[PARAMETERS].span,
                         name=node.name, limit=str(PARAMETERS))  # fmt: skip
         parameters: list[int] = []
-        for each, kind in zip(node.parameters, self.kinds.of(node), strict=True):
+        for each, kind in zip(node.parameters, self.kinds.kinds_of(node), strict=True):
             known = self.names.get(each.name)
             is_free = known is None and each.name not in self.taken_names
             parameters.append(self.new_variable(each.name, each.span, kind if is_free else ANY))
@@ -464,8 +468,8 @@ class _Checker(Scope):
                 self.report(codes.PARAMETER_TAKEN, each.span, name=each.name, other=other)
         return parameters
 
-    def task(self, node: ast.Task, made: list[Statement]) -> None:
-        outside = self.apart()
+    def task(self, node: ast.Task, output: list[Statement]) -> None:
+        outside = self.enter_scope()
         self.beside_blocks += outside.blocks
         self.beside_calls += outside.calls
         look = None
@@ -474,7 +478,7 @@ class _Checker(Scope):
             look = nothing if node.condition is None else self.until(node.condition, "WHEN")
         body = self.body(node.body)
         blocks, calls = self.deepest, self.calls
-        self.back_in(outside)
+        self.restore_scope(outside)
         self.beside_blocks += blocks
         self.beside_calls += calls
         self.tasks.append(ir.Task(look, body, node.span))
@@ -485,9 +489,9 @@ class _Checker(Scope):
 
         result = excess(program)
         if result is not None:
-            self.wrong.too_many_copies(program, result)
+            self.wrong.report_too_many_copies(program, result)
 
-    def apart(self) -> _Outside:
+    def enter_scope(self) -> _Outside:
         """Begin a DEF or a task, in which nothing is surely read or open; return what was."""
         outside = _Outside(
             self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls
@@ -495,11 +499,11 @@ class _Checker(Scope):
         self.surely_read = self.deepest = self.calls = 0
         return outside
 
-    def back_in(self, was: _Outside) -> None:
-        self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls = was
+    def restore_scope(self, outside: _Outside) -> None:
+        self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls = outside
 
 
-def _relocated(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
+def _relocate(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
     """Return a part of a tree at another place, with what was given for the names in it."""
     if isinstance(node, Span):
         return span
@@ -508,7 +512,7 @@ def _relocated(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
     if isinstance(node, ast.Argument) and node.expression[0].value in given:
         return given[str(node.expression[0].value)]
     if isinstance(node, tuple):
-        parts = [_relocated(part, span, given) for part in node]
+        parts = [_relocate(part, span, given) for part in node]
         return type(node)(*parts) if hasattr(node, "_fields") else tuple(parts)
     return node
 

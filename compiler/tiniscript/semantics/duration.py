@@ -38,7 +38,7 @@ def duration(program: ir.Program, kit: Kit) -> Duration:
     """
     result = _Durations(program, kit)
     bodies = (program.body, *(task.body for task in program.tasks))
-    durations = [result.of(body) for body in bodies]
+    durations = [result.duration_of(body) for body in bodies]
     least = max(one.least for one in durations)
     if any(task.look is not None for task in program.tasks):
         return Duration(least, None, True)
@@ -58,7 +58,7 @@ class _Durations:
         self.known: list[Duration] = []
         self.procedures = program.procedures
         for procedure in program.procedures:
-            self.known.append(self.of(procedure.body))
+            self.known.append(self.duration_of(procedure.body))
 
     def drives(self, body: ir.Body) -> bool:
         """Whether a body has a move or an S, or calls something that has one."""
@@ -67,17 +67,17 @@ class _Durations:
             for call in ir.with_calls(body, self.procedures)
         )
 
-    def of(self, body: ir.Body) -> Duration:
+    def duration_of(self, body: ir.Body) -> Duration:
         least, most = 0, 0
         for statement in body:
-            this = self.statement(statement)
-            least += this.least
-            if this.never_ends:
+            part = self.statement(statement)
+            least += part.least
+            if part.never_ends:
                 return Duration(least, None, True)
-            if this.most is None:
+            if part.most is None:
                 most = -1
             elif most >= 0:
-                most += this.most
+                most += part.most
         return Duration(least, None if most < 0 else most)
 
     def statement(self, statement: ir.Statement) -> Duration:
@@ -91,7 +91,7 @@ class _Durations:
         if isinstance(statement, ir.Call):
             return self.known[statement.procedure]
         if isinstance(statement, ir.If):
-            arms = [self.of(body) for body in ir.bodies(statement)]
+            arms = [self.duration_of(body) for body in ir.bodies(statement)]
             bounds = [arm.most for arm in arms if arm.most is not None]
             most = max(bounds) if len(bounds) == len(arms) else None
             never_ends = all(arm.never_ends for arm in arms)
@@ -109,19 +109,19 @@ class _Durations:
         return _UNKNOWN if time_ms is None else Duration(time_ms, time_ms)
 
     def loop(self, loop: ir.Loop | ir.While) -> Duration:
-        body = self.of(loop.body)
+        body = self.duration_of(loop.body)
         if isinstance(loop, ir.Loop) and loop.times is None:
-            return _UNKNOWN if ir.loops_end(loop.body) else Duration(0, None, True)
+            return _UNKNOWN if ir.breaks_out(loop.body) else Duration(0, None, True)
         count = known_value(loop.times) if isinstance(loop, ir.Loop) else None
         if body.least == 0 and body.most is not None:
             body = body._replace(most=body.most + self.turn_ms)
         if count is None:
             return _UNKNOWN if isinstance(loop, ir.While) or body.most != 0 else _NONE
         times = max(whole(count), 0)
-        if body.never_ends and times and not ir.loops_end(loop.body):
+        if body.never_ends and times and not ir.breaks_out(loop.body):
             return Duration(body.least, None, True)
         most = None if body.most is None else times * body.most
-        return Duration(0 if ir.loops_end(loop.body) else times * body.least, most)
+        return Duration(0 if ir.breaks_out(loop.body) else times * body.least, most)
 
 
 def _time(time: ir.Expression | None) -> Duration:

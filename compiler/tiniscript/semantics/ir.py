@@ -199,7 +199,7 @@ def with_calls(
             yield from with_calls(procedures[statement.procedure].body, procedures, called)
 
 
-def every(program: Program) -> Iterator[Statement]:
+def all_statements(program: Program) -> Iterator[Statement]:
     """Yield every statement of a program, those of its DEFs first, then those of its tasks."""
     for body in routines(program):
         yield from walk(body)
@@ -207,7 +207,7 @@ def every(program: Program) -> Iterator[Statement]:
 
 def first_way(program: Program) -> Span | None:
     """Return where the first move is that goes by centimetres or degrees."""
-    moves = (move for move in every(program) if isinstance(move, Move) and move.unit)
+    moves = (move for move in all_statements(program) if isinstance(move, Move) and move.unit)
     return min((move.span for move in moves), default=None)
 
 
@@ -224,7 +224,7 @@ def are_yes_no(program: Program, kit: Kit) -> list[bool]:
     """Return for each variable of a program whether it is a yes/no."""
     result = [False] * len(program.variables)
     copies: list[Assign] = []  # the value is another variable
-    for statement in every(program):
+    for statement in all_statements(program):
         if not isinstance(statement, Assign):
             continue
         last = statement.value[-1]
@@ -266,7 +266,7 @@ def expressions(statement: Statement | Task) -> Iterator[Expression]:
             yield arm.condition
 
 
-def named(op: str, statements: Iterable[Statement | Task]) -> set[int]:
+def referenced(op: str, statements: Iterable[Statement | Task]) -> set[int]:
     """Return the numbers of the variables or sensors that an expression of these has."""
     return {
         term.value
@@ -277,24 +277,24 @@ def named(op: str, statements: Iterable[Statement | Task]) -> set[int]:
     }
 
 
-def loops_end(body: Body) -> bool:
+def breaks_out(body: Body) -> bool:
     """Whether a BREAK in `body` leaves the loop around it."""
     for statement in body:
         if isinstance(statement, Break):
             return True
-        if isinstance(statement, If) and any(map(loops_end, bodies(statement))):
+        if isinstance(statement, If) and any(map(breaks_out, bodies(statement))):
             return True
     return False
 
 
-def goes_on(body: Body) -> bool:
+def falls_through(body: Body) -> bool:
     """Whether what follows `body` can be reached, whatever its conditions say."""
     for statement in body:
         if isinstance(statement, Break):
             return False
         if isinstance(statement, Loop) and statement.times is None:
-            if not loops_end(statement.body):
+            if not breaks_out(statement.body):
                 return False
-        elif isinstance(statement, If) and not any(map(goes_on, bodies(statement))):
+        elif isinstance(statement, If) and not any(map(falls_through, bodies(statement))):
             return False
     return True

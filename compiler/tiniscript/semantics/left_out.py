@@ -27,24 +27,27 @@ def left_out(source: Source, parsed: ast.Program, node: ast.Break) -> LeftOut | 
 
     The IF is no part of another block but a DEF or a TASK, whose rest is what follows.
     """
-    bodies = [parsed.body, *(it.body for it in parsed.body if isinstance(it, (ast.Def, ast.Task)))]
+    bodies = [
+        parsed.body,
+        *(item.body for item in parsed.body if isinstance(item, (ast.Def, ast.Task))),
+    ]
     for body in bodies:
         for k, statement in enumerate(body):
-            rest = [it for it in body[k + 1 :] if not isinstance(it, (ast.Def, ast.Task))]
+            rest = [item for item in body[k + 1 :] if not isinstance(item, (ast.Def, ast.Task))]
             if isinstance(statement, ast.If) and len(statement.arms) == 1 and rest:
                 if len(rest) != len(body) - k - 1:
                     continue  # a DEF among them goes into no block
-                if made := _made(source, statement, rest, node):
+                if made := _make_left_out(source, statement, rest, node):
                     return made
     return None
 
 
-def _made(
-    source: Source, it: ast.If, rest: Sequence[ast.Instruction], node: ast.Break
+def _make_left_out(
+    source: Source, if_node: ast.If, rest: Sequence[ast.Instruction], node: ast.Break
 ) -> LeftOut | None:
-    whole = Span(it.span.start, rest[-1].span.end)
-    arm = it.arms[0]
-    branches = [[*arm.body], [*it.otherwise]]
+    whole = Span(if_node.span.start, rest[-1].span.end)
+    arm = if_node.arms[0]
+    branches = [[*arm.body], [*if_node.otherwise]]
     last = [branch[-1] if branch else None for branch in branches]
     if node not in last or arm.condition is None or "//" in source[whole]:
         return None

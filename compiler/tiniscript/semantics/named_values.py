@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.base.words import POWER, TIME, Argument, names, said_of
+from tiniscript.base.words import POWER, TIME, Argument, names_argument, said_of
 
 
 def is_time(name: str) -> bool:
@@ -34,7 +34,7 @@ def use_of(name: str) -> str:
 
 def _names_argument(name: str, argument: Argument) -> bool:
     """Whether a part of a name is what such a value is called."""
-    return any(names(part, argument) for part in _parts(name))
+    return any(names_argument(part, argument) for part in _parts(name))
 
 
 def _parts(name: str) -> list[str]:

@@ -32,7 +32,7 @@ SAFE = frozenset(("NUMBER", "YES_NO", "VARIABLE", "SENSOR", "EQ", "NE", "LT", "L
 _Operand = tuple[list[ir.Term], bool]
 
 
-def optimized(program: ir.Program) -> ir.Program:
+def optimize_program(program: ir.Program) -> ir.Program:
     """Return a program with the same traces and faults, no longer than `program`.
 
     A calculated constant of 32 bits, such as 100/3, may take two bytes more than its parts: it is
@@ -62,10 +62,10 @@ def fold(expression: ir.Expression) -> ir.Expression:
             continue
         if op in ("AND", "OR"):
             right, left = stack.pop(), stack.pop()
-            stack.append(_simplified(op, left, right))
+            stack.append(_simplify(op, left, right))
         elif op in _UNARY:
             terms, is_safe_so_far = stack.pop()
-            folded = _calculated(op, terms, None) if _is_constant(terms) else None
+            folded = _calculate(op, terms, None) if _is_constant(terms) else None
             if folded is None:
                 terms.append(term)
                 folded, is_safe_so_far = terms, is_safe_so_far and op in SAFE
@@ -74,7 +74,7 @@ def fold(expression: ir.Expression) -> ir.Expression:
             (right_terms, right_safe), (terms, left_safe) = stack.pop(), stack.pop()
             folded = None
             if op in _BINARY and _is_constant(terms) and _is_constant(right_terms):
-                folded = _calculated(op, terms, right_terms)
+                folded = _calculate(op, terms, right_terms)
             if folded is None:
                 terms.extend(right_terms)
                 terms.append(term)
@@ -128,7 +128,7 @@ def _is_constant(terms: ir.Expression | list[ir.Term]) -> bool:
     return len(terms) == 1 and terms[0].op in ("NUMBER", "YES_NO")
 
 
-def _calculated(op: str, left: list[ir.Term], right: list[ir.Term] | None) -> list[ir.Term] | None:
+def _calculate(op: str, left: list[ir.Term], right: list[ir.Term] | None) -> list[ir.Term] | None:
     """Return the result of an operator on constants, or None where it faults."""
     try:
         if right is None:
@@ -140,7 +140,7 @@ def _calculated(op: str, left: list[ir.Term], right: list[ir.Term] | None) -> li
     return [ir.Term("YES_NO" if op in _YES_NO else "NUMBER", int(value))]
 
 
-def _simplified(op: str, left: _Operand, right: _Operand) -> _Operand:
+def _simplify(op: str, left: _Operand, right: _Operand) -> _Operand:
     """Return `left op right`, without the side that a constant makes needless."""
     decides = 0 if op == "AND" else 1
     (terms, left_safe), (right_terms, right_safe) = left, right
@@ -161,7 +161,7 @@ def _body(body: ir.Body) -> ir.Body:
     statements: list[ir.Statement] = []
     for statement in body:
         statements += _statement(statement)
-        if statements and not ir.goes_on(tuple(statements[-1:])):
+        if statements and not ir.falls_through(tuple(statements[-1:])):
             break
     return tuple(statements)
 

@@ -28,7 +28,7 @@ class Kinds:
         self._calls: dict[str, tuple[ast.Command, ast.Def | None]] = {}  # the first of each name
         self._set: dict[str, _Place] = {}  # what each variable gets first
         defs = (each for each in parsed.body if isinstance(each, ast.Def))
-        names = {each.name: [it.name for it in each.parameters] for each in defs}
+        names = {each.name: [item.name for item in each.parameters] for each in defs}
         for node, around in _instructions(parsed.body, None):
             if isinstance(node, ast.Command):
                 if not names_one(node, names.get(node.word, ())):  # which is told of
@@ -36,7 +36,7 @@ class Kinds:
             elif node.value is not None and _parameter(node.name, around) is None:
                 self._set.setdefault(node.name, _Place(node.value.expression, around))
 
-    def of(self, node: ast.Def) -> list[str]:
+    def kinds_of(self, node: ast.Def) -> list[str]:
         """Return NUMBER or YES_NO for each value of a DEF."""
         return [self._kind_of(self._parameter_place(node, k)) for k in range(len(node.parameters))]
 
@@ -71,7 +71,9 @@ class Kinds:
 def names_one(call: ast.Command, names: Sequence[str]) -> bool:
     """Whether a call names a value of its DEF: `SIDE(size=20)`."""
     asked = (argument.expression for argument in call.arguments or ())
-    return any(it[0].op == "NAME" and it[0].value in names and it[-1].op == "EQ" for it in asked)
+    return any(
+        item[0].op == "NAME" and item[0].value in names and item[-1].op == "EQ" for item in asked
+    )
 
 
 def _parameter(name: str, around: ast.Def | None) -> int | None:

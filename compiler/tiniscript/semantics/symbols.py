@@ -110,7 +110,7 @@ class Scope:
     def is_yes_no_sensor(self, name: str) -> bool:
         return name in self.yes_no_sensors
 
-    def near(self, word: str, known: Iterable[str]) -> str:
+    def nearest_word(self, word: str, known: Iterable[str]) -> str:
         """Return the nearest known word for a message, for the first ENOUGH mistakes.
 
         After that `known` is not searched, so that a long program with many mistakes stays fast.

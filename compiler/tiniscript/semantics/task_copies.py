@@ -14,35 +14,35 @@ from tiniscript.base.limits import DEFS, VARIABLES
 from tiniscript.semantics import ir
 
 
-def separated(program: ir.Program) -> ir.Program:
+def copy_defs_per_task(program: ir.Program) -> ir.Program:
     """Return a program that does the same, in which no two tasks share a DEF's values."""
     reached = _reachable_defs(program)
-    owns = _owning(program)
+    owns = _owns_values(program)
     procedures: list[ir.Procedure] = []
     variables = list(program.variables)
     maps = [_Numbers({}, {}) for _ in reached]
     for k, procedure in enumerate(program.procedures):
         its_tasks = [task for task, found in enumerate(reached) if k in found]
         if not owns[k] or len(its_tasks) < 2:
-            for its in maps:
-                its.calls[k] = len(procedures)
+            for own in maps:
+                own.calls[k] = len(procedures)
             # one that no task shares keeps its variables, and calls what its task calls
             procedures.append(_copy_procedure(procedure, maps[its_tasks[0] if its_tasks else 0]))
             continue
         for task in its_tasks:
-            its = maps[task]
+            own = maps[task]
             if task != its_tasks[0]:
                 for variable in procedure.values:
-                    its.variables[variable] = len(variables)
+                    own.variables[variable] = len(variables)
                     variables.append(program.variables[variable])
-            its.calls[k] = len(procedures)
-            procedures.append(_copy_procedure(procedure, its))
-        for its in maps:  # of a DEF that nobody calls: it calls the first copy
-            its.calls.setdefault(k, maps[its_tasks[0]].calls[k])
+            own.calls[k] = len(procedures)
+            procedures.append(_copy_procedure(procedure, own))
+        for own in maps:  # of a DEF that nobody calls: it calls the first copy
+            own.calls.setdefault(k, maps[its_tasks[0]].calls[k])
     main, *others = maps
     tasks = tuple(
-        task._replace(body=_body(task.body, its))
-        for task, its in zip(program.tasks, others, strict=True)
+        task._replace(body=_body(task.body, own))
+        for task, own in zip(program.tasks, others, strict=True)
     )
     return program._replace(
         variables=tuple(variables), procedures=tuple(procedures),
@@ -62,7 +62,7 @@ class Excess(NamedTuple):
 
 def excess(program: ir.Program) -> Excess | None:
     """Return the DEF whose copies a machine has no room for, if there is one."""
-    owns, reached = _owning(program), _reachable_defs(program)
+    owns, reached = _owns_values(program), _reachable_defs(program)
     variables, defs = len(program.variables), len(program.procedures)
     for k, procedure in enumerate(program.procedures):
         its_tasks = tuple(task for task, found in enumerate(reached) if k in found)
@@ -100,7 +100,7 @@ def _reachable_defs(program: ir.Program) -> list[set[int]]:
     return result
 
 
-def _owning(program: ir.Program) -> list[bool]:
+def _owns_values(program: ir.Program) -> list[bool]:
     """Return for each DEF whether it has values, or calls one that has."""
     result: list[bool] = []
     for procedure in program.procedures:

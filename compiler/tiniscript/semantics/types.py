@@ -83,7 +83,7 @@ class Types:
         value_type, term = ANY, Term("NUMBER", 0)
         name = scope.names.get(part.value)
         if name is None:
-            self.wrong.unknown(part, part.value, target)
+            self.wrong.report_unknown(part, part.value, target)
         elif name.what == "variable":
             value_type, term = self.of_variables[name.number], Term("VARIABLE", name.number)
         elif name.what == "sensor":
@@ -123,16 +123,16 @@ class Types:
             self._wants_yes_no(op, right, left)
         elif left.type != right.type:
             if ANY not in (left.type, right.type):
-                self.wrong.mixed(op, left, right, Span(start, end))
+                self.wrong.report_mixed(op, left, right, Span(start, end))
         elif left.type == YES_NO and op in _ORDER:
-            self.wrong.yes_no_order(op, Span(start, end))
+            self.wrong.report_yes_no_order(op, Span(start, end))
         stack.append(Operand(result_type, depth, start, end))
 
     def _wants_number(self, op: str, operand: Operand) -> None:
         if operand.type == YES_NO:
-            self.wrong.no_number(op, operand)
+            self.wrong.report_not_number(op, operand)
 
     def _wants_yes_no(self, by: str, operand: Operand, other: Operand | None = None) -> None:
         """`other` is the other side of an AND or OR."""
         if operand.type == NUMBER:
-            self.wrong.no_yes_no(by, operand, other)
+            self.wrong.report_not_yes_no(by, operand, other)

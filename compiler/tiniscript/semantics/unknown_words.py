@@ -15,9 +15,9 @@ from tiniscript.base.words import (
     WORDS,
     Word,
     concept_of,
-    names,
+    expand_short,
+    names_argument,
     said_of,
-    shortened,
 )
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.named_values import value_of, yes_no_of
@@ -69,12 +69,14 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     begins = (word for word in WORDS.values() if word.role.begins)
     commands = [begin.text for begin in begins if begin.text not in ("FOREVER", "SEND")]
     suggestion = whole_name(scope, word, scope.def_names) if node.arguments is None else ""
-    suggestion = suggestion or scope.near(word, chain(commands, scope.names, scope.def_names))
+    suggestion = suggestion or scope.nearest_word(
+        word, chain(commands, scope.names, scope.def_names)
+    )
     is_own = suggestion in scope.set_somewhere or suggestion in scope.def_names
     if is_own and suggestion.rstrip(_DIGITS) == word.rstrip(_DIGITS):
         suggestion = ""  # `PASO2`, where there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
-    letters = [word[0]] if is_held and word[0] in WORDS else shortened(word)
+    letters = [word[0]] if is_held and word[0] in WORDS else expand_short(word)
     count = len(node.arguments or ())
     suggestion = next(
         (letter for letter in letters if len(WORDS[letter].arguments) == count), suggestion
@@ -85,7 +87,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
 def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
     """`F(tiempo, potencia)`: these names stand for numbers. Drops the diagnostics since `said`."""
     texts = [scope.source[argument.span].upper() for argument in node.arguments or ()]
-    if len(texts) == len(word.arguments) and all(map(names, texts, word.arguments)):
+    if len(texts) == len(word.arguments) and all(map(names_argument, texts, word.arguments)):
         del scope.diagnostics[said:]
         scope.report(codes.PLACEHOLDER, node.span, usage=word.usage, example=word.example)
 
@@ -120,7 +122,7 @@ def _is_shortened(one: str, other: str) -> bool:
     return len(short) > 2 and long.isalpha() and long.startswith(short)
 
 
-def _wanted(scope: Scope, name: str) -> list[str]:
+def _unset_names(scope: Scope, name: str) -> list[str]:
     """Return the names in the body of a DEF that nothing gives a value: of each DEF, once."""
     if name in scope.wanted:
         return scope.wanted[name]
@@ -137,7 +139,7 @@ def report_not_callable(scope: Scope, node: ast.Command) -> None:
         return  # what is wrong in the brackets of the DEF has been said
     texts = [scope.source[argument.span] for argument in node.arguments or ()]
     text = {"named": node.word} if node.word in scope.def_names else {}
-    fix, names = "", _wanted(scope, node.word)
+    fix, names = "", _unset_names(scope, node.word)
     if text and texts and len(names) == len(texts):
         text["head"] = f"DEF {node.word}({', '.join(names)})"
     elif text and len(texts) == 1 and texts[0].isdecimal() and 1 < int(texts[0][:9]) <= MANY_TIMES:

@@ -40,7 +40,7 @@ from tiniscript.semantics.unknown_words import (
 )
 from tiniscript.semantics.wrong_values import value_of_def
 from tiniscript.syntax import ast
-from tiniscript.syntax.free_names import numbered
+from tiniscript.syntax.free_names import numbered_names
 
 if TYPE_CHECKING:
     from tiniscript.semantics.task_copies import Excess
@@ -68,13 +68,15 @@ class WrongCalls:
         self.scope = scope
         self._free: dict[str, tuple[Iterator[str], list[str]]] = {}  # see `free_name`
 
-    def unknown(self, node: ast.Command, inside: str | None) -> None:
+    def report_unknown(self, node: ast.Command, inside: str | None) -> None:
         report_unknown(self.scope, node, inside)
 
-    def not_callable(self, node: ast.Command) -> None:
+    def report_not_callable(self, node: ast.Command) -> None:
         report_not_callable(self.scope, node)
 
-    def call_values(self, node: ast.Command, procedure: ir.Procedure, names: Sequence[str]) -> None:
+    def report_call_values(
+        self, node: ast.Command, procedure: ir.Procedure, names: Sequence[str]
+    ) -> None:
         """Another count of values than the DEF has names."""
         if not names:
             report_not_callable(self.scope, node)
@@ -83,7 +85,7 @@ class WrongCalls:
         self.scope.report(codes.CALL_VALUES, node.span, name=node.word, usage=usage,
                           wanted=str(len(names)), found=str(len(node.arguments or ())))  # fmt: skip
 
-    def too_many_copies(self, program: ir.Program, excess: Excess) -> None:
+    def report_too_many_copies(self, program: ir.Program, excess: Excess) -> None:
         """A DEF with values is compiled once for each task that reaches it."""
         procedure = program.procedures[excess.procedure]
         span = Span(procedure.span.start, procedure.span.start + len("DEF"))
@@ -98,7 +100,9 @@ class WrongCalls:
             values["lines"] = ", ".join(map(str, sorted({*lines})))
         self.scope.report(codes.TOO_MANY_COPIES, span, None, name=procedure.name, **values)
 
-    def until_not_here(self, node: ast.Command, until: ast.Argument, word: Word | None) -> None:
+    def report_until_not_here(
+        self, node: ast.Command, until: ast.Argument, word: Word | None
+    ) -> None:
         source = self.scope.source
         start = _start_of_until(source, node, until)
         call = source[Span(node.span.start, start)].rstrip()
@@ -109,7 +113,7 @@ class WrongCalls:
         place = Span(start, node.span.end)
         self.scope.report(codes.UNTIL_NOT_HERE, place, word=node.word, example=example)
 
-    def break_outside(self, node: ast.Break) -> None:
+    def report_break_outside(self, node: ast.Break) -> None:
         """BREAK as the last of a branch of an IF: the other branch has what it leaves out."""
         found = left_out(self.scope.source, self.scope.parsed, node)
         if found is None:
@@ -121,13 +125,13 @@ class WrongCalls:
             Diagnostic(codes.BREAK_OUTSIDE, node.span, values, None, repair)
         )
 
-    def forever(self, span: Span, word: Word, call: Span) -> None:
+    def report_forever(self, span: Span, word: Word, call: Span) -> None:
         """FOREVER at `span` in a move without UNTIL."""
         source = self.scope.source
-        fix = f"{source[call]} UNTIL({asked_next(source, call)})"
+        fix = f"{source[call]} UNTIL({next_condition(source, call)})"
         self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, word=word.text, fix=fix)
 
-    def count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
+    def report_count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
         source = self.scope.source
         texts = [source[argument.span] for argument in arguments]
         values = {
@@ -149,7 +153,7 @@ class WrongCalls:
         way = f"{word.text}({texts[0]} {unit}, {POWER.sample})"
         return {"number": texts[0], "turn" if unit == "DEG" else "way": way}
 
-    def unit_pair(self, node: ast.Command, unit: ast.Part) -> None:
+    def report_unit_pair(self, node: ast.Command, unit: ast.Part) -> None:
         """`F(20 DEG, 60)`: forward goes centimetres."""
         right, place = UNIT_OF[node.word], Span(unit.start, unit.end)
         start = node.span.start
@@ -168,25 +172,25 @@ class WrongCalls:
                 said["line"] = str(self.scope.source.position(other.start())[0])
         self.scope.report(codes.UNIT_PAIR, place, node.span, word=node.word, fix=fix, **said)
 
-    def values(self, node: ast.Command, word: Word, said: int) -> None:
+    def report_values(self, node: ast.Command, word: Word, said: int) -> None:
         """Say more of values that have had diagnostics since there were `said`."""
         if VALUE in word.arguments:
             report_words_shown(self.scope, said)
         report_placeholders(self.scope, node, word, said)
 
-    def out_of_range(
-        self, span: Span, number: int, its: Argument, word: str,
+    def report_out_of_range(
+        self, span: Span, number: int, spec: Argument, word: str,
         of: tuple[ast.Command, Word] | None,
     ) -> None:  # fmt: skip
         """`number`, in thousandths, is a value of the command `of`, if of one."""
-        low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
-        text = {} if of is None else meant(self.scope.source, *of)
+        low, high = as_text(spec.low), "" if spec.high == HIGHEST else as_text(spec.high)
+        text = {} if of is None else repair_values(self.scope.source, *of)
         text |= {"low": low, "high": high, "found": as_text(number)}
         place = None if of is None else _without_until(self.scope.source, of[0])
-        self.scope.report(codes.OUT_OF_RANGE, span, place, word=word, name=its.name,
-                          unit=its.unit, **text)  # fmt: skip
+        self.scope.report(codes.OUT_OF_RANGE, span, place, word=word, name=spec.name,
+                          unit=spec.unit, **text)  # fmt: skip
 
-    def no_number(self, span: Span, word: str) -> None:
+    def report_not_number(self, span: Span, word: str) -> None:
         """A yes or no where `word` takes a number."""
         text = self.scope.source[span]
         fix = f"W(FOREVER) UNTIL({text})" if word == "W" and set(text) & set("<>=") else ""
@@ -195,7 +199,7 @@ class WrongCalls:
         own = value_of_def(self.scope, span)
         self.scope.report(codes.WANTS_NUMBER, span, None, by=word, found=text, fix=fix, **own)
 
-    def device_set(self, node: ast.Assign, device: Name) -> None:
+    def report_device_set(self, node: ast.Assign, device: Name) -> None:
         """`DISTANCE = 20`, `LED = TRUE`: a number for a distance may be where to stop."""
         value = "5" if node.value is None else self.scope.source[node.value.span]
         said = {"name": node.name, "value": value}
@@ -244,7 +248,7 @@ class WrongCalls:
     def _has_way(self, unit: str) -> bool:
         return bool(self.scope.kit.speed if unit == "CM" else self.scope.kit.turn)
 
-    def named_values(self, node: ast.Command, names: Sequence[str]) -> bool:
+    def report_named_values(self, node: ast.Command, names: Sequence[str]) -> bool:
         """Report `SIDE(size=20)`, which names a value of the DEF; return whether it does."""
         texts = [self.scope.source[argument.span] for argument in node.arguments or ()]
         named = [_NAMED.fullmatch(text) for text in texts]
@@ -262,7 +266,7 @@ class WrongCalls:
         self.scope.report(codes.NAMED_ARGUMENT, node.span, None, word=node.word, fix=fix)
         return True
 
-    def def_set(self, node: ast.Assign, procedures: Sequence[ir.Procedure]) -> None:
+    def report_def_set(self, node: ast.Assign, procedures: Sequence[ir.Procedure]) -> None:
         """`SQUARE = 30`, where SQUARE is a DEF with one value: it is called, if no value is."""
         other = self.free_name(node.name, procedures)
         known = next((procedure for procedure in procedures if procedure.name == node.name), None)
@@ -277,7 +281,7 @@ class WrongCalls:
     def free_name(self, name: str, procedures: Sequence[ir.Procedure]) -> str:
         """Return `DANCE_2`, or with the first number of which the text has no name yet."""
         if name not in self._free:
-            self._free[name] = (numbered(self.scope.source.text, name), [])
+            self._free[name] = (numbered_names(self.scope.source.text, name), [])
         others, found = self._free[name]
         k = max(
             0, sum(procedure.name == name for procedure in procedures) - 1
@@ -316,7 +320,7 @@ _NEXT_QUESTION = re.compile(r"(?i)[\s;]{0,200}IF[ \t]*\(([^()\r\n;]{0,60}[<>=][^
 _ASKED = re.compile(r"\b(DISTANCE)[ \t]{0,9}(<=?)[ \t]{0,9}([0-9]+(?:\.[0-9]+)?)\b", re.IGNORECASE)
 
 
-def asked_next(source: Source, span: Span) -> str:
+def next_condition(source: Source, span: Span) -> str:
     """Return the condition of an IF that follows what is at `span`.
 
     Else what the program asks of the same sensor, after it first; else an example.
@@ -331,11 +335,12 @@ _LOW_TONE = 150  # hertz: a note that is no round number, as powers are
 _ROUND = 50
 
 
-def meant(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
+def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
     """Return the values of a diagnostic: `fix`, or an example, or none."""
     arguments = node.arguments or ()
     texts = [
-        source[Span(it.span.start, it.unit.end if it.unit else it.span.end)] for it in arguments
+        source[Span(argument.span.start, argument.unit.end if argument.unit else argument.span.end)]
+        for argument in arguments
     ]
     values: dict[str, str] = {}
     if len(texts) != 2 or not all(argument.is_plain for argument in arguments):

@@ -35,7 +35,7 @@ class WrongValues:
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
 
-    def unknown(self, part: Part, name: str, target: str | None) -> None:
+    def report_unknown(self, part: Part, name: str, target: str | None) -> None:
         scope, span = self.scope, Span(part.start, part.end)
         if name in scope.def_names:
             scope.report(codes.NO_VALUE, span, word=name)
@@ -53,10 +53,10 @@ class WrongValues:
                 scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
             return
         names = scope.names.items() if len(scope.diagnostics) < ENOUGH else ()
-        known = [each for each, its in names if its.what in ("sensor", "variable")]
+        known = [each for each, meaning in names if meaning.what in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
         known += ["FOREVER"] if is_forever else []
-        suggestion = "".join(said_of(name, "number")) or scope.near(name, known)
+        suggestion = "".join(said_of(name, "number")) or scope.nearest_word(name, known)
         suggestion = suggestion or (
             "".join(said_of(name, "power")) if before.rstrip().endswith("=") else ""
         )
@@ -67,7 +67,7 @@ class WrongValues:
         stem = ("".join(said_of(base, "stem")) or base) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
-        sensors = [each for each, its in names if its.what == "sensor"]
+        sensors = [each for each, meaning in names if meaning.what == "sensor"]
         if name == target or name in scope.set_somewhere:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
                    for diagnostic in scope.diagnostics[-ENOUGH:]):  # fmt: skip
@@ -126,23 +126,23 @@ class WrongValues:
         between = self.scope.source[Span(diagnostics[0].span.end, span.start)]
         return not set(between) & set("();\r\n") and "," in between
 
-    def mixed(self, op: str, left: Operand, right: Operand, span: Span) -> None:
+    def report_mixed(self, op: str, left: Operand, right: Operand, span: Span) -> None:
         """A number is compared with a yes or no."""
         self.scope.report(codes.MIXED_COMPARE, span, sign=SIGN_OF[op],
                           left="@" + left.type, right="@" + right.type,
                           fix=self._yes_no_alone(op, left, right))  # fmt: skip
 
-    def yes_no_order(self, op: str, span: Span) -> None:
+    def report_yes_no_order(self, op: str, span: Span) -> None:
         self.scope.report(codes.YES_NO_ORDER, span, sign=SIGN_OF[op])
 
-    def no_number(self, op: str, operand: Operand) -> None:
+    def report_not_number(self, op: str, operand: Operand) -> None:
         span = Span(operand.start, operand.end)
         by = "-" if op == "NEG" else SIGN_OF.get(op, op)
         own = value_of_def(self.scope, span)
         found = self.scope.source[span]
         self.scope.report(codes.WANTS_NUMBER, span, None, by=by, found=found, **own)
 
-    def no_yes_no(self, by: str, operand: Operand, other: Operand | None) -> None:
+    def report_not_yes_no(self, by: str, operand: Operand, other: Operand | None) -> None:
         """`other` is the other side of an AND or OR.
 
         `X = 5 OR 6` means `X = 5 OR X = 6`, and `X AND Y > 5` means `X > 5 AND Y > 5`.

@@ -217,14 +217,14 @@ def text_of(value: Value) -> str:
         if op in _OPERATORS:
             precedence, sign = _OPERATORS[op]
             right, left = stack.pop(), stack.pop()
-            one = _bracketed(left, precedence + (precedence == COMPARISON))
-            stack.append((f"{one} {sign} {_bracketed(right, precedence + 1)}", precedence))
+            one = _bracket(left, precedence + (precedence == COMPARISON))
+            stack.append((f"{one} {sign} {_bracket(right, precedence + 1)}", precedence))
         elif op == "NOT":
-            stack.append((f"NOT {_bracketed(stack.pop(), NOT)}", NOT))
+            stack.append((f"NOT {_bracket(stack.pop(), NOT)}", NOT))
         elif op == "NEG":
             text, precedence = stack.pop()
             is_number = text[:1].isdigit() or text[:1] == "-"  # whose sign it would become
-            inner = f"({text})" if is_number else _bracketed((text, precedence), ATOM)
+            inner = f"({text})" if is_number else _bracket((text, precedence), ATOM)
             stack.append((f"-{inner}", MINUS))
         elif op == "BRACKETS":
             stack.append((f"({stack.pop()[0]})", ATOM))
@@ -238,6 +238,6 @@ def text_of(value: Value) -> str:
     return found[0]
 
 
-def _bracketed(operand: tuple[str, int], least: int) -> str:
+def _bracket(operand: tuple[str, int], least: int) -> str:
     text, precedence = operand
     return text if precedence >= least else f"({text})"

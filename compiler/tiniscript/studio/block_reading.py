@@ -26,7 +26,7 @@ from tiniscript.syntax.ast import (
     While,
 )
 from tiniscript.syntax.formatter import Piece, instruction_text, is_one_line, pieces_of
-from tiniscript.syntax.later_words import in_program
+from tiniscript.syntax.later_words import kit_for_text
 from tiniscript.syntax.parser import Parsed, parse
 
 LOOSE = "///"  # begins the lines of blocks that hang on nothing
@@ -77,7 +77,7 @@ class _Reader:
         self._pieces = pieces_of(parsed.scan)
         self._next = 0
         self._kit = kit
-        self._sensors = frozenset(device.name for device in in_program(source.text, kit).readings)
+        self._sensors = frozenset(device.name for device in kit_for_text(source.text, kit).readings)
         self._defs = {item.name for item in parsed.program.body if isinstance(item, Def)}
         self._grey = grey
 

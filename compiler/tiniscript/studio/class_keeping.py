@@ -19,7 +19,7 @@ from time import time
 from typing import Any, NamedTuple
 
 from tiniscript import robots
-from tiniscript.base.files import LOCK, contents, is_locked, replace, settings_folder
+from tiniscript.base.files import LOCK, contents, replace, settings_folder, try_lock
 
 Json = dict[str, Any]
 
@@ -67,11 +67,11 @@ def is_token(found: object) -> bool:
 # -- the file -------------------------------------------------------------------------------------
 
 
-class Taken(Exception):
+class ClassTaken(Exception):
     """Another `tsc studio` of this user has a class."""
 
 
-class Kept(NamedTuple):
+class KeptClass(NamedTuple):
     """`is_same_lesson`: seen within the last hour, or, where the clock is behind, nobody knows."""
 
     state: Json
@@ -86,7 +86,7 @@ class Keeper:
         self._lock: int | None = None
         self._newest = ""
         if not self._is_ours():
-            raise Taken
+            raise ClassTaken
 
     def _is_ours(self) -> bool:
         """Whether no other command has the file. Where nothing can be written there is no lock
@@ -101,14 +101,14 @@ class Keeper:
             return True
         is_ours = True
         with suppress(OSError):
-            is_ours = is_locked(number)
+            is_ours = try_lock(number)
         if is_ours:
             self._lock = number
         else:
             os.close(number)
         return is_ours
 
-    def read(self) -> Kept | None:
+    def read(self) -> KeptClass | None:
         """Return the class that has not ended, or None. What is no class is put aside."""
         try:
             result = json.loads(contents(path(), FILE_BYTES))
@@ -121,7 +121,7 @@ class Keeper:
                 path().replace(_unread_path())
             return None
         when_s = result.get("kept_s")
-        return Kept(result, type(when_s) is int and time() - when_s <= SAME_LESSON_S)
+        return KeptClass(result, type(when_s) is int and time() - when_s <= SAME_LESSON_S)
 
     def keep(self, of_class: Json | None) -> None:
         """Keep a class if it is another than the newest that was kept. What could not be kept is

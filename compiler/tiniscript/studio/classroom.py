@@ -33,9 +33,9 @@ from tiniscript.studio.class_keeping import (
 )
 from tiniscript.studio.entrances import new_token
 from tiniscript.studio.hosted_robot import HostedRobot
-from tiniscript.studio.hosting import Hosting, listed, port_of
+from tiniscript.studio.hosting import Hosting, list_ports, port_of
 from tiniscript.studio.names import are_alike, free_name, plain_name
-from tiniscript.studio.robot_link import BadRequest, Json, robot_of, whole
+from tiniscript.studio.robot_link import BadRequest, Json, robot_of, whole_number
 from tiniscript.studio.serving import REQUEST_BYTES
 
 MOST_NAMES = 1000  # who has not been seen for longest is forgotten
@@ -92,7 +92,7 @@ class Pupil:
 
 
 @dataclass(eq=False)
-class Kept:
+class KeptWork:
     """Work of who is not here. What comes from a file has no token and no address.
 
     `given_to` is the token of the pupil whose page the teacher wants to have it.
@@ -182,7 +182,7 @@ class Classroom:
         self._wrong = Rate(*WRONG)
         self._requests = Rate(*REQUESTS)
         self._numbers = count(1)  # of pupils, of places in the queue and of hands
-        self._kept: dict[str, Kept] = {}  # by key
+        self._kept: dict[str, KeptWork] = {}  # by key
         self._goes_on = False  # after a crash, and the teacher has not said otherwise
         self._over = ""  # or whether pupils' work is kept
         self._over_s = 0.0
@@ -251,18 +251,20 @@ class Classroom:
                 return {"failure": "class_crowded"}
             if self._works() >= MOST_WORKS:
                 return {"failure": "class_full"}
-            back = Kept(free_name(plain, self._names()), plain, NOTHING, new_token())
+            back = KeptWork(free_name(plain, self._names()), plain, NOTHING, new_token())
         self._begin(back, address, now_s)
         return {"token": back.token, "name": back.name}
 
-    def _begin(self, work: Kept, address: str, now_s: float) -> None:
+    def _begin(self, work: KeptWork, address: str, now_s: float) -> None:
         """Who has made this work is here from now on."""
         self._kept.pop(work.key, None)
         self._pupils[work.token] = Pupil(
             next(self._numbers), work.token, work.name, work.written, address, now_s, work.work
         )
 
-    def _returning_pupil(self, token: object, written: str, now_s: float) -> Pupil | Kept | None:
+    def _returning_pupil(
+        self, token: object, written: str, now_s: float
+    ) -> Pupil | KeptWork | None:
         """Return who comes back with the token of an earlier page, and the same name."""
         for pupil in self._all_work():
             is_here = isinstance(pupil, Pupil) and now_s - pupil.heard_s <= PLACE_S
@@ -281,7 +283,7 @@ class Classroom:
         """Return the names of all who have a token."""
         return [item.name for item in self._all_work() if item.token]
 
-    def _all_work(self) -> list[Kept | Pupil]:
+    def _all_work(self) -> list[KeptWork | Pupil]:
         return [*self._kept.values(), *self._pupils.values()]
 
     def _give_place_away(self, now_s: float, silent_s: float, pupils: list[Pupil]) -> bool:
@@ -296,12 +298,12 @@ class Classroom:
         """A pupil is here no more; the work stays, for who comes back."""
         del self._pupils[pupil.token]
         if pupil.work.text:
-            self._keep(Kept(pupil.name, pupil.written, pupil.work, pupil.token, pupil.address))
+            self._keep(KeptWork(pupil.name, pupil.written, pupil.work, pupil.token, pupil.address))
         for item in self._kept.values():
             if item.given_to == pupil.token:
                 item.given_to = ""
 
-    def _keep(self, kept: Kept) -> None:
+    def _keep(self, kept: KeptWork) -> None:
         self._kept[kept.key] = kept
 
     def _report_page(self, pupil: Pupil, request: Json) -> Json:
@@ -320,7 +322,7 @@ class Classroom:
         if self._over:
             pupil.knows_end = True
             return {"over": self._over}
-        turn, waiting = self._turn(pupil), self._waiting()
+        turn, waiting = self._turn(pupil), self._waiting_pupils()
         place = -1 if turn is None else 0
         if pupil in waiting:
             place = waiting.index(pupil) + 1
@@ -393,7 +395,7 @@ class Classroom:
 
     def _tend(self) -> None:
         now_s = self._clock()
-        for pupil in self._waiting():
+        for pupil in self._waiting_pupils():
             if now_s - pupil.heard_s > QUEUE_S:
                 pupil.waits = None
         for robot in self._robots:
@@ -420,17 +422,17 @@ class Classroom:
             if not hosted.name and not hosted.was_left:  # another robot is better
                 robot.free_s = now_s + REST_S
             robot.end()
-        elif self._waiting() and (
+        elif self._waiting_pupils() and (
             now_s - robot.began_s >= self._turn_s or hosted.attending.silent_s > HERE_S
         ):
             robot.take_back()
 
     def _begin_turn(self, robot: ClassRobot, now_s: float) -> None:
-        here = [pupil for pupil in self._waiting() if now_s - pupil.heard_s <= HERE_S]
+        here = [pupil for pupil in self._waiting_pupils() if now_s - pupil.heard_s <= HERE_S]
         if here and self._hosting.is_free(robot.port):
             robot.begin(here[0], now_s)
 
-    def _waiting(self) -> list[Pupil]:
+    def _waiting_pupils(self) -> list[Pupil]:
         found = [(pupil.waits, pupil) for pupil in self._pupils.values() if pupil.waits is not None]
         return [pupil for _, pupil in sorted(found, key=lambda found: found[0])]
 
@@ -453,9 +455,9 @@ class Classroom:
             if given is not None:
                 self._give(given, request.get("gives") is True)
             elif do == "class_turn":
-                self._turn_s = whole(request, "seconds", SHORTEST_S, LONGEST_S)
+                self._turn_s = whole_number(request, "seconds", SHORTEST_S, LONGEST_S)
             elif do == "class_places":
-                self._places = whole(request, "places", 1, MOST_PUPILS)
+                self._places = whole_number(request, "places", 1, MOST_PUPILS)
             elif do == "class_code":
                 self.code = _new_code()
             elif do == "class_over":
@@ -518,7 +520,7 @@ class Classroom:
             return
         if self._works() >= MOST_WORKS:
             raise BadRequest
-        self._keep(Kept(plain, plain, work))
+        self._keep(KeptWork(plain, plain, work))
 
     def _give_back(self, request: Json) -> None:
         """Give kept work to one pupil: their page puts it into the editor."""
@@ -595,10 +597,10 @@ class Classroom:
             if isinstance(code, str) and len(code) == CODE_LETTERS and set(code) <= set(LETTERS):
                 self.code = code
             with suppress(BadRequest):
-                self._places = whole(kept, "places", 1, MOST_PUPILS)
+                self._places = whole_number(kept, "places", 1, MOST_PUPILS)
             if not self._is_turn_given:
                 with suppress(BadRequest):
-                    self._turn_s = whole(kept, "turn_s", SHORTEST_S, LONGEST_S)
+                    self._turn_s = whole_number(kept, "turn_s", SHORTEST_S, LONGEST_S)
             return len(self._pupils)
 
     def _give(self, given: ClassRobot, is_given: bool) -> None:
@@ -630,7 +632,7 @@ class Classroom:
             return bool(self._over) and (are_told or now_s - self._over_s > OVER_S)
 
     def _state(self) -> Json:
-        now_s, waiting = self._clock(), self._waiting()
+        now_s, waiting = self._clock(), self._waiting_pupils()
         return {
             "code": self.code,
             "turn_s": self._turn_s,
@@ -709,13 +711,13 @@ def _rows(kept: Json, name: str) -> list[Json]:
     return [item for item in result if isinstance(item, dict)] if isinstance(result, list) else []
 
 
-def _work_of_row(row: Json, work: Work | None) -> Kept | None:
+def _work_of_row(row: Json, work: Work | None) -> KeptWork | None:
     """Return whose work it is in a row of a file; None if it is nobody's, or no work."""
     name = row.get("name")
     plain = plain_name(name) if isinstance(name, str) else ""
     if work is None or not plain:
         return None
-    result = Kept(plain, plain, work)
+    result = KeptWork(plain, plain, work)
     written, address = row.get("written"), row.get("address")
     result.written = (plain_name(written) if isinstance(written, str) else "") or plain
     result.address = address if isinstance(address, str) else ""
@@ -735,4 +737,6 @@ def _new_code() -> str:
 def _name_of(port: str) -> str:
     """Return the name of the robot that was there last, or nothing."""
     same = same_for_all(port)
-    return next((str(item["name"]) for item in listed() if same_for_all(item["port"]) == same), "")
+    return next(
+        (str(item["name"]) for item in list_ports() if same_for_all(item["port"]) == same), ""
+    )

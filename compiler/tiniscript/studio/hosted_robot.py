@@ -112,7 +112,7 @@ class HostedRobot:
                 with suppress(RobotError):  # the port is gone, and the page is told already
                     client.hold_for_others(lambda: not self._lets_go)
         except ConnectionLost as gone:
-            lost = client.lost(gone)
+            lost = client.robot_error_for_loss(gone)
             self._end(lost.key, str(lost))
         except RobotError as lost:
             self._end(lost.key, str(lost))

@@ -19,7 +19,7 @@ from tiniscript.link import known_ports, ports
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.hosted_robot import PARTS_S, HostedRobot
-from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, robot_of, whole
+from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, robot_of, whole_number
 from tiniscript.virtual import directory
 
 NAME_CHARACTERS = 64  # of a page
@@ -44,7 +44,7 @@ class Hosting:
         """Return the answer to a page's request. Raises BadRequest."""
         do = request.get("do")
         if do == "ports":
-            return {"ports": listed()}
+            return {"ports": list_ports()}
         if do == "stop_all":
             return self._stop_all()
         if do == "stops":
@@ -62,15 +62,15 @@ class Hosting:
             stops = 0
             try:
                 if request.get("tab", page) == robot.tab:
-                    stops = whole(request, "stops", 0, MOST_COUNT, 0)
+                    stops = whole_number(request, "stops", 0, MOST_COUNT, 0)
             finally:  # whatever it counts
                 robot.attending.stop(stops)
         if _connection(page, request) != (robot.tab, robot.connection):
             return _OVER
         if do == "leave":
             robot.leave()
-        seen = whole(request, "seen", 0, MOST_COUNT, 0)
-        stops = whole(request, "stops", 0, MOST_COUNT, 0)
+        seen = whole_number(request, "seen", 0, MOST_COUNT, 0)
+        stops = whole_number(request, "stops", 0, MOST_COUNT, 0)
         return {"news": robot.attending.on_beat(_requests(request), seen, stops)}
 
     def robot_of(self, page: str) -> HostedRobot | None:
@@ -155,14 +155,14 @@ class Hosting:
                            for robot in hosted_robots]}  # fmt: skip
 
 
-def listed() -> list[Json]:
+def list_ports() -> list[Json]:
     """Return the ports of this computer, the last used one first. Opens none of them.
 
     `name` is that of the robot that had answered there, `virtual` the profile of a virtual robot.
     """
-    known = known_ports.known()
+    known = known_ports.remembered_ports()
     virtual = {item.address: item for item in directory.for_all()}
-    about = {item.port: item.description for item in ports.listed()}
+    about = {item.port: item.description for item in ports.list_ports()}
     names = [*about, *(port for port in virtual if port not in about)]
     names += [port for port in known.names
               if port not in names and is_there(port) and not directory.is_gone(port)]  # fmt: skip
@@ -185,7 +185,7 @@ def _is_driving(robot: HostedRobot) -> bool:
 def _connection(page: str, request: Json) -> tuple[str, int]:
     """Return whose connection it is, and which of these. Raises BadRequest."""
     tab = _text(request, "tab", NAME_CHARACTERS) if "tab" in request else page
-    return tab, whole(request, "connection", 0, MOST_COUNT, 0)
+    return tab, whole_number(request, "connection", 0, MOST_COUNT, 0)
 
 
 def port_of(request: Json) -> str:

@@ -16,12 +16,12 @@ from tiniscript.bytecode.image import unpack
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.map import GOALS
-from tiniscript.lessons.markdown import HINT, Block, beside_simulator, blocks
+from tiniscript.lessons.markdown import HINT, Block, blocks, studio_part
 from tiniscript.lessons.marking import Marking, Outcome
 from tiniscript.lessons.running import ASKS, STEP_MS, Trial
 from tiniscript.lessons.sentences import sentence
-from tiniscript.lessons.variation import is_mirrored, point_of, varied
-from tiniscript.library.compiling import compile_source, for_robot, maker
+from tiniscript.lessons.variation import is_mirrored, point_of, vary
+from tiniscript.library.compiling import compile_source, for_robot, image_maker
 from tiniscript.library.named_robot import name_in
 from tiniscript.link.session import Session
 from tiniscript.studio.block_form import kinds_in
@@ -53,7 +53,7 @@ def steps(number: int, language: str) -> list[dict[str, Any]]:
     matches: list[tuple[list[Block], list[str]]] = []
     before: list[Block] = []  # what the lesson is about stands at its first step
     section = 0
-    for block in blocks(beside_simulator(sentence)):
+    for block in blocks(studio_part(sentence)):
         if block.kind == "heading":
             section += 1
             if section == TASK:
@@ -101,7 +101,7 @@ def _without_blanks(block: Block) -> dict[str, Any]:
 
 def world(number: int, seed: int) -> World:
     """Return the world of a lesson where a program is tried."""
-    return varied(_lesson(number), seed)._replace(flags=(), seconds=0)  # a lesson has its own task
+    return vary(_lesson(number), seed)._replace(flags=(), seconds=0)  # a lesson has its own task
 
 
 def world_form(number: int, seed: int) -> Form:
@@ -143,7 +143,7 @@ class Check:
         if result.is_right:
             seeds = range(1, lesson.worlds + 1)
             text = result.source.text
-            self._marking = Marking(text, maker(profile), profile, lesson, seeds)
+            self._marking = Marking(text, image_maker(profile), profile, lesson, seeds)
 
     def go(self, most_ms: int) -> dict[str, Any]:
         """Let the robot's time go on, at most by `most_ms`.

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from tiniscript.link.authority import KeyRing, RobotKey
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-from tiniscript.link.keys import BadKeys, known_seals, read, written
+from tiniscript.link.keys import BadKeys, decode_keys, encode_keys, known_seals
 from tiniscript.link.outcomes import Backlog, Event
 from tiniscript.link.requests import DeviceInfo
 from tiniscript.link.session import Session
@@ -31,16 +31,16 @@ class PageKeys(KeyRing):
 
     def __init__(self, data: bytes) -> None:
         """`data` is a file of keys, or nothing. Raises BadKeys."""
-        self.keys: list[RobotKey] = read(data) if data else []
+        self.keys: list[RobotKey] = decode_keys(data) if data else []
         self.has_changed = False
 
     def file(self) -> str:
         self.has_changed = False
-        return written(self.keys).decode("ascii")
+        return encode_keys(self.keys).decode("ascii")
 
     def add(self, data: bytes) -> int:
         """Put the keys of a file in the place of those before; return how many. Raises BadKeys."""
-        given = known_seals(read(data), self.keys)
+        given = known_seals(decode_keys(data), self.keys)
         for key in given:
             self.settle(key)
         return len(given)
@@ -73,7 +73,7 @@ class PageLine(LinkConnection):
     def robot(self) -> DeviceInfo | None:
         return self.session.robot
 
-    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+    def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         return make(self.session)
 
     def event(self, limit_s: float = 0) -> tuple[int, Event] | None:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from tiniscript.base.fixed_point import ONE
 from tiniscript.bytecode.image import checksum
 from tiniscript.library.compiling import Compiled, compile_source, for_robot
-from tiniscript.library.source_map import Map, MapLocation, made
+from tiniscript.library.source_map import Map, MapLocation, map_of_compiled
 from tiniscript.robots import load
 from tiniscript.semantics import ir
 from tiniscript.studio.recordings import (
@@ -81,10 +81,10 @@ def ready(recording: Recording) -> Ready:
     ):
         raise BadRecording("other_program")
     sensors = _shown_sensors(compiled.program)
-    places = made(compiled)
-    shows = {place.offset: sensors[its.span.start] for its, place in
+    places = map_of_compiled(compiled)
+    shows = {place.offset: sensors[part.span.start] for part, place in
              zip(compiled.places, places.places, strict=True)
-             if its.span.start in sensors}  # fmt: skip
+             if part.span.start in sensors}  # fmt: skip
     names = {device.name for device in profile.kit.readings}
     lines = compiled.source.text.split("\n")
     reads = tuple(item.offset for item in places.places if names & _words(lines, item))
@@ -98,7 +98,7 @@ def _words(lines: list[str], place: MapLocation) -> set[str]:
     return set(_WORD.findall(part[place.column - 1 : end].upper()))
 
 
-class Played(Simulation):
+class PlayedRun(Simulation):
     """The run of a recording, in `world` if it is a real robot's. It ends where the recording does.
 
     A program that waits for its button has it pushed. Raises WorldRefused.
@@ -385,9 +385,9 @@ class Played(Simulation):
         return Parting("unread", agreed, line, None, row, name, row.ms + started_ms)
 
 
-def play(ready: Ready, world: World | None = None) -> Played:
+def play(ready: Ready, world: World | None = None) -> PlayedRun:
     """Return the run, when it is over. Raises WorldRefused."""
-    played = Played(ready, world)
+    played = PlayedRun(ready, world)
     while not played.is_over:
         played.go(STEP_MS)
     return played
@@ -401,7 +401,7 @@ def _is_told(row: Row) -> bool:
 def _shown_sensors(program: ir.Program) -> dict[int, int | None]:
     """Return where each SHOW begins, and the sensor that it shows, if it is one alone."""
     shown_sensors: dict[int, int | None] = {}
-    for statement in ir.every(program):
+    for statement in ir.all_statements(program):
         if isinstance(statement, ir.Show):
             is_one = len(statement.value) == 1 and statement.value[0].op == "SENSOR"
             shown_sensors[statement.span.start] = statement.value[0].value if is_one else None

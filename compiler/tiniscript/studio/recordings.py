@@ -157,17 +157,17 @@ def line(row: Row) -> str:
     return json.dumps(row.cells, separators=(",", ":"))
 
 
-def written(first: str, rows: Iterable[Row], end_ms: int) -> str:
+def encode(first: str, rows: Iterable[Row], end_ms: int) -> str:
     """Return the whole file that begins with the line `first`."""
     return "".join((first, *(f"{line(row)}\n" for row in (*rows, Row(end_ms, END)))))
 
 
-def read(data: bytes) -> Recording:
+def decode(data: bytes) -> Recording:
     """Return the recording in a file. Raises BadRecording."""
     if len(data) > MOST_BYTES:
         raise BadRecording("too_long")
     lines = _decode_text(data).rstrip("\r\n").split("\n")
-    fields = _parsed(lines[0], 1, dict)
+    fields = _parse(lines[0], 1, dict)
     if OLDER in fields:
         raise BadRecording("older")
     if HEAD in fields and fields[HEAD] != VERSION:
@@ -231,7 +231,7 @@ def world_in(found: object) -> World:
         raise BadRecording("unreadable") from None
 
 
-def kept(world: World) -> tuple[World, str | Form]:
+def stored_form(world: World) -> tuple[World, str | Form]:
     """Return a world as the file of a run has it: a shipped one by its name, another one as a form
     that is read again."""
     if world.name in worlds.names() and worlds.load(world.name) == world:
@@ -258,7 +258,7 @@ def _parse_readings(found: object, robot: Robot) -> dict[int, list[int]]:
 
 
 def _row(written_row: str, number: int, of: str) -> Row:
-    cells = _parsed(written_row, number, list)
+    cells = _parse(written_row, number, list)
     if len(cells) not in (2, 3) or any(type(cell) is not int for cell in (cells[0], *cells[2:])):
         raise BadRecording("unreadable", number)
     row = Row(*cells)
@@ -279,7 +279,7 @@ def _decode_text(data: bytes) -> str:
     return data.decode("utf-16" if is_wide else "utf-8-sig", "replace")
 
 
-def _parsed(written_line: str, number: int, kind: type) -> Any:
+def _parse(written_line: str, number: int, kind: type) -> Any:
     try:
         result = json.loads(written_line)
     except (ValueError, RecursionError):

@@ -19,7 +19,7 @@ from tiniscript.base.source import printable
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.library.refusing import refusal
-from tiniscript.link.authority import whose
+from tiniscript.link.authority import ownership_of
 from tiniscript.link.connection import (
     DEADLINE_MS,
     FOREIGN,
@@ -44,7 +44,7 @@ from tiniscript.link.payloads import HelloReply, ReceiptReply, TrimReply
 from tiniscript.link.remote import Pressed, has_remote
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
-from tiniscript.link.trim import Trim, told
+from tiniscript.link.trim import Trim, trim_from_reply
 
 Json = dict[str, Any]
 T = TypeVar("T")
@@ -100,7 +100,7 @@ class RobotLink:
 
         Raises BadRequest, ConnectionLost.
         """
-        number, do = whole(request, "id", 0, MOST_COUNT), request.get("do")
+        number, do = whole_number(request, "id", 0, MOST_COUNT), request.get("do")
         if do == "stop":
             self.stop()
             self._answers.append({"id": number, "ok": True})
@@ -110,19 +110,19 @@ class RobotLink:
         if do != "keys" and sum(not item.is_keys for item in self._asked) >= MOST_WAITING:
             raise BadRequest
         make = _MAKERS[do](request)
-        limit_ms = whole(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
+        limit_ms = whole_number(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
         refused = self._refusal_of(request) if "image" in request else None
         if refused is not None:
             self._answers.append({"id": number, **self._failure(refused)})
             return
 
-        def limited(session: Requester) -> PendingRequest[Any]:
+        def with_limit(session: Requester) -> PendingRequest[Any]:
             pending = make(session)
             if do != "claim":  # it waits for a hand on the button
                 pending.limit_ms = limit_ms
             return pending
 
-        pending = self._connection.do(limited)
+        pending = self._connection.begin(with_limit)
         self._asked.append(_Asked(number, pending, do in ("upload", "start"), do == "keys"))
 
     def stop(self) -> None:
@@ -201,7 +201,7 @@ class RobotLink:
                 "saved": saved_name(values.saved),
             }
         if isinstance(values, TrimReply):
-            return {"ok": True, "trim": told(values).as_data()}
+            return {"ok": True, "trim": trim_from_reply(values).as_data()}
         robot = self._connection.robot
         if isinstance(values, HelloReply) and robot is not None:
             return {"ok": True, "robot": about(robot)}
@@ -211,9 +211,9 @@ class RobotLink:
         reason = reason_of(self._connection, reply)
         found = stranger(self._connection) if reason == FOREIGN else None
         if found is not None:
-            from tiniscript.link.foreign import told as told_of
+            from tiniscript.link.foreign import explain
 
-            said, advice = told_of(found, self.language)
+            said, advice = explain(found, self.language)
             return {"failure": reason, "said": said, "advice": advice}
         if reason != STATUS:
             return {"failure": reason, "said": "", "advice": ""}
@@ -255,7 +255,7 @@ def about(robot: DeviceInfo) -> Json:
         "name": printable(robot.name),
         "id": f"{robot.id:08x}",
         "robot": shipped_of_kit(robot.kit),
-        "owner": whose(robot),
+        "owner": ownership_of(robot),
         "room": robot.room,
         "is_running": robot.values.state == STATE_RUNNING,
         "has_remote": has_remote(robot),
@@ -299,15 +299,15 @@ def _trim(request: Json) -> _Make:
         result.get("is_exchanged") is True,
         result.get("is_left_reversed") is True,
         result.get("is_right_reversed") is True,
-        whole(result, "balance", -MOST_BALANCE, MOST_BALANCE),
-        whole(result, "least", 0, MOST_LEAST),
+        whole_number(result, "balance", -MOST_BALANCE, MOST_BALANCE),
+        whole_number(result, "least", 0, MOST_LEAST),
     )
     return lambda session: session.trim(trim.data())
 
 
 def _keys(request: Json) -> _Make:
-    keys = whole(request, "keys", 0, (1 << len(REMOTE_KEYS)) - 1)
-    held = Pressed(keys, *(whole(request, way, -MOST_PAD, MOST_PAD) for way in ("x", "y")))
+    keys = whole_number(request, "keys", 0, (1 << len(REMOTE_KEYS)) - 1)
+    held = Pressed(keys, *(whole_number(request, way, -MOST_PAD, MOST_PAD) for way in ("x", "y")))
     return lambda session: session.press(*held)
 
 
@@ -326,7 +326,7 @@ _MAKERS: dict[str, Callable[[Json], _Make]] = {
 }
 
 
-def whole(found: Json, name: str, low: int, high: int, usual: int | None = None) -> int:
+def whole_number(found: Json, name: str, low: int, high: int, usual: int | None = None) -> int:
     """Return a number of a request. Raises BadRequest."""
     number = found.get(name, usual)
     if type(number) is not int or not low <= number <= high:

@@ -111,7 +111,7 @@ class Simulation:
     @property
     def held_at(self) -> int | None:
         """Return the offset in front of which the program is held, or None."""
-        return self.robot.watched.held_at
+        return self.robot.firmware.held_at
 
     def _mark(self) -> None:
         marks = bytearray(MOST_CODE)
@@ -119,11 +119,11 @@ class Simulation:
             for offset in offsets:
                 if 0 <= offset < MOST_CODE:
                     marks[offset] |= bit
-        self.robot.watched.mark(bytes(marks))
+        self.robot.firmware.mark(bytes(marks))
 
     def _want(self, is_stepping: bool) -> None:
         bits = BREAKPOINT * bool(self.marks.breakpoints) | PART * bool(is_stepping)
-        self.robot.watched.want(bits)
+        self.robot.firmware.want(bits)
 
     def _begin_rows(self) -> None:
         self._rows = Rows()
@@ -229,7 +229,7 @@ class Simulation:
         """Return what is to be seen, and what has happened since the last time."""
         robot = self.robot
         x_cm, y_cm, heading = robot.pose
-        touched = robot.driving.touched(robot.pose)
+        touched = robot.driving.touch_point(robot.pose)
         kit = robot.profile.kit
         readings = [robot.sensing.look(number, robot.pose) for number in range(len(kit.sensors))]
         return {
@@ -249,7 +249,7 @@ class Simulation:
             "at": robot.at if self.held_at is None else self.held_at,
             "places": robot.places,
             "is_held": self.held_at is not None,
-            "variables": [value / ONE for value in robot.watched.variables(self.marks.variables)],
+            "variables": [value / ONE for value in robot.firmware.variables(self.marks.variables)],
             "readings": [{"value": value / ONE, "text": device.text(value)}
                          for device, value in zip(kit.sensors, readings, strict=True)],
             "events": [[event.time_ms, event.text, event.at] for event in self.take_events()],

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from tiniscript.robots import decoded
+from tiniscript.robots import decode_profile
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.refusals import describe
 from tiniscript.studio import checking, playing, recordings
@@ -35,7 +35,7 @@ def _world(where: Any) -> World:
     if "form" in where:
         return read_world(toml_of(where["form"]), "")
     world: World = _lessons().world(where["lesson"], where["seed"])
-    return recordings.kept(world)[0]
+    return recordings.stored_form(world)[0]
 
 
 def _power_on(fields: Answer, data: bytes) -> Answer:
@@ -55,7 +55,7 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
         if fields.get("plays"):
             assert _opened is not None, "no run was opened"
             beside = None if _opened.recording.is_virtual else _world(where)
-            _simulation = playing.Played(_opened, beside, marks)
+            _simulation = playing.PlayedRun(_opened, beside, marks)
         elif "until_ms" in where:
             judged = (fields["robot"], where["lesson"], where["seed"], where["until_ms"])
             _simulation = _lessons().JudgedRun(*judged, data, marks)
@@ -88,7 +88,7 @@ def _open_world(fields: Answer, data: bytes) -> Answer:
     """Return the form of a world's file, `data`, or why it is none."""
     name = fields["name"]
     try:
-        world = read_world(decoded(data, name), name.removesuffix(".toml"))
+        world = read_world(decode_profile(data, name), name.removesuffix(".toml"))
         return {"world": form_of(world)}
     except ProfileRefused as refused:
         return {"refused": describe(WorldRefused(*refused.reasons), fields["language"])}
@@ -109,7 +109,7 @@ def _open_run(fields: Answer, data: bytes) -> Answer:
     """Return what the page needs to play the file of a run, `data`, or why it cannot be played."""
     global _opened
     try:
-        _opened = playing.ready(recordings.read(data))
+        _opened = playing.ready(recordings.decode(data))
     except recordings.BadRecording as bad:
         return {"what": bad.reason, "line": bad.line}
     recording = _opened.recording
@@ -130,12 +130,14 @@ def _write_run(fields: Answer, data: bytes) -> Answer:
     robot = checking.profile_of(fields["robot"])
     rows = recordings.from_rows(fields["rows"])
     world = (
-        recordings.kept(_world(fields["world"]))[1] if fields["of"] == recordings.VIRTUAL else None
+        recordings.stored_form(_world(fields["world"]))[1]
+        if fields["of"] == recordings.VIRTUAL
+        else None
     )
     is_by_button = fields.get("is_by_button", False)
     first = recordings.head(fields["of"], fields["text"], robot, int(fields["program"], 16),
                             world=world, is_by_button=is_by_button)  # fmt: skip
-    return {"file": recordings.written(first, rows, fields["end_ms"])}
+    return {"file": recordings.encode(first, rows, fields["end_ms"])}
 
 
 _check_of_lesson: Any = None  # the one that goes on

@@ -13,7 +13,7 @@ from typing import Any
 from tiniscript.base import languages
 from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
-from tiniscript.library.named_robot import renamed
+from tiniscript.library.named_robot import rename_robot
 from tiniscript.studio import checking
 from tiniscript.studio.block_form import beginning, data_of, from_data, in_order, size_of
 from tiniscript.studio.block_printing import print_blocks
@@ -63,7 +63,7 @@ def _loose(fields: Answer, data: bytes) -> int:
 
 
 def _open(fields: Answer, data: bytes) -> Answer:
-    return _post_answer(checking.opened(data, fields["robot"], fields["language"]))
+    return _post_answer(checking.open_text(data, fields["robot"], fields["language"]))
 
 
 def _line(fields: Answer, data: bytes) -> Answer:
@@ -91,7 +91,7 @@ def _text(fields: Answer, data: bytes) -> Answer:
 
 def _rename(fields: Answer, data: bytes) -> Answer:
     """Return a program that names its robot with the robot that somebody has chosen in the page."""
-    return {"text": renamed(data.decode(), fields["robot"])}
+    return {"text": rename_robot(data.decode(), fields["robot"])}
 
 
 def _learn(fields: Answer, data: bytes) -> Answer:

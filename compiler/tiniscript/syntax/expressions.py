@@ -40,7 +40,7 @@ class ExpressionParser:
         while cursor.take_inner(","):
             arguments.append(self.argument())
         if not cursor.take_inner(")"):
-            self.no_close(bracket)
+            self.report_missing_close(bracket)
         return tuple(arguments)
 
     def argument(self) -> Argument:
@@ -88,8 +88,8 @@ class ExpressionParser:
         elif kind == "(":
             read.wait(OPEN, "(", token, cursor.i)
             read.brackets += 1
-        elif not self.needless_plus(token, read):
-            self.no_value(token)
+        elif not self.report_needless_plus(token, read):
+            self.report_missing_value(token)
         cursor.i += 1
         return False
 
@@ -131,7 +131,7 @@ class ExpressionParser:
         elif token.text in FUNCTIONS:
             self.begin_call(token, known, read)
         else:
-            self.no_value(token)
+            self.report_missing_value(token)
         return False
 
     def begin_call(self, name: Token, function: Word, read: Postfix) -> None:
@@ -145,7 +145,7 @@ class ExpressionParser:
         read.brackets += 1
         cursor.i += 1
         if cursor.take_inner(")"):
-            self.wrong_count(function, 0, cursor.span_from(name))
+            self.report_wrong_count(function, 0, cursor.span_from(name))
 
     def operator(self, read: Postfix) -> bool:
         """Read what may follow an operand; return whether another operand is wanted then."""
@@ -172,14 +172,14 @@ class ExpressionParser:
                     function, count = WORDS[bracket.name], bracket.arguments + 1
                     span = cursor.span_from(bracket.token)
                     if count != len(function.arguments):
-                        self.wrong_count(function, count, span)
+                        self.report_wrong_count(function, count, span)
                     read.parts.append(Part(bracket.name, 0, *span))
                 continue
             if token.kind == "," and bracket.name != "(":
                 bracket.arguments += 1
                 cursor.take_inner(",")
                 return True
-            self.no_close(bracket.index)
+            self.report_missing_close(bracket.index)
 
     def binary(self, token: Token, precedence: int, name: str, read: Postfix) -> None:
         waiting = read.waiting
@@ -193,13 +193,13 @@ class ExpressionParser:
 
     # -- what is wrong ------------------------------------------------------------------------
 
-    def wrong_count(self, word: Word, count: int, span: Span) -> NoReturn:
+    def report_wrong_count(self, word: Word, count: int, span: Span) -> NoReturn:
         example = "" if count else word.example
         self.reporter.fail(codes.ARGUMENT_COUNT, span, word=word.text, usage=word.usage,
                            example=example, wanted=str(len(word.arguments)),
                            found=str(count))  # fmt: skip
 
-    def needless_plus(self, token: Token, read: Postfix) -> bool:
+    def report_needless_plus(self, token: Token, read: Postfix) -> bool:
         """A plus before a value says nothing; return whether it is one.
 
         Not that of `X = +1`: `X += 1` may be meant.
@@ -218,15 +218,15 @@ class ExpressionParser:
         )
         return True
 
-    def no_value(self, token: Token) -> NoReturn:
+    def report_missing_value(self, token: Token) -> NoReturn:
         """A value is expected, and this token begins none."""
         known = WORDS.get(token.text) if token.kind is WORD else None
-        self.no_odd(token)
+        self.reject_unknown_character(token)
         if self.ends_above(token):
             last = self.cursor.last
             self.reporter.fail(codes.MISSING_VALUE, last.span, before=last.text)
         if known is not None:
-            self.no_unit(token)
+            self.reject_unit(token)
             by_role = {"forever": codes.FOREVER_NOT_HERE, "until": codes.UNTIL_ALONE}
             other = codes.NO_VALUE if known.role.is_instruction else codes.RESERVED
             self.reporter.fail(by_role.get(known.role.name, other), token.span, word=token.text)
@@ -251,7 +251,7 @@ class ExpressionParser:
         cursor.i = cursor.before(k) + 1
         return True
 
-    def no_odd(self, token: Token) -> None:
+    def reject_unknown_character(self, token: Token) -> None:
         """A token that the language does not have."""
         if token.kind is not ODD:
             return
@@ -263,14 +263,14 @@ class ExpressionParser:
             code = codes.CHECKSUM_FORM
         self.reporter.fail(code, token.span, found=token.text)
 
-    def no_unit(self, token: Token) -> None:
+    def reject_unit(self, token: Token) -> None:
         """CM or DEG anywhere but after the whole of a value."""
         if token.kind is WORD and token.text in WAYS:
-            self.wrong_unit(token.text, token.span)
+            self.report_wrong_unit(token.text, token.span)
             raise Failed
 
-    def wrong_unit(self, unit: str, span: Span) -> None:
-        first, second = (word for word, its in UNIT_OF.items() if its == unit)
+    def report_wrong_unit(self, unit: str, span: Span) -> None:
+        first, second = (word for word, unit_of in UNIT_OF.items() if unit_of == unit)
         called = self.cursor.source[Span(0, span.start)].upper().rpartition(f"{second}(")
         word = second if called[1] and not set("\n;") & set(called[2]) else first
         example = f"{word}({WAYS[unit].sample}, 60)"
@@ -278,7 +278,7 @@ class ExpressionParser:
             codes.UNIT_PLACE, span, found=unit, first=first, second=second, example=example
         )
 
-    def no_semicolon(self, bracket: int) -> None:
+    def reject_semicolon(self, bracket: int) -> None:
         """A `;` between two values, where brackets are closed after the second one."""
         cursor = self.cursor
         tokens, k = cursor.tokens, cursor.i
@@ -314,7 +314,7 @@ class ExpressionParser:
         is_name = first.kind is WORD and not is_unit
         return first if first.kind in SIGNS or is_name else None
 
-    def no_names_alone(self, bracket: int, more: Token, names: Sequence[str]) -> None:
+    def report_not_only_names(self, bracket: int, more: Token, names: Sequence[str]) -> None:
         """`DEF SIDE(SIZE = 5)`, `DEF SIDE(SIZE SPEED)`: the whole header is shown."""
         tokens = self.cursor.tokens
         header = Span(tokens[bracket - 2].start, self.cursor.last.end)
@@ -325,12 +325,12 @@ class ExpressionParser:
         diagnostic = Diagnostic(code, more.span, {"name": name, "fix": fix}, header, repair)
         self.reporter.diagnostics.append(diagnostic)
 
-    def no_close(self, bracket: int) -> NoReturn:
+    def report_missing_close(self, bracket: int) -> NoReturn:
         """In brackets a comma or their end is expected."""
         token, before = self.cursor.inner(), self.cursor.last
-        self.no_semicolon(bracket)
-        self.no_unit(token if before.text not in WAYS else before)
-        self.no_odd(token)
+        self.reject_semicolon(bracket)
+        self.reject_unit(token if before.text not in WAYS else before)
+        self.reject_unknown_character(token)
         if token.kind in (NUMBER, WORD, "(") and not self.ends_above(token):
             word = self.cursor.tokens[bracket - 1].text
             usage = {"usage": WORDS[word].usage} if word in WORDS else {}

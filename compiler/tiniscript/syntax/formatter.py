@@ -27,7 +27,7 @@ _WORD_OPERATORS = frozenset(("AND", "OR", "NOT"))
 _BEFORE_VALUE = _WORD_OPERATORS | SIGNS | {"(", ","}
 
 
-def formatted(source: Source) -> str:
+def format_source(source: Source) -> str:
     """Return the program in the canonical layout: the same instructions, the same comments.
 
     Formatting the result again changes nothing.
@@ -66,7 +66,7 @@ def pieces_of(scanned: Scan) -> list[Piece]:
     brackets = 0  # open in it
     line = 0
     line_is_empty, after_blank = True, False
-    for token in sorted((*scanned.tokens[:-1], *scanned.comments), key=lambda it: it.start):
+    for token in sorted((*scanned.tokens[:-1], *scanned.comments), key=lambda item: item.start):
         kind = token.kind
         if kind is NEWLINE:
             after_blank = after_blank or (line_is_empty and not is_open)
@@ -79,7 +79,9 @@ def pieces_of(scanned: Scan) -> list[Piece]:
             is_open = False
             continue
         is_comment = kind == "comment"
-        is_behind = is_comment and any(it.tokens and it.last_line == line for it in pieces[-1:])
+        is_behind = is_comment and any(
+            item.tokens and item.last_line == line for item in pieces[-1:]
+        )
         if not is_open and not is_behind:
             pieces.append(Piece(line, after_blank))
             is_open, brackets, after_blank = not is_comment, 0, False

@@ -19,7 +19,7 @@ def names_in(text: str) -> frozenset[str]:
     return frozenset(re.findall(r"\w+", text.upper()))
 
 
-def numbered(text: str, stem: str) -> Iterator[str]:
+def numbered_names(text: str, stem: str) -> Iterator[str]:
     """Yield `stem`_2, `stem`_3 … without those that the text has."""
     names = (f"{stem}_{k}" for k in count(2))
     return (name for name in names if name not in names_in(text))
@@ -29,9 +29,9 @@ def in_place_of(text: str, word: str) -> str:
     """Return a name for what was called `word`, a word of the language: F_1, or F_2 beside F_1."""
     right = other_name(word)
     is_free = right not in names_in(text)
-    return right if is_free else next(numbered(text, right.removesuffix("_1")))
+    return right if is_free else next(numbered_names(text, right.removesuffix("_1")))
 
 
 def free_number_name(text: str) -> str:
     """Return a name for a variable that gets a number: N, or N_2 beside an N."""
-    return "N" if "N" not in names_in(text) else next(numbered(text, "N"))
+    return "N" if "N" not in names_in(text) else next(numbered_names(text, "N"))

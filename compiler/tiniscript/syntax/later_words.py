@@ -12,27 +12,29 @@ from tiniscript.base.kit import KIT_WORDS_SINCE, Kit
 from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.syntax.free_names import numbered
+from tiniscript.syntax.free_names import numbered_names
 from tiniscript.syntax.lexer import END, NEWLINE, WORD, Token, scan
 
 
-def in_program(text: str, kit: Kit) -> Kit:
+def kit_for_text(text: str, kit: Kit) -> Kit:
     """Return the kit as a program has it: without the words that have given way there."""
-    return among(scan(text).tokens, kit)
+    return kit_for_tokens(scan(text).tokens, kit)
 
 
-def among(tokens: Sequence[Token], kit: Kit) -> Kit:
+def kit_for_tokens(tokens: Sequence[Token], kit: Kit) -> Kit:
     """Return the kit as a program with these tokens has it."""
     later = {reading.name for reading in kit.readings}.difference(kit.names)
     given = later.intersection(own_words(tokens))
     return kit._replace(given=frozenset(given)) if given else kit
 
 
-def given_way(tokens: Sequence[Token], kit: Kit, source: Source) -> list[Diagnostic]:
+def report_given_way(tokens: Sequence[Token], kit: Kit, source: Source) -> list[Diagnostic]:
     """Return a warning for each word that has given way."""
     return [
         Diagnostic(codes.GIVES_WAY, token.span, {
-            "name": name, "since": KIT_WORDS_SINCE[name], "other": next(numbered(source.text, name))
+            "name": name,
+            "since": KIT_WORDS_SINCE[name],
+            "other": next(numbered_names(source.text, name)),
         })
         for name, token in own_words(tokens).items()
         if name in kit.given

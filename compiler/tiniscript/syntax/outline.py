@@ -21,7 +21,7 @@ from tiniscript.syntax.parser import Parser
 from tiniscript.syntax.reporter import Failed, Reporter
 
 
-class Known(NamedTuple):
+class KnownNames(NamedTuple):
     """The names of a program: what may be a value, an instruction, and one with so many values."""
 
     values: frozenset[str]
@@ -48,7 +48,7 @@ class Failure(NamedTuple):
     at: int
 
 
-def outline(words: Sequence[tuple[str, str]], known: Known) -> list[Item] | Failure:
+def outline(words: Sequence[tuple[str, str]], known: KnownNames) -> list[Item] | Failure:
     """Return the items of a line of tokens (kind, text), or where it is wrong."""
     tokens = [Token(kind, text, k, k + 1) for k, (kind, text) in enumerate(words)]
     tokens.append(Token(END, "", len(tokens), len(tokens)))
@@ -82,7 +82,7 @@ class _Expressions(ExpressionParser):
 
 
 class _Line(Parser):
-    def __init__(self, tokens: list[Token], known: Known) -> None:
+    def __init__(self, tokens: list[Token], known: KnownNames) -> None:
         super().__init__(Source(""), Scan(tokens, [], []))
         self.reporter = _Silent([])
         self.blocks = _Alone(self.reporter)

@@ -102,7 +102,7 @@ class Parser:
         cursor.i += 2
         if word.text == "PING":
             token, *rest = cursor.tokens[cursor.i :]
-            if token.text != "CHECK_CONNECTION" or any(it.kind not in AT_END for it in rest):
+            if token.text != "CHECK_CONNECTION" or any(item.kind not in AT_END for item in rest):
                 self.reporter.report(codes.PING_ALONE, word.span)
             cursor.i = len(cursor.tokens) - 1
         elif word.text not in ("SI", "SB"):
@@ -115,7 +115,7 @@ class Parser:
         tokens = cursor.tokens
         token = tokens[cursor.i]
         if token.kind is not WORD:
-            self.expressions.no_odd(token)
+            self.expressions.reject_unknown_character(token)
             code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
             self.reporter.fail(code, token.span, found=token.text)
         following = tokens[cursor.i + 1]
@@ -129,7 +129,7 @@ class Parser:
         else:
             _RULES.get(text, Parser.command)(self, token)
         if tokens[cursor.i].kind not in AT_END:
-            self.no_separator(token)
+            self.report_missing_separator(token)
 
     # -- simple instructions ----------------------------------------------------------------
 
@@ -161,7 +161,7 @@ class Parser:
         if following.kind == "(":
             arguments = self.arguments_of(word, known)
         elif known is not None and known.arguments:
-            self.no_bracket(known)
+            self.report_missing_bracket(known)
         if tokens[cursor.i].kind not in AT_END:
             until = self.until()
         span = cursor.span_from(word)
@@ -169,7 +169,7 @@ class Parser:
 
     def leave(self, word: Token) -> None:
         self.cursor.i += 1
-        self.no_arguments(word)
+        self.reject_arguments(word)
         self.blocks.here.append(Break(word.span))
 
     def own_name(self, word: Token, following: Token) -> None:
@@ -184,12 +184,12 @@ class Parser:
 
     def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
         if known is not None and not known.arguments:
-            self.no_arguments(word)
+            self.reject_arguments(word)
         arguments = self.expressions.arguments()
         if word.text in self.defs:
-            self.no_units_in_call(arguments, word)
+            self.reject_units_in_call(arguments, word)
         else:
-            self.no_units(arguments[known is not None and known.role.is_move :])
+            self.reject_units(arguments[known is not None and known.role.is_move :])
         return arguments
 
     def until(self) -> Argument | None:
@@ -256,14 +256,14 @@ class Parser:
             if not cursor.take_inner(",") and (odd is None or odd.kind is not WORD):
                 break
         if not cursor.take_inner(")"):
-            self.expressions.no_close(bracket)
+            self.expressions.report_missing_close(bracket)
         if more is not None:
-            self.expressions.no_names_alone(bracket, more, [each.name for each in found])
+            self.expressions.report_not_only_names(bracket, more, [each.name for each in found])
 
     def task(self, word: Token) -> None:
         cursor = self.cursor
         cursor.i += 1
-        self.no_arguments(word)
+        self.reject_arguments(word)
         name = cursor.token
         while cursor.token.kind in (WORD, NUMBER):
             cursor.i += 1
@@ -280,7 +280,7 @@ class Parser:
             if word.text == "ELSEIF":
                 head = self.argument_of(word)
             else:
-                self.no_arguments(word)
+                self.reject_arguments(word)
         finally:
             span = self.cursor.span_from(word)
             if block is None or block.word != "IF":
@@ -295,14 +295,14 @@ class Parser:
 
     def block_end(self, word: Token) -> None:
         self.cursor.i += 1
-        self.no_arguments(word)
+        self.reject_arguments(word)
         self.close(word)
 
     def close(self, word: Token) -> None:
         """End the block that a word ends, and those that are still open in it."""
         blocks, begun = self.blocks, ENDS[word.text]
         if not any(block.word == begun for block in blocks.open):
-            if self.crossed(word):
+            if self.merge_swapped_ends(word):
                 return
             around = {}
             if blocks.open:  # it may be the end of that
@@ -324,13 +324,15 @@ class Parser:
             blocks.end(word.span)
         blocks.end(word.span)
 
-    def crossed(self, late: Token) -> bool:
+    def merge_swapped_ends(self, late: Token) -> bool:
         """Whether an end is that of a block that another end has closed: these two are swapped."""
         diagnostics, depth = self.reporter.diagnostics, len(self.blocks.open)
         ended = (
-            it for it in self.early if ENDS[diagnostics[it[0]].values["right"]] == ENDS[late.text]
+            item
+            for item in self.early
+            if ENDS[diagnostics[item[0]].values["right"]] == ENDS[late.text]
         )
-        place = next((it for it in ended if it[1] == depth), None)
+        place = next((item for item in ended if item[1] == depth), None)
         if place is None:
             return False
         self.early.remove(place)
@@ -345,19 +347,19 @@ class Parser:
         cursor, known = self.cursor, WORDS[word.text]
         bracket = cursor.token
         if bracket.kind != "(":
-            self.no_bracket(known)
+            self.report_missing_bracket(known)
         arguments = self.expressions.arguments()
         if len(arguments) != 1:
-            self.expressions.wrong_count(known, len(arguments), cursor.span_from(bracket))
-        self.no_units(arguments)
+            self.expressions.report_wrong_count(known, len(arguments), cursor.span_from(bracket))
+        self.reject_units(arguments)
         return arguments[0]
 
-    def no_units(self, arguments: Sequence[Argument]) -> None:
+    def reject_units(self, arguments: Sequence[Argument]) -> None:
         """CM and DEG stand after the way of a move alone."""
         for unit in (argument.unit for argument in arguments if argument.unit is not None):
-            self.expressions.wrong_unit(unit.op, Span(unit.start, unit.end))
+            self.expressions.report_wrong_unit(unit.op, Span(unit.start, unit.end))
 
-    def no_units_in_call(self, arguments: Sequence[Argument], word: Token) -> None:
+    def reject_units_in_call(self, arguments: Sequence[Argument], word: Token) -> None:
         """The unit of a value of a DEF stands in its body."""
         texts = (self.cursor.source[argument.span] for argument in arguments)
         fix = f"{word.text}({', '.join(texts)})"
@@ -365,7 +367,7 @@ class Parser:
             self.reporter.report(codes.UNIT_IN_CALL, Span(unit.start, unit.end),
                                  name=word.text, found=unit.op, right=fix)  # fmt: skip
 
-    def no_arguments(self, word: Token) -> None:
+    def reject_arguments(self, word: Token) -> None:
         bracket = self.cursor.token
         if bracket.kind == "(":
             self.reporter.fail(
@@ -374,21 +376,21 @@ class Parser:
 
     # -- what is wrong ------------------------------------------------------------------------
 
-    def no_bracket(self, known: Word) -> None:
+    def report_missing_bracket(self, known: Word) -> None:
         """After a word its values are expected, in brackets."""
         token = self.cursor.token
-        self.expressions.no_odd(token)
+        self.expressions.reject_unknown_character(token)
         word = self.cursor.last
         self.reporter.fail(codes.MISSING_OPEN, word.span, word=known.text, usage=known.usage)
 
-    def no_separator(self, first: Token) -> None:
+    def report_missing_separator(self, first: Token) -> None:
         """The end of an instruction is expected."""
         cursor = self.cursor
         token = cursor.token
-        self.expressions.no_odd(token)
+        self.expressions.reject_unknown_character(token)
         if token.kind == ")":
             self.reporter.fail(codes.EXTRA_CLOSE, token.span)
-        self.expressions.no_unit(token)
+        self.expressions.reject_unit(token)
         header = first.text in (*HEADERS, "DEF", "ELSE", "ELSEIF")
         code = codes.HEADER_SEPARATOR if header else codes.MISSING_SEPARATOR
         before = " ".join(cursor.source[cursor.span_from(first)].split())

@@ -11,7 +11,7 @@ from ipaddress import ip_address
 from zeroconf import Error, NonUniqueNameException, ServiceInfo, Zeroconf
 
 from tiniscript.link.port_names import TCP
-from tiniscript.link.transports.network import LONGEST, SERVICE, asked
+from tiniscript.link.transports.network import LONGEST, SERVICE, query_service
 from tiniscript.virtual.directory import LOCAL
 
 ASK_MS = 2500  # timeout for a robot that has the name: for a second it may say nothing twice
@@ -36,7 +36,7 @@ class Announcement:
                 addresses=[ip_address(LOCAL).packed], server=f"tini-{number}.local.",
             )  # fmt: skip
             # two programs of one computer may miss each other's answers while they register
-            if asked(self._network, info.name, ASK_MS) is not None:
+            if query_service(self._network, info.name, ASK_MS) is not None:
                 raise NonUniqueNameException
             self._network.register_service(info)
         except Error:

@@ -30,7 +30,7 @@ class Computer:
         the session hears and says as much as if nothing had been held.
         """
         for _ in range(milliseconds):
-            watched = self.robot.watched
+            watched = self.robot.firmware
             if self._until_ms is not None and watched.held_at is None:
                 now_ms, data = self._until_ms, b""
             else:

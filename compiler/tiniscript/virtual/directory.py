@@ -21,7 +21,7 @@ LOCAL = "127.0.0.1"
 PREFIX = f"socket://{LOCAL}:"
 
 
-class Running(NamedTuple):
+class RunningRobot(NamedTuple):
     """A robot: its port's address, the names of its profile and its world, and its own name.
 
     `terminal` is the path of its pseudo-terminal, if it has one. `verb` is the command that runs
@@ -36,7 +36,7 @@ class Running(NamedTuple):
     verb: str = "robot"
 
 
-def announce(running: Running) -> Path | None:
+def announce(running: RunningRobot) -> Path | None:
     """Let others find a robot. Return the file, or None where it cannot be written."""
     path = _path(running.address)
     with contextlib.suppress(OSError):  # there may be no folder yet
@@ -50,9 +50,9 @@ def withdraw(path: Path | None) -> None:
             path.unlink()
 
 
-def running() -> list[Running]:
+def running_robots() -> list[RunningRobot]:
     """Return the running robots. Opens none of them: that would count as a client."""
-    result: list[Running] = []
+    result: list[RunningRobot] = []
     paths: list[Path] = []
     with contextlib.suppress(OSError):
         paths = sorted(_folder().glob("*.json"))
@@ -76,15 +76,15 @@ def is_of_another(port: str) -> bool:
     return _read(_path(address)) is not None and peers.is_of_another(_number_of(address))
 
 
-def for_all() -> list[Running]:
+def for_all() -> list[RunningRobot]:
     """Return the robots to which any command may upload a program."""
-    return [item for item in running() if item.verb == "robot"]
+    return [item for item in running_robots() if item.verb == "robot"]
 
 
 def is_virtual(port: str) -> bool:
     """Return whether a port belongs to a running virtual robot."""
     known = {port, same_for_all(port)}
-    return any(known & {item.address, item.terminal} for item in running())
+    return any(known & {item.address, item.terminal} for item in running_robots())
 
 
 def is_gone(port: str) -> bool:
@@ -93,10 +93,10 @@ def is_gone(port: str) -> bool:
     return number != port.lower() and number.isdecimal() and not _is_listening(PREFIX + number)
 
 
-def _read(path: Path) -> Running | None:
+def _read(path: Path) -> RunningRobot | None:
     try:
         fields = json.loads(contents(path, FILE_BYTES))
-        robot = Running(*(fields[key] for key in Running._fields))
+        robot = RunningRobot(*(fields[key] for key in RunningRobot._fields))
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return None
     if not all(isinstance(item, str) and item.isprintable() for item in robot):

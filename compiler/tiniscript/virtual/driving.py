@@ -11,9 +11,9 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.robots.kinematics import Pose, moved, points
+from tiniscript.robots.kinematics import Pose, move_pose, points
 from tiniscript.robots.profile import Body
-from tiniscript.virtual.geometry import Point, Segment, between, distance
+from tiniscript.virtual.geometry import Point, Segment, distance, gap_between
 
 TOUCH_CM = 0.3  # a smaller distance is contact
 STEP_MS = 10.0  # time step of a robot in contact
@@ -67,7 +67,7 @@ class Hull:
             # far away is known more quickly
             if best is not None and distance(obstacle, middle_x, middle_y) >= best.gap_cm + reach:
                 continue
-            apart, body_point, obstacle_point = between(spine, obstacle)
+            apart, body_point, obstacle_point = gap_between(spine, obstacle)
             gap = apart - self.radius_cm
             if best is None or gap < best.gap_cm:
                 best = Contact(gap, body_point, obstacle_point)
@@ -110,14 +110,14 @@ class Driving:
         self._near_from: Pose | None = None  # to a robot that is here
         self._kept_ms = 0.0  # when it was there
         self._free_cm = 0.0  # no point of the body touches anything before it has gone so far
-        self._is_touching = self.touched(start) is not None
+        self._is_touching = self.touch_point(start) is not None
 
     def is_blocked(self) -> bool:
         """Whether the robot is inside an obstacle."""
         contact = self.hull.contact(self._pose, self.obstacles)
         return contact is not None and contact.gap_cm < 0
 
-    def touched(self, pose: Pose) -> Point | None:
+    def touch_point(self, pose: Pose) -> Point | None:
         """Return the place where a robot at `pose` touches an obstacle, or None."""
         contact = self._contact(pose)
         return contact.obstacle_point if contact is not None and contact.gap_cm < TOUCH_CM else None
@@ -169,7 +169,7 @@ class Driving:
                 self.corners.append(pose)
         if len(self.corners) > KEPT:
             self.corners = [*self.corners[:-1:2], self.corners[-1]]
-        is_touching = self._free_cm < TOUCH_CM and self.touched(self._pose) is not None
+        is_touching = self._free_cm < TOUCH_CM and self.touch_point(self._pose) is not None
         self.bumps += is_touching and not self._is_touching
         self._is_touching = is_touching
 
@@ -198,7 +198,7 @@ class Driving:
                 free_cm -= speed * step_ms
                 is_known = False
             else:
-                expected = moved(self.body, pose, *self._pushed_wheel_speeds(pose), step_ms)
+                expected = move_pose(self.body, pose, *self._pushed_wheel_speeds(pose), step_ms)
                 pushed, free_cm = self._slide_along(pose, expected)
                 way.append(pushed)
                 is_known = True

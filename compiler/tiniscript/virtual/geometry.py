@@ -23,7 +23,7 @@ class Segment(NamedTuple):
     b: Point
 
 
-def joined(points: list[Point]) -> list[Segment]:
+def join_points(points: list[Point]) -> list[Segment]:
     """Return the lines from point to point."""
     return [Segment(a, b) for a, b in pairwise(points)]
 
@@ -65,7 +65,7 @@ def crosses(one: Segment, other: Segment) -> bool:
     return (vx * (ay - cy) - vy * (ax - cx)) * (vx * (by - cy) - vy * (bx - cx)) < 0
 
 
-def between(one: Segment, other: Segment) -> tuple[float, Point, Point]:
+def gap_between(one: Segment, other: Segment) -> tuple[float, Point, Point]:
     """Return how far two segments are apart, and the two points that are nearest.
 
     Where they cross, the distance is 0 and the points are any.
@@ -85,7 +85,7 @@ def between(one: Segment, other: Segment) -> tuple[float, Point, Point]:
     return apart, nearest(one, *end), end
 
 
-def seen(
+def nearest_seen(
     segments: Iterable[Segment], eye: Point, heading: float, half_angle: float
 ) -> float | None:
     """Return how near segments come to an eye inside its cone, or None where none is in it.

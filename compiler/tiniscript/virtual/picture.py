@@ -27,7 +27,7 @@ RULERS = (10, 20, 50, 100, 200, 500, 1000)  # centimetres
 
 def png(world: World, hull: Hull, corners: Sequence[Pose], pose: Pose, title: str) -> bytes:
     """Return the picture; straight lines join `corners`, and `pose` is where the robot is now."""
-    return _Sheet(world).drawn(hull, corners, pose, title)
+    return _Sheet(world).render(hull, corners, pose, title)
 
 
 class _Sheet:
@@ -51,7 +51,7 @@ class _Sheet:
             self.margin + (self.world.height_cm - y) * self.scale,
         )
 
-    def drawn(self, hull: Hull, corners: Sequence[Pose], pose: Pose, title: str) -> bytes:
+    def render(self, hull: Hull, corners: Sequence[Pose], pose: Pose, title: str) -> bytes:
         world, draw = self.world, self.draw
         top_left, bottom_right = Point(0, world.height_cm), Point(world.width_cm, 0)
         draw.rectangle((*self.at(top_left), *self.at(bottom_right)), fill=FLOOR)

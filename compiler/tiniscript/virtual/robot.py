@@ -358,7 +358,7 @@ class VirtualRobot:
         return result or ([] if self.at is None else [self.at])
 
     @property
-    def watched(self) -> Firmware:
+    def firmware(self) -> Firmware:
         """The firmware, for who holds its program and looks at it."""
         return self._firmware
 
@@ -368,6 +368,6 @@ class VirtualRobot:
         self._settle()
 
     @property
-    def held(self) -> str:
+    def saved_state(self) -> str:
         """Return where its program is held: NOTHING, MEMORY, SAVING or STORED."""
         return saved_name(self._firmware.call("saved"))

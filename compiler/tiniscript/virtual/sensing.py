@@ -15,7 +15,7 @@ from tiniscript.base.kit import Device
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Place, Robot
 from tiniscript.virtual.driving import TOUCH_CM, Hull
-from tiniscript.virtual.geometry import Point, Segment, crosses, distance, joined, seen
+from tiniscript.virtual.geometry import Point, Segment, crosses, distance, join_points, nearest_seen
 from tiniscript.virtual.world import World
 
 NEAREST_CM, FARTHEST_CM = 2.0, 400.0  # of an HC-SR04
@@ -48,7 +48,7 @@ class Sensing:
         self.lines = [
             (segment, line.width_cm / 2)
             for line in world.lines
-            for segment in joined(list(line.points))
+            for segment in join_points(list(line.points))
         ]
         self.hull = Hull(robot.body)
         self._chance = chance or Random(1)
@@ -78,9 +78,9 @@ class Sensing:
         place = self.robot.body.places.get(device.name)
         if place is None:
             return _idle_reading(device)
-        return _in_range(device, self._found(device, place, pose, noise))
+        return _in_range(device, self._noisy_reading(device, place, pose, noise))
 
-    def _found(self, device: Device, place: Place, pose: Pose, noise: float) -> float:
+    def _noisy_reading(self, device: Device, place: Place, pose: Pose, noise: float) -> float:
         """Return a reading in thousandths, which may be out of range."""
         eye, heading = _sensor_pose(place, pose)
         span = device.high - device.low
@@ -94,7 +94,7 @@ class Sensing:
         return float(device.high if is_there else device.low)
 
     def _distance_cm(self, eye: Point, heading: float) -> float:
-        nearest = seen(self.obstacles, eye, heading, CONE)
+        nearest = nearest_seen(self.obstacles, eye, heading, CONE)
         return FARTHEST_CM if nearest is None else min(max(nearest, NEAREST_CM), FARTHEST_CM)
 
     def _light(self, eye: Point, heading: float) -> float:

@@ -224,14 +224,14 @@ class SimulatorThread:
         self._is_pushed = self._is_over = False
         self._bug: BaseException | None = None
         names = robot.profile.name, robot.world.name
-        self._note = directory.announce(directory.Running(self.port, *names, "", "", verb))
+        self._note = directory.announce(directory.RunningRobot(self.port, *names, "", "", verb))
         self._thread = Thread(target=self._run, name="virtual robot", daemon=True)
 
     def push(self) -> None:
         """Have the thread push the start button, and let it go."""
         self._is_pushed = True
 
-    def took_turn(self) -> None:
+    def on_turn(self) -> None:
         """The thread calls this when the robot has gone on, and when it is switched off."""
 
     def close(self) -> None:
@@ -250,9 +250,9 @@ class SimulatorThread:
                     self._is_pushed = False
                     self.simulator.push()
                 self.simulator.turn(self.turn_s)
-                self.took_turn()
+                self.on_turn()
             self.robot.switch_off()
-            self.took_turn()
+            self.on_turn()
         except BaseException as bug:
             self._bug = bug
             self.transports.close()

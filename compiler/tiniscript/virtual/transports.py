@@ -85,7 +85,7 @@ class Transports:
 
     def receive(self) -> bytes:
         """Return what has come. Lets clients in and out."""
-        data = self._received()
+        data = self._receive_from_port()
         first = self._let_in()
         return data if first is None else first
 
@@ -94,7 +94,7 @@ class Transports:
         now_s = monotonic()
         return any(caller.ends_with_stop(now_s) for caller in self._callers)
 
-    def _received(self) -> bytes:
+    def _receive_from_port(self) -> bytes:
         if self._client is not None:
             try:
                 data = self._client.recv(READ_BYTES)

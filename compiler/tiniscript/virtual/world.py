@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import ProfileRefused
-from tiniscript.virtual.geometry import Point, Segment, joined
+from tiniscript.virtual.geometry import Point, Segment, join_points
 
 
 class WorldRefused(ProfileRefused):
@@ -65,11 +65,11 @@ class World(NamedTuple):
 
     def obstacles(self) -> list[Segment]:
         """Return everything that a robot cannot drive through."""
-        obstacles = [segment for wall in self.walls for segment in joined(list(wall))]
+        obstacles = [segment for wall in self.walls for segment in join_points(list(wall))]
         for box in self.boxes:
-            obstacles += joined([*box, box[0]])
+            obstacles += join_points([*box, box[0]])
         if self.has_border:
             right, top = self.width_cm, self.height_cm
             corners = [Point(0, 0), Point(right, 0), Point(right, top), Point(0, top)]
-            obstacles += joined([*corners, corners[0]])
+            obstacles += join_points([*corners, corners[0]])
         return obstacles

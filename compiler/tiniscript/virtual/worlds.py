@@ -13,7 +13,7 @@ from tiniscript.base.languages import ByLanguage, languages
 from tiniscript.base.spelling import nearest
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import ProfileRefused, Reason
-from tiniscript.robots.refusals import shown
+from tiniscript.robots.refusals import printable_value
 from tiniscript.robots.toml_table import Table, root_of
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import Flag, Lamp, Line, World, WorldRefused
@@ -29,7 +29,7 @@ T = TypeVar("T")
 def read(text: str, name: str, refused: type[ProfileRefused] = WorldRefused) -> World:
     """Return the world that a text describes, under `name`. Raises `refused`."""
     with root_of(text, refused) as root:
-        world = _read(root, shown(name))
+        world = _read(root, printable_value(name))
     reasons: list[Reason] = []
     x_cm, y_cm, _ = world.start
     for key, at_cm, most_cm in (("x_cm", x_cm, world.width_cm), ("y_cm", y_cm, world.height_cm)):
@@ -183,6 +183,6 @@ def load(name_or_path: str) -> World:
         return read((FOLDER / f"{name}.toml").read_text(encoding="utf-8"), name)
     if robots.is_path(name_or_path):
         return read(robots.text_of(name_or_path, WorldRefused), Path(name_or_path).stem)
-    values = {"name": shown(name_or_path), "known": ", ".join(names())}
+    values = {"name": printable_value(name_or_path), "known": ", ".join(names())}
     suggestion = nearest(name_or_path.lower(), names()) or ""
     raise WorldRefused(("no_such_world", {**values, "near": suggestion}))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tiniscript.base.fixed_point import ONE, limited, whole
+from tiniscript.base.fixed_point import ONE, clamp, whole
 from tiniscript.bytecode.opcodes import time8_ms
-from tiniscript.vm.handlers import HANDLERS, Handler, Step, does
+from tiniscript.vm.handlers import HANDLERS, Handler, Step, handles
 from tiniscript.vm.state import FOREVER, PAUSE, Execution, Powers
 from tiniscript.vm.values import COMPARE, Compare
 
@@ -15,20 +15,20 @@ def _duration(time: int) -> int:
 
 
 def _percent(power: int, low: int) -> int:
-    return limited(whole(power), low, 100)
+    return clamp(whole(power), low, 100)
 
 
-@does("SHOW")
+@handles("SHOW")
 def _show(m: Execution, after: int) -> Step:
     return lambda: m.show(m.task.stack[-1], False, after)
 
 
-@does("SHOW_YES_NO")
+@handles("SHOW_YES_NO")
 def _show_yes_no(m: Execution, after: int) -> Step:
     return lambda: m.show(1 if m.task.stack[-1] else 0, True, after)
 
 
-@does("SET")
+@handles("SET")
 def _set(m: Execution, after: int, a: int) -> Step:
     def step() -> int:
         m.robot.set(a, m.task.stack.pop())
@@ -90,32 +90,32 @@ _moves("L", -1, 1)
 _moves("R", 1, -1)
 
 
-@does("WAIT")
+@handles("WAIT")
 def _wait(m: Execution, after: int) -> Step:
     return lambda: m.wait(_duration(m.task.stack.pop()), PAUSE, after)
 
 
-@does("WAIT8")
+@handles("WAIT8")
 def _wait8(m: Execution, after: int, time: int) -> Step:
     return lambda: m.wait(time8_ms(time), PAUSE, after)
 
 
-@does("WATCH_WAIT")
+@handles("WATCH_WAIT")
 def _watch_wait(m: Execution, after: int) -> Step:
     return lambda: m.watch(_duration(m.task.stack.pop()), None, after)
 
 
-@does("WATCH_FOREVER_WAIT")
+@handles("WATCH_FOREVER_WAIT")
 def _watch_forever_wait(m: Execution, after: int) -> Step:
     return lambda: m.watch(FOREVER, None, after)
 
 
-@does("UNTIL")
+@handles("UNTIL")
 def _until(m: Execution, after: int) -> Step:
     return lambda: m.until(bool(m.task.stack.pop()), after)
 
 
-def _until_compared(compare: Compare) -> Handler:
+def _until_comparison_handler(compare: Compare) -> Handler:
     def handler(m: Execution, after: int, n: int) -> Step:
         return lambda: m.until(compare(m.task.stack.pop(), n * ONE), after)
 
@@ -123,10 +123,10 @@ def _until_compared(compare: Compare) -> Handler:
 
 
 for _name, _compare in COMPARE.items():
-    HANDLERS[f"UNTIL8_{_name}"] = HANDLERS[f"UNTIL16_{_name}"] = _until_compared(_compare)
+    HANDLERS[f"UNTIL8_{_name}"] = HANDLERS[f"UNTIL16_{_name}"] = _until_comparison_handler(_compare)
 
 
-@does("STOP")
+@handles("STOP")
 def _stop(m: Execution, after: int) -> Step:
     def step() -> int:
         m.stop_motors()
@@ -135,7 +135,7 @@ def _stop(m: Execution, after: int) -> Step:
     return step
 
 
-@does("MOTORS")
+@handles("MOTORS")
 def _motors(m: Execution, after: int) -> Step:
     def step() -> int:
         right, left = m.task.stack.pop(), m.task.stack.pop()
@@ -145,7 +145,7 @@ def _motors(m: Execution, after: int) -> Step:
     return step
 
 
-@does("MOTORS8")
+@handles("MOTORS8")
 def _motors8(m: Execution, after: int, left: int, right: int) -> Step:
     def step() -> int:
         m.motors(left, right)
@@ -154,7 +154,7 @@ def _motors8(m: Execution, after: int, left: int, right: int) -> Step:
     return step
 
 
-@does("BEEP")
+@handles("BEEP")
 def _beep(m: Execution, after: int) -> Step:
     def step() -> int:
         hertz, time = m.task.stack.pop(), m.task.stack.pop()
@@ -163,11 +163,11 @@ def _beep(m: Execution, after: int) -> Step:
     return step
 
 
-@does("BEEP8")
+@handles("BEEP8")
 def _beep8(m: Execution, after: int, time: int, hertz: int) -> Step:
     return lambda: _sound(m, after, hertz, time8_ms(time))
 
 
 def _sound(m: Execution, after: int, hertz: int, duration_ms: int) -> int:
-    m.robot.beep(limited(hertz, 31, 20_000), duration_ms)
+    m.robot.beep(clamp(hertz, 31, 20_000), duration_ms)
     return m.wait(duration_ms, PAUSE, after)

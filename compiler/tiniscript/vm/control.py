@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from tiniscript.base.fixed_point import ONE, whole
-from tiniscript.vm.handlers import HANDLERS, Handler, Step, does
+from tiniscript.vm.handlers import HANDLERS, Handler, Step, handles
 from tiniscript.vm.state import Execution
 from tiniscript.vm.values import COMPARE, Compare
 
 
-@does("IF", "IF_FAR")
+@handles("IF", "IF_FAR")
 def _if(m: Execution, after: int, to: int) -> Step:
     pop = m.task.stack.pop
     return lambda: after if pop() else to
 
 
-@does("IF_NOT", "IF_NOT_FAR")
+@handles("IF_NOT", "IF_NOT_FAR")
 def _if_not(m: Execution, after: int, to: int) -> Step:
     return _if(m, to, after)
 
 
-def _if_compared(compare: Compare) -> Handler:
+def _if_comparison_handler(compare: Compare) -> Handler:
     def handler(m: Execution, after: int, n: int, to: int) -> Step:
         pop, constant = m.task.stack.pop, n * ONE
         return lambda: after if compare(pop(), constant) else to
@@ -27,7 +27,7 @@ def _if_compared(compare: Compare) -> Handler:
     return handler
 
 
-def _if_var_compared(compare: Compare) -> Handler:
+def _if_var_comparison_handler(compare: Compare) -> Handler:
     def handler(m: Execution, after: int, v: int, n: int, to: int) -> Step:
         variables, constant = m.task.variables, n * ONE
         return lambda: after if compare(variables[v], constant) else to
@@ -36,26 +36,28 @@ def _if_var_compared(compare: Compare) -> Handler:
 
 
 for _name, _compare in COMPARE.items():
-    HANDLERS[f"IF8_{_name}"] = HANDLERS[f"IF16_{_name}"] = _if_compared(_compare)
-    HANDLERS[f"IF_VAR8_{_name}"] = HANDLERS[f"IF_VAR16_{_name}"] = _if_var_compared(_compare)
+    HANDLERS[f"IF8_{_name}"] = HANDLERS[f"IF16_{_name}"] = _if_comparison_handler(_compare)
+    HANDLERS[f"IF_VAR8_{_name}"] = HANDLERS[f"IF_VAR16_{_name}"] = _if_var_comparison_handler(
+        _compare
+    )
 
 
-@does("ELSE", "ELSE_FAR", "BREAK", "BREAK_FAR", "DEF", "DEF_FAR")
+@handles("ELSE", "ELSE_FAR", "BREAK", "BREAK_FAR", "DEF", "DEF_FAR")
 def go(m: Execution, after: int, to: int) -> Step:
     return lambda: to
 
 
-@does("AGAIN", "AGAIN_FAR")
+@handles("AGAIN", "AGAIN_FAR")
 def _again(m: Execution, after: int, to: int) -> Step:
     return m.back_to(to)
 
 
-@does("FOREVER", "WHILE", "WHILE_FAR")
+@handles("FOREVER", "WHILE", "WHILE_FAR")
 def _mark(m: Execution, after: int, to: int = 0) -> Step:
     return lambda: after
 
 
-@does("LOOP8")
+@handles("LOOP8")
 def _loop8(m: Execution, after: int, n: int) -> Step:
     def step() -> int:
         m.task.counters.append(n)
@@ -64,7 +66,7 @@ def _loop8(m: Execution, after: int, n: int) -> Step:
     return step
 
 
-@does("LOOP", "LOOP_FAR")
+@handles("LOOP", "LOOP_FAR")
 def _loop(m: Execution, after: int, to: int) -> Step:
     def step() -> int:
         n = whole(m.task.stack.pop())
@@ -76,7 +78,7 @@ def _loop(m: Execution, after: int, to: int) -> Step:
     return step
 
 
-@does("NEXT", "NEXT_FAR")
+@handles("NEXT", "NEXT_FAR")
 def _next(m: Execution, after: int, to: int) -> Step:
     counters, back = m.task.counters, m.back_to(to)
 
@@ -91,7 +93,7 @@ def _next(m: Execution, after: int, to: int) -> Step:
     return step
 
 
-@does("BREAK_LOOP", "BREAK_LOOP_FAR")
+@handles("BREAK_LOOP", "BREAK_LOOP_FAR")
 def _break_loop(m: Execution, after: int, to: int) -> Step:
     def step() -> int:
         m.task.counters.pop()
@@ -100,7 +102,7 @@ def _break_loop(m: Execution, after: int, to: int) -> Step:
     return step
 
 
-@does("CALL", "CALL_FAR")
+@handles("CALL", "CALL_FAR")
 def _call(m: Execution, after: int, to: int) -> Step:
     calls = m.task.calls
 
@@ -111,11 +113,11 @@ def _call(m: Execution, after: int, to: int) -> Step:
     return step
 
 
-@does("RETURN")
+@handles("RETURN")
 def _return(m: Execution, after: int) -> Step:
     return m.task.calls.pop
 
 
-@does("END")
+@handles("END")
 def _end(m: Execution, after: int) -> Step:
     return m.end

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-Step = Callable[[], int]  # returns where the next instruction begins, `stopped` there, or STAY
+Step = Callable[[], int]  # returns where the next instruction begins, `mark_stop` of that, or STAY
 Handler = Callable[..., Step]
 
 STAY = -(2**31)  # stop for now, and run this instruction again
@@ -17,12 +17,12 @@ STAY = -(2**31)  # stop for now, and run this instruction again
 HANDLERS: dict[str, Handler] = {}
 
 
-def stopped(at: int) -> int:
+def mark_stop(at: int) -> int:
     """Mark an offset: the machine stops for now and goes on at `at`. Applied twice it is undone."""
     return ~at
 
 
-def does(*names: str) -> Callable[[Handler], Handler]:
+def handles(*names: str) -> Callable[[Handler], Handler]:
     """Note a handler under the names of its instructions."""
 
     def note(handler: Handler) -> Handler:

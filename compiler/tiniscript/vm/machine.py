@@ -14,7 +14,7 @@ from __future__ import annotations
 from tiniscript.base.fixed_point import Fault
 from tiniscript.bytecode.opcodes import NEEDS_TASKS, OPS, Op, op_at, read_operands
 from tiniscript.vm import actions, control, values
-from tiniscript.vm.handlers import HANDLERS, STAY, Step, stopped
+from tiniscript.vm.handlers import HANDLERS, STAY, Step, mark_stop
 from tiniscript.vm.state import DONE, FAULT, MOVE, NOTHING, RUNNING, WAITING, Execution, Robot, Task
 
 _FAMILIES = (values, actions, control)  # importing them fills the table
@@ -89,7 +89,7 @@ class Machine(Execution):
                 at = pc
                 pc = run[at]()
                 if pc < 0:
-                    pc = at if pc == STAY else stopped(pc)
+                    pc = at if pc == STAY else mark_stop(pc)
                     break
         except Fault as fault:
             self.robot.off()

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from tiniscript.base.limits import CHECK_MS, VARIABLES
-from tiniscript.vm.handlers import STAY, Step, stopped
+from tiniscript.vm.handlers import STAY, Step, mark_stop
 
 CLOCK_MS = 2**32  # where a machine's clock wraps around
 LATE_MS = 20  # later than this, a program's own clock no longer catches up
@@ -147,7 +147,7 @@ class Execution:
         task.wake_ms = task.clock_ms
         task.wait = what
         self.status = WAITING
-        return stopped(after)
+        return mark_stop(after)
 
     def begin(self) -> None:
         """Set the program's clock to the start time of the next wait or move."""
@@ -178,4 +178,4 @@ class Execution:
         task.wake_ms = task.clock_ms
         task.wait = MOVE if is_last and task.powers is not None else PAUSE
         self.status = WAITING
-        return stopped(after if is_last else task.check)
+        return mark_stop(after if is_last else task.check)

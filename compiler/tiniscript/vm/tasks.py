@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tiniscript.base.fixed_point import Fault
 from tiniscript.base.limits import CHECK_MS
 from tiniscript.vm.control import go
-from tiniscript.vm.handlers import STAY, Step, does, stopped
+from tiniscript.vm.handlers import STAY, Step, handles, mark_stop
 from tiniscript.vm.machine import Machine, instruction
 from tiniscript.vm.state import (
     CLOCK_MS,
@@ -139,7 +139,7 @@ class TaskMachine(Machine):
                     pc = run[at]()
                     if pc < 0:
                         break
-                self.me.pc = at if pc == STAY else stopped(pc) if pc < 0 else pc
+                self.me.pc = at if pc == STAY else mark_stop(pc) if pc < 0 else pc
                 if self.status == DONE:
                     break
                 if pc < 0 and not (pc == STAY and self.is_first):
@@ -195,7 +195,7 @@ class TaskMachine(Machine):
 
     def _go_to(self, pc: int) -> None:
         """Go on where a step says."""
-        self.me.pc = stopped(pc) if pc < 0 else pc
+        self.me.pc = mark_stop(pc) if pc < 0 else pc
         if pc < 0:
             self._end_turn()
 
@@ -214,7 +214,7 @@ class TaskMachine(Machine):
         self.me.forget_set()
         if all(task.has_ended for task in self.tasks):
             return super().end()
-        return stopped(self.me.pc)
+        return mark_stop(self.me.pc)
 
     # -- time ---------------------------------------------------------------------------------
 
@@ -228,7 +228,7 @@ class TaskMachine(Machine):
         if not duration_ms:
             return after
         self.me.has_waited = True
-        return stopped(after)
+        return mark_stop(after)
 
     def back_to(self, to: int) -> Step:
         def step() -> int:
@@ -236,7 +236,7 @@ class TaskMachine(Machine):
             if not me.has_waited:
                 self.begin()
                 me.clock_ms += 1
-                return stopped(to)
+                return mark_stop(to)
             me.has_waited = False
             return to
 
@@ -261,7 +261,7 @@ class TaskMachine(Machine):
         if self.robot.show(value, is_yes_no):
             return after
         self.me.unsent = value, is_yes_no
-        return stopped(after)
+        return mark_stop(after)
 
     # -- moves --------------------------------------------------------------------------------
 
@@ -326,7 +326,7 @@ class TaskMachine(Machine):
             me.move_ms -= due_ms
         me.clock_ms += due_ms
         me.has_waited = True
-        return stopped(pc)
+        return mark_stop(pc)
 
     def _end_move(self) -> None:
         self.me.leave_move()
@@ -339,7 +339,7 @@ class TaskMachine(Machine):
         me.is_moving = me.is_blocked = me.has_waited = True
         me.drives = False
         me.keeps = me.is_when
-        return stopped(me.check)
+        return mark_stop(me.check)
 
     # -- the motors ---------------------------------------------------------------------------
 
@@ -423,19 +423,19 @@ def find_tasks(code: bytes) -> list[Start]:
     return tasks
 
 
-does("TASK", "WHEN")(go)
+handles("TASK", "WHEN")(go)
 
 
-@does("END_TASK")
+@handles("END_TASK")
 def _end_task(m: TaskMachine, after: int) -> Step:
     return m.end
 
 
-@does("LOOK")
+@handles("LOOK")
 def _look(m: TaskMachine, after: int) -> Step:
     return lambda: m.look(bool(m.task.stack.pop()), after)
 
 
-@does("END_WHEN")
+@handles("END_WHEN")
 def _end_when(m: TaskMachine, after: int) -> Step:
     return m.look_again

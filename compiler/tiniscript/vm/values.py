@@ -9,7 +9,7 @@ from tiniscript.base import fixed_point
 from tiniscript.base.fixed_point import ONE, in_range, next_random, random_between
 from tiniscript.base.words import COMPARATORS
 from tiniscript.bytecode.opcodes import PUSHED
-from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, does
+from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, handles
 from tiniscript.vm.state import Execution
 
 Compare = Callable[[int, int], bool]
@@ -17,7 +17,7 @@ Compare = Callable[[int, int], bool]
 # -- values -------------------------------------------------------------------------------------
 
 
-@does("PUSH_MILLI", "PUSH32")
+@handles("PUSH_MILLI", "PUSH32")
 def _push(m: Execution, after: int, n: int) -> Step:
     push = m.task.stack.append
 
@@ -28,24 +28,24 @@ def _push(m: Execution, after: int, n: int) -> Step:
     return step
 
 
-@does("PUSH8", "PUSH16")
+@handles("PUSH8", "PUSH16")
 def _push_whole(m: Execution, after: int, n: int) -> Step:
     return _push(m, after, n * ONE)
 
 
-@does("PUSH_TENTHS")
+@handles("PUSH_TENTHS")
 def _push_tenths(m: Execution, after: int, n: int) -> Step:
     return _push(m, after, n * 100)
 
 
-def _pushing(n: int) -> Handler:
+def _push_handler(n: int) -> Handler:
     return lambda m, after: _push(m, after, n)
 
 
-HANDLERS["PUSH_FALSE"] = _pushing(0)
-HANDLERS["PUSH_TRUE"] = _pushing(1)
+HANDLERS["PUSH_FALSE"] = _push_handler(0)
+HANDLERS["PUSH_TRUE"] = _push_handler(1)
 for _number in PUSHED:
-    HANDLERS[f"PUSH_NUM_{_number}"] = _pushing(_number * ONE)
+    HANDLERS[f"PUSH_NUM_{_number}"] = _push_handler(_number * ONE)
 
 
 def _push_of(m: Execution, after: int, values: list[int], number: int) -> Step:
@@ -58,17 +58,17 @@ def _push_of(m: Execution, after: int, values: list[int], number: int) -> Step:
     return step
 
 
-@does("PUSH_VAR")
+@handles("PUSH_VAR")
 def _push_var(m: Execution, after: int, v: int) -> Step:
     return _push_of(m, after, m.task.variables, v)
 
 
-@does("PUSH_SENSOR")
+@handles("PUSH_SENSOR")
 def _push_sensor(m: Execution, after: int, s: int) -> Step:
     return _push_of(m, after, m.task.readings, s)
 
 
-@does("READ")
+@handles("READ")
 def _read(m: Execution, after: int, s: int) -> Step:
     readings = m.task.readings
 
@@ -82,7 +82,7 @@ def _read(m: Execution, after: int, s: int) -> Step:
     return step
 
 
-@does("PUSH_READ")
+@handles("PUSH_READ")
 def _push_read(m: Execution, after: int, s: int) -> Step:
     read, push = _read(m, after, s), _push_sensor(m, after, s)
 
@@ -92,7 +92,7 @@ def _push_read(m: Execution, after: int, s: int) -> Step:
     return step
 
 
-@does("TIME")
+@handles("TIME")
 def _time(m: Execution, after: int) -> Step:
     task = m.task
 
@@ -103,7 +103,7 @@ def _time(m: Execution, after: int) -> Step:
     return step
 
 
-@does("RANDOM")
+@handles("RANDOM")
 def _random(m: Execution, after: int) -> Step:
     task = m.task
 
@@ -172,7 +172,7 @@ HANDLERS["ABS"] = _unary(fixed_point.absolute)
 HANDLERS["NOT"] = _unary(lambda a: 0 if a else 1)
 
 
-@does("AND_THEN", "AND_THEN_FAR")
+@handles("AND_THEN", "AND_THEN_FAR")
 def _and_then(m: Execution, after: int, to: int) -> Step:
     stack = m.task.stack
 
@@ -185,7 +185,7 @@ def _and_then(m: Execution, after: int, to: int) -> Step:
     return step
 
 
-@does("OR_ELSE", "OR_ELSE_FAR")
+@handles("OR_ELSE", "OR_ELSE_FAR")
 def _or_else(m: Execution, after: int, to: int) -> Step:
     stack = m.task.stack
 
@@ -201,7 +201,7 @@ def _or_else(m: Execution, after: int, to: int) -> Step:
 # -- variables ----------------------------------------------------------------------------------
 
 
-@does("SET_VAR")
+@handles("SET_VAR")
 def _set_var(m: Execution, after: int, v: int) -> Step:
     variables, pop = m.task.variables, m.task.stack.pop
 
@@ -212,7 +212,7 @@ def _set_var(m: Execution, after: int, v: int) -> Step:
     return step
 
 
-@does("SET_VAR8")
+@handles("SET_VAR8")
 def _set_var8(m: Execution, after: int, v: int, n: int) -> Step:
     variables, value = m.task.variables, n * ONE
 
@@ -223,7 +223,7 @@ def _set_var8(m: Execution, after: int, v: int, n: int) -> Step:
     return step
 
 
-@does("ADD_VAR8")
+@handles("ADD_VAR8")
 def _add_var8(m: Execution, after: int, v: int, n: int) -> Step:
     variables, value = m.task.variables, n * ONE
 
@@ -234,17 +234,17 @@ def _add_var8(m: Execution, after: int, v: int, n: int) -> Step:
     return step
 
 
-@does("INC_VAR")
+@handles("INC_VAR")
 def _inc_var(m: Execution, after: int, v: int) -> Step:
     return _add_var8(m, after, v, 1)
 
 
-@does("DEC_VAR")
+@handles("DEC_VAR")
 def _dec_var(m: Execution, after: int, v: int) -> Step:
     return _add_var8(m, after, v, -1)
 
 
-@does("ADD_VAR")
+@handles("ADD_VAR")
 def _add_var(m: Execution, after: int, v: int, w: int) -> Step:
     variables = m.task.variables
 

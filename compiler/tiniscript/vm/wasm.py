@@ -110,12 +110,14 @@ class WasmImage:
             numbers[_IS_ANSWERED] = robot.show(numbers[_FIRST], bool(numbers[_SECOND]))
 
         return {
-            "motors": asking(lambda robot, its: robot.motors(its[_FIRST], its[_SECOND])),
-            "off": asking(lambda robot, its: robot.off()),
+            "motors": asking(
+                lambda robot, instance: robot.motors(instance[_FIRST], instance[_SECOND])
+            ),
+            "off": asking(lambda robot, instance: robot.off()),
             "read": asking(read),
-            "beep": asking(lambda robot, its: robot.beep(its[_FIRST], its[_SECOND])),
+            "beep": asking(lambda robot, instance: robot.beep(instance[_FIRST], instance[_SECOND])),
             "show": asking(show),
-            "set": asking(lambda robot, its: robot.set(its[_FIRST], its[_SECOND])),
+            "set": asking(lambda robot, instance: robot.set(instance[_FIRST], instance[_SECOND])),
         }
 
 

@@ -15,14 +15,14 @@ SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the plac
 
 
 def run(options: Namespace, language: str) -> int:
-    robot = inputs.wired_robot(options, language).speaking(language)
+    robot = inputs.wired_robot(options, language).with_language(language)
     if not robot.kit.has_remote:
         say_aside("board_no_remote", language, robot=robot.name, most=str(OWN_BESIDE_REMOTE))
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
     if not outputs.put(options.output, header.encode()):
         return 0
     now = _next(options.robot, Path(options.output), robot.board.chip, language)
-    say("board", language, file=inputs.shown(options.output), robot=robot.name,
+    say("board", language, file=inputs.printable_name(options.output), robot=robot.name,
         chip=robot.board.chip, now=now)  # fmt: skip
     return 0
 
@@ -49,5 +49,5 @@ def _relative_to_cwd(folder: Path) -> Path:
 
 def _name(path: Path) -> str:
     """Return a path quoted for a command."""
-    result = inputs.shown(str(path))
+    result = inputs.printable_name(str(path))
     return f'"{result}"' if " " in result else result

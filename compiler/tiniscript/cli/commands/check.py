@@ -30,7 +30,7 @@ def run(options: Namespace, language: str) -> int:
     inputs.robot_for(given, options, language)
     robot = _robot(options, language)
     if options.fix or options.diff:
-        compiled, is_right = _repaired(options, given, robot, language)
+        compiled, is_right = _repair(options, given, robot, language)
     else:
         compiled = compiling.compile_input(given, robot, is_strict=False)
         compiled = compiling.for_level(compiled, robot, options.text_level)
@@ -43,18 +43,16 @@ def run(options: Namespace, language: str) -> int:
     else:
         outputs.print_diagnostics(compiled, language)
         if compiled.is_right and not options.diff and (given.path is not None or not options.fix):
-            say("no_mistakes", language, file=inputs.shown(given.name))
+            say("no_mistakes", language, file=inputs.printable_name(given.name))
     return 0 if is_right else 1
 
 
-def _repaired(
-    options: Namespace, given: Input, robot: Robot, language: str
-) -> tuple[Compiled, bool]:
+def _repair(options: Namespace, given: Input, robot: Robot, language: str) -> tuple[Compiled, bool]:
     """Make or show the sure repairs; return what is left, and whether the program is right now."""
-    from tiniscript.cli.repairing import print_difference, repaired
+    from tiniscript.cli.repairing import print_difference, repair
 
-    result = repaired(given, robot)
-    name = inputs.shown(given.name)
+    result = repair(given, robot)
+    name = inputs.printable_name(given.name)
     says = not options.json
     if options.diff:
         if says and result.repairs:

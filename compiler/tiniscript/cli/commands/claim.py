@@ -6,9 +6,9 @@ import sys
 from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import Connection, connected
-from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, whose
+from tiniscript.cli.inputs import printable_name
+from tiniscript.cli.robot.connect import Connection, connect
+from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, ownership_of
 from tiniscript.link.connection import CLAIM_LIMIT_MS
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES
@@ -17,7 +17,7 @@ from tiniscript.link.requests import Reply
 
 
 def run(options: Namespace, language: str) -> int:
-    with connected(options, language) as connection:
+    with connect(options, language) as connection:
         connection.meet()
         _refuse_at_once(connection)
         which = KEY_TEACHER if options.teacher else KEY_OWNER
@@ -26,13 +26,13 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _claim(connection: Connection, which: int) -> None:
-    request = connection.line.do(lambda session: session.claim(which))
+    request = connection.line.begin(lambda session: session.claim(which))
     # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
     sentence = connection.text("claim_hold", seconds=CLAIM_LIMIT_MS // 1000)
     print(sentence, file=sys.stderr, flush=True)
     reply = connection.wait(request)
     if reply.status == UNKEPT:
-        raise CommandError(2, "unkept_key", file=shown(str(KeyFile().path)))
+        raise CommandError(2, "unkept_key", file=printable_name(str(KeyFile().path)))
     if reply.status in (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"]):
         key = "claim_saving"
     elif reply.status:
@@ -47,5 +47,5 @@ def _refuse_at_once(connection: Connection) -> None:
     device_info = connection.device_info
     if not device_info.values.features & OWNERS:
         raise CommandError(3, "no_owners", robot=connection.name)
-    if whose(device_info) == OF_ANOTHER and not KeyFile().of_robot(device_info.id):
+    if ownership_of(device_info) == OF_ANOTHER and not KeyFile().of_robot(device_info.id):
         raise connection.failure(Reply(NOT_OWNER))

@@ -33,7 +33,7 @@ def run(options: Namespace, language: str) -> int:
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
-    places = source_map.made(compiled)
+    places = source_map.map_of_compiled(compiled)
     outputs.put(target, compiled.image)
     if options.map is not None:
         data = (source_map.as_json(places) + "\n").encode(errors="backslashreplace")
@@ -41,8 +41,8 @@ def run(options: Namespace, language: str) -> int:
     source_map.remember(compiled.image, places)
     will_fault = any(diagnostic.code is WILL_FAULT for diagnostic in compiled.diagnostics)
     sentence = text("compiled", language).format(
-        source=inputs.shown(given.name),
-        target=inputs.shown(target or "-"),
+        source=inputs.printable_name(given.name),
+        target=inputs.printable_name(target or "-"),
         image=len(compiled.image),
         code=len(compiled.code),
         stack=compiled.verdict.stack_values if compiled.verdict else 0,
@@ -69,8 +69,8 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     line = (line_of(compiled.source) + "\n").encode()
     is_printed = not outputs.put(options.output, line)
     sentence = text("compiled_text", language).format(
-        source=inputs.shown(given.name),
-        target="-" if is_printed else inputs.shown(options.output),
+        source=inputs.printable_name(given.name),
+        target="-" if is_printed else inputs.printable_name(options.output),
         bytes=len(line),
         code=plain_code(compiled.program).length,
     )

@@ -19,7 +19,7 @@ from tiniscript.cli.texts.options import (
     choosers_of,
     chosen,
     first_word,
-    of_verb,
+    options_of,
 )
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.cli.texts.verbs import of_verb as summary_of
@@ -100,7 +100,7 @@ def _completions(before: list[str], last: str, language: str) -> tuple[str, list
     if verb not in ("tsc", *VERBS):
         return "", []
     command, _ = chosen(verb, before)
-    options = [*of_verb(command), *choosers_of(command)]
+    options = [*options_of(command), *choosers_of(command)]
     flags = {
         flag: option
         for option in options
@@ -133,7 +133,7 @@ def _words_of(kind: Kind, language: str) -> list[tuple[str, str]]:
     if kind is VERB:
         return [(verb, _first_clause(summary_of(verb, "summary", language))) for verb in VERBS]
     if kind.name == "port":
-        return [(item.port, item.description) for item in ports.listed()]
+        return [(item.port, item.description) for item in ports.list_ports()]
     named = {"robot": robots.names(), "world": worlds.names(), "chip": BOARDS, "code": CODES,
              "action": LESSON_ACTIONS, "hurry": ("max",)}  # fmt: skip
     return [(word, "") for word in named.get(kind.name, kind.choices)]

@@ -13,9 +13,9 @@ from tiniscript import robots
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.robot.connect import baud_of, opening_port
+from tiniscript.cli.robot.connect import baud_of, convert_port_error
 from tiniscript.cli.texts import say, text
 from tiniscript.conformance import port_checks
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, Verdict, verdicts
@@ -24,7 +24,7 @@ from tiniscript.conformance.kit import (
     LINK_VERSION,
     VERSION,
     NotMade,
-    link_kit,
+    link_test_suite,
     machine_cases,
 )
 from tiniscript.conformance.machine_process import CannotStart, MachineProcess
@@ -53,27 +53,29 @@ def run(options: Namespace, language: str) -> int:
             raise CommandError(2, "conform_both")
         return _machine(options, timeout_s, language)
     except NotMade:
-        raise CommandError(2, "conform_not_made", how=making()) from None
+        raise CommandError(2, "conform_not_made", how=build_command()) from None
 
 
-def making() -> str:
+def build_command() -> str:
     """Return the command that makes the cases of this installation in a clone."""
     words = [sys.executable, "-m", MAKER]
     if not install_advice.is_clone(install_advice.CLONE):
         words.append(str(FOLDER))
-    return " ".join(map(install_advice.quoted, words))
+    return " ".join(map(install_advice.quote, words))
 
 
 def _machine(options: Namespace, timeout_s: int, language: str) -> int:
     cases = [case for case in machine_cases() if (options.only or "") in case.name]
     if not cases:
-        raise CommandError(2, "conform_no_case", found=shown(options.only))
+        raise CommandError(2, "conform_no_case", found=printable_name(options.only))
     process = MachineProcess(options.machine, timeout_s)
     try:
         result = list(verdicts(cases, process.ask))
     except CannotStart as why:
-        command = shown(options.machine) or "''"
-        raise CommandError(2, "conform_no_start", command=command, why=shown(str(why))) from None
+        command = printable_name(options.machine) or "''"
+        raise CommandError(
+            2, "conform_no_start", command=command, why=printable_name(str(why))
+        ) from None
     finally:
         process.close()
     facts = {"version": str(VERSION), "isa": ISA}
@@ -85,26 +87,30 @@ def _port(options: Namespace, language: str) -> int:
         raise CommandError(2, "conform_timeout")
     port = inputs.port(options.port)
     baud = baud_of(options, robots.load(robots.DEFAULT), language)
-    checks = port_checks.all_checks(link_kit())
+    checks = port_checks.all_checks(link_test_suite())
     checks = [check for check in checks if (options.only or "") in check.name]
     if not checks:
-        raise CommandError(2, "conform_no_case", found=shown(options.only))
-    with opening_port(port):
-        wire = Wire(ports.opened(ports.resolved(port), baud))
+        raise CommandError(2, "conform_no_case", found=printable_name(options.only))
+    with convert_port_error(port):
+        wire = Wire(ports.open_port(ports.resolve(port), baud))
     is_radio = ports.is_radio(port)
     nonce = int.from_bytes(os.urandom(4), "little")
     robot = WireRobot(wire, nonce, RADIO_MS if is_radio else CABLE_MS)
     verdicts: list[Verdict] = []
     try:
-        wire.heard(0 if is_radio else BOOT_MS)
-        hello = port_checks.met(robot)
+        wire.receive(0 if is_radio else BOOT_MS)
+        hello = port_checks.greet(robot)
         if not hello.status and hello.number("features") & OWNED:
             raise CommandError(3, "conform_owned")
         verdicts.extend(port_checks.verdicts(robot, checks))
     except Silent:
-        raise CommandError(3, "conform_silent", port=shown(port)) from None
+        raise CommandError(3, "conform_silent", port=printable_name(port)) from None
     except OSError as why:
-        values = {"port": shown(port), "why": shown(str(why)), "n": str(len(verdicts))}
+        values = {
+            "port": printable_name(port),
+            "why": printable_name(str(why)),
+            "n": str(len(verdicts)),
+        }
         raise CommandError(3, "conform_gone", **values) from None
     finally:
         with contextlib.suppress(OSError):  # nothing runs on, whatever has ended the checks
@@ -154,9 +160,11 @@ def _rows(verdict: Verdict, timeout_s: int, language: str) -> list[str]:
     if verdict.what != DIFFERS:
         key = "conform_silent_check" if verdict.what == "silent" else f"conform_{verdict.what}"
         sentence = text(key, language)
-        rows.append(sentence.format(detail=shown(verdict.detail), seconds=timeout_s))
+        rows.append(sentence.format(detail=printable_name(verdict.detail), seconds=timeout_s))
     if verdict.line:
         nothing = text("conform_nothing", language)
-        got, want = (nothing if row is None else shown(row) for row in (verdict.got, verdict.want))
+        got, want = (
+            nothing if row is None else printable_name(row) for row in (verdict.got, verdict.want)
+        )
         rows.append(text("conform_line", language).format(line=verdict.line, got=got, want=want))
     return rows

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from tiniscript.cli.robot.connect import connected
+from tiniscript.cli.robot.connect import connect
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNED
 
 
 def run(options: Namespace, language: str) -> int:
     which = KEY_TEACHER if options.teacher else KEY_OWNER
-    with connected(options, language) as connection:
+    with connect(options, language) as connection:
         info = connection.meet()
         if which == KEY_OWNER and not info.values.features & OWNED:
             connection.say("not_owned")
             return 0
-        connection.ask(lambda session: session.disown(which))
+        connection.request(lambda session: session.disown(which))
         connection.say("disowned" if which == KEY_OWNER else "disowned_teacher")
     return 0

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection, remember_profile
 from tiniscript.cli.robot.description import (
@@ -23,22 +23,22 @@ from tiniscript.cli.robot.description import (
     trips_in_words,
 )
 from tiniscript.cli.robot.diagnosing import diagnosis_of, examination_of, expected_of
-from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.fleet import run_together
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.robot.port_rows import lines as lines_of_ports
-from tiniscript.cli.robot.port_rows import listed
+from tiniscript.cli.robot.port_rows import list_rows
 from tiniscript.cli.robot.simulator import running_address
-from tiniscript.cli.texts import Said, text
-from tiniscript.cli.texts.causes import as_data, said
+from tiniscript.cli.texts import Sentence, text
+from tiniscript.cli.texts.causes import as_data, sentences_of
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis
-from tiniscript.doctor.examination import PINGS, Expected, Heard
+from tiniscript.doctor.examination import PINGS, Expectations, RobotAnswers
 from tiniscript.doctor.findings import OPEN
 from tiniscript.library import opening
-from tiniscript.link.authority import whose
+from tiniscript.link.authority import ownership_of
 from tiniscript.link.messages import RESETS
-from tiniscript.link.requests import described
-from tiniscript.link.trim import told as trim_told
+from tiniscript.link.requests import device_info_of
+from tiniscript.link.trim import trim_from_reply
 
 LONGEST_WATCH_S = 600
 BLANK = "____"
@@ -54,9 +54,9 @@ def run(options: Namespace, language: str) -> int:
         if options.report is not None or options.watch is not None:
             raise CommandError(2, "doctor_one")
         work = partial(_examine_member, expected)
-        return together(options, inputs.robot(options, language), language, work)
+        return run_together(options, inputs.robot(options, language), language, work)
     told: dict[str, str] = {}  # by a robot, of itself
-    heard: list[Heard] = []
+    heard: list[RobotAnswers] = []
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
     expected = expected._replace(note=told.update, hear=heard.append)
     diagnosis = diagnosis_of(options, _port(options), expected, language, watch_s * 1000)
@@ -64,7 +64,7 @@ def run(options: Namespace, language: str) -> int:
     if robot is not None:
         opening.remember(robot.port, robot.device_info.name)
         remember_profile(options, inputs.robot(options, language), robot.device_info.kit)
-    rows = listed(language)
+    rows = list_rows(language)
     if options.json:
         fields = {**_fields(diagnosis, language), "ports": rows, "robot": None}
         if robot is not None:
@@ -77,11 +77,11 @@ def run(options: Namespace, language: str) -> int:
             if heard[-1].trips_ms:
                 lines.append(trips_in_words([*heard[-1].trips_ms], language))
         lines += ["", text("doctor_ports", language), *lines_of_ports(rows, language)]
-        print(Said("\n".join(lines)), flush=True)
+        print(Sentence("\n".join(lines)), flush=True)
     if options.report is not None:
         data = "\n".join(_report(diagnosis, told, language)) + "\n"
         outputs.write(Path(options.report), data.encode(), "unwritable_at --report")
-        sentence = text("doctor_report", language).format(file=shown(options.report))
+        sentence = text("doctor_report", language).format(file=printable_name(options.report))
         print(sentence, file=sys.stderr if options.json else sys.stdout)
     is_fine = not any(finding.is_wrong for finding in diagnosis.findings)
     return 0 if is_fine else 3
@@ -96,7 +96,7 @@ def _port(options: Namespace) -> str | None:
     return None if port is None else inputs.port(port)
 
 
-def _examine_member(expected: Expected, connection: Connection, member: Member) -> Result:
+def _examine_member(expected: Expectations, connection: Connection, member: Member) -> Result:
     """Examine one of many robots as if it were the only one."""
     member.meet(connection)
     language = connection.language
@@ -104,7 +104,7 @@ def _examine_member(expected: Expected, connection: Connection, member: Member) 
         connection, expected, lambda what: member.tell(f"doing_{what}", n=expected.pings)
     )
     wrong = [finding for finding in findings if finding.is_wrong]
-    rows, fields = [said(finding, language).what for finding in wrong], {}
+    rows, fields = [sentences_of(finding, language).what for finding in wrong], {}
     if heard is not None:
         robot, trips_ms = _description(connection.port, heard, language), [*heard.trips_ms]
         rows.append(robot.line())
@@ -115,11 +115,11 @@ def _examine_member(expected: Expected, connection: Connection, member: Member) 
     return Result(not wrong, "; ".join(rows), fields)
 
 
-def _description(port: str, heard: Heard, language: str) -> Description:
+def _description(port: str, heard: RobotAnswers, language: str) -> Description:
     """Return what a robot says about itself, of what it has answered."""
-    info = described(heard.hello)
-    trim = None if heard.trim is None else trim_told(heard.trim)
-    return Description(port, info, heard.status, trim, whose(info), language)
+    info = device_info_of(heard.hello)
+    trim = None if heard.trim is None else trim_from_reply(heard.trim)
+    return Description(port, info, heard.status, trim, ownership_of(info), language)
 
 
 def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
@@ -127,7 +127,7 @@ def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
     rows = []
     for number, finding in enumerate(diagnosis.findings, 1):
         values = report.values_of(finding) if is_private else None
-        what, seen, then = said(finding, language, values)
+        what, seen, then = sentences_of(finding, language, values)
         how = "doctor_sure" if finding.is_sure else "doctor_probably"
         if finding.verdict == OPEN:
             how = "doctor_note"
@@ -144,7 +144,7 @@ def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
 def _lines(diagnosis: Diagnosis, language: str) -> list[str]:
     head = []
     if diagnosis.port is not None:
-        head = [text("doctor_port", language).format(port=shown(diagnosis.port))]
+        head = [text("doctor_port", language).format(port=printable_name(diagnosis.port))]
     return head + _rows(diagnosis, language, is_private=False)
 
 

@@ -6,7 +6,7 @@ from argparse import Namespace
 
 from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts import Said
+from tiniscript.cli.texts import Sentence
 from tiniscript.diagnostics.codes import CODES
 from tiniscript.diagnostics.rendering import explain, titles
 
@@ -14,11 +14,11 @@ from tiniscript.diagnostics.rendering import explain, titles
 def run(options: Namespace, language: str) -> int:
     if not options.code:
         for code, title in titles(language):
-            print(Said(f"{code}  {title}"))
+            print(Sentence(f"{code}  {title}"))
         return 0
     text = explain(options.code, language)
     if text is None:
         suggestion = nearest(options.code.upper(), list(CODES)) or ""
         raise CommandError(2, "no_code", found=options.code, near=suggestion)
-    print(Said(text), end="" if text.endswith("\n") else "\n")
+    print(Sentence(text), end="" if text.endswith("\n") else "\n")
     return 0

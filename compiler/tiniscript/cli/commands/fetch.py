@@ -7,14 +7,14 @@ from pathlib import Path
 
 from tiniscript.cli import images, inputs, outputs
 from tiniscript.cli.disassembling import print_disassembly
-from tiniscript.cli.robot.connect import connected
+from tiniscript.cli.robot.connect import connect
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
-    with connected(options, language) as connection:
+    with connect(options, language) as connection:
         connection.meet()
-        data = connection.ask(lambda session: session.fetch()).values.image
+        data = connection.request(lambda session: session.fetch()).values.image
         name = connection.name
     given = inputs.Input(name, data, Path("fetched.bin"))
     if options.robot is None:
@@ -23,7 +23,7 @@ def run(options: Namespace, language: str) -> int:
     assert ready is not None  # an image has no mistakes
     if options.output is not None:
         outputs.write(Path(options.output), data, "unwritable")
-        connection.say("fetched", target=inputs.shown(options.output), image=len(data),
+        connection.say("fetched", target=inputs.printable_name(options.output), image=len(data),
                        code=len(ready.image.code),
                        checksum=f"{ready.image.checksum:08x}")  # fmt: skip
     else:

@@ -7,14 +7,14 @@ from argparse import Namespace
 
 from tiniscript.cli import firmware_build, inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import bad_choice
-from tiniscript.cli.robot.connect import Connection, opening_port
-from tiniscript.cli.robot.description import described
-from tiniscript.cli.terminal.progress import Progress, waiting
+from tiniscript.cli.robot.connect import Connection, convert_port_error
+from tiniscript.cli.robot.description import describe_robot
+from tiniscript.cli.terminal.progress import Progress, show_wait
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.flash import avrdude
-from tiniscript.flash.avrdude import Ended, StepProgress
+from tiniscript.flash.avrdude import StepProgress, WriteResult
 from tiniscript.flash.bootloaders import BOARDS, UNO, Bootloader
 from tiniscript.flash.ready import Ready
 from tiniscript.link import ports
@@ -56,7 +56,7 @@ def run(options: Namespace, language: str) -> int:
 
 def _esp32(options: Namespace, language: str) -> int:
     """Build and write the firmware of a robot with an ESP32, by PlatformIO alone."""
-    robot = inputs.robot(options, language).speaking(language)
+    robot = inputs.robot(options, language).with_language(language)
     values = {"robot": robot.name, "board": robot.board.chip}
     if options.build:
         firmware_build.upload(robot, None, options, language)
@@ -90,9 +90,9 @@ def _port(options: Namespace) -> str:
         raise CommandError(2, "flash_no_port")
     port = inputs.port(options.port)
     if is_address(port):
-        raise CommandError(2, "flash_address", port=shown(port))
-    with opening_port(port):
-        ports.opened(port, UNO.baud).close()
+        raise CommandError(2, "flash_address", port=printable_name(port))
+    with convert_port_error(port):
+        ports.open_port(port, UNO.baud).close()
     return port
 
 
@@ -111,13 +111,17 @@ def _write(
         if ended.how != avrdude.NOBODY:
             break
     if ended.how != avrdude.DONE:
-        values = {"port": shown(port), "board": firmware.board, "why": shown(ended.said)}
+        values = {
+            "port": printable_name(port),
+            "board": firmware.board,
+            "why": printable_name(ended.said),
+        }
         raise CommandError(3, f"flash_{ended.how}", **values)
 
 
 def _write_firmware(
     command: list[str], bootloader: Bootloader, port: str, firmware: Ready, language: str
-) -> Ended:
+) -> WriteResult:
     progress = Progress(language, 100)
     has_begun = False
 
@@ -131,7 +135,7 @@ def _write_firmware(
             progress.draw(seen.percent)
 
     try:
-        with waiting("flash_waits", language, port) as silence:
+        with show_wait("flash_waits", language, port) as silence:
             return avrdude.write(command, bootloader, port, firmware.path, look)
     except KeyboardInterrupt:
         if not has_begun:
@@ -147,8 +151,8 @@ def _introduce(port: str, robot: Robot, board: str, language: str) -> None:
         options = Namespace(verb="firmware", port=port, baud=None, virtual=False)
         with Connection(options, robot, language) as connection:
             connection.meet(board)
-            print(described(connection).text())
+            print(describe_robot(connection).text())
     except CommandError as failure:
         if failure.exit_code != 3:
             raise
-        raise CommandError(3, "flash_silent", port=shown(port)) from None
+        raise CommandError(3, "flash_silent", port=printable_name(port)) from None

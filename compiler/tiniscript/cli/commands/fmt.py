@@ -9,21 +9,21 @@ from tiniscript.base.source import LARGEST_SOURCE
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say, text
-from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.formatter import format_source
 
 
 def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
     if given.is_image:
-        raise CommandError(2, "needs_text", file=inputs.shown(given.name), verb="fmt")
-    parsed = compiling.parsed(given, inputs.robot(options, language).kit)
+        raise CommandError(2, "needs_text", file=inputs.printable_name(given.name), verb="fmt")
+    parsed = compiling.parse_input(given, inputs.robot(options, language).kit)
     if not parsed.is_right:
         outputs.print_diagnostics(parsed, language)
         return 1
-    laid_out = formatted(parsed.source)
+    laid_out = format_source(parsed.source)
     if len(laid_out.encode()) > LARGEST_SOURCE:
-        raise CommandError(2, "fmt_too_large", file=inputs.shown(given.name))
-    name = inputs.shown(given.name)
+        raise CommandError(2, "fmt_too_large", file=inputs.printable_name(given.name))
+    name = inputs.printable_name(given.name)
     is_same = laid_out.encode() == given.data
     if options.check:
         key = "is_formatted" if is_same else "would_format"

@@ -7,25 +7,27 @@ from functools import partial
 
 from tiniscript.base.languages import languages
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.help import everything, listed, of, overview, show
-from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts.verbs import COMMANDS, WAS, said, typed
-from tiniscript.cli.verbless import meant, refuse, verbs_for
+from tiniscript.cli.help import full_help, help_of, list_commands, overview, show
+from tiniscript.cli.inputs import printable_name
+from tiniscript.cli.texts.verbs import COMMANDS, WAS, command_words, verb_text
+from tiniscript.cli.verbless import guess_verb, refuse, verbs_for
 
 
 def run(options: Namespace, language: str) -> int:
     about = " ".join(options.about)
     if not about:
         show(overview, language)
-    elif any(about in said("all", language).split() for language in languages()):
-        show(everything, language)
-    elif command := next((item for item in COMMANDS if typed(item) == about), WAS.get(about)):
-        show(partial(of, command), language)
+    elif any(about in verb_text("all", language).split() for language in languages()):
+        show(full_help, language)
+    elif command := next(
+        (item for item in COMMANDS if command_words(item) == about), WAS.get(about)
+    ):
+        show(partial(help_of, command), language)
     else:
-        result = [] if meant(about) else verbs_for(about)
+        result = [] if guess_verb(about) else verbs_for(about)
         if not result and " " in about:
-            raise CommandError(2, "none_does", found=shown(about))
+            raise CommandError(2, "none_does", found=printable_name(about))
         if not result:
             refuse(about, [], language)
-        show(partial(listed, result), language)
+        show(partial(list_commands, result), language)
     return 0

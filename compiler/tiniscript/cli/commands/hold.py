@@ -6,9 +6,9 @@ import sys
 from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
-from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.robot.connect import Connection, connect
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.texts import text
 from tiniscript.link.connection import PendingRequest
@@ -19,12 +19,12 @@ from tiniscript.link.requests import OK
 
 def run(options: Namespace, language: str) -> int:
     try:
-        with connected(options, language) as connection:
+        with connect(options, language) as connection:
             if connection.line.held_by:
-                values = {"port": shown(connection.port), "verb": connection.line.held_by}
+                values = {"port": printable_name(connection.port), "verb": connection.line.held_by}
                 raise CommandError(3, "held_already", **values)
             if connection.server is None:
-                raise CommandError(3, "cannot_share", port=shown(connection.port))
+                raise CommandError(3, "cannot_share", port=printable_name(connection.port))
             connection.meet()
             _Log(connection, options.json).keep()
     except KeyboardInterrupt:  # the usual way to end it
@@ -44,7 +44,12 @@ class _Log:
 
     def keep(self) -> None:
         """Print events until the port is gone."""
-        self._say("LINKED", "linked", robot=self.connection.name, port=shown(self.connection.port))
+        self._say(
+            "LINKED",
+            "linked",
+            robot=self.connection.name,
+            port=printable_name(self.connection.port),
+        )
         while True:
             result = self.connection.event()
             if result is not None:
@@ -58,7 +63,7 @@ class _Log:
         elif event.name == "STARTED":
             self._say(event.name, "link_started", program=f"{event.program:08x}")
         elif event.name == "LOST":
-            self._say(event.name, "link_searching", port=shown(self.connection.port))
+            self._say(event.name, "link_searching", port=printable_name(self.connection.port))
             self.search = self.connection.search()
         elif not self.bookkeeping.hides(event):
             self.printer.tell(time_ms, event)

@@ -7,23 +7,23 @@ from argparse import Namespace
 
 from tiniscript.cli import inputs
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.fleet import run_together
 from tiniscript.cli.robot.member import Member, Result, are_many
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     if are_many(options):
-        return together(options, robot, language, _identify_member)
+        return run_together(options, robot, language, _identify_member)
     with Connection(options, robot, language) as connection:
         connection.meet()
-        text = _identified(connection)
+        text = _identify(connection)
         print(json.dumps(_fields(connection)) if options.json else text)
     return 0
 
 
-def _identified(connection: Connection) -> str:
-    connection.ask(lambda session: session.identify())
+def _identify(connection: Connection) -> str:
+    connection.request(lambda session: session.identify())
     return connection.text("identified")
 
 
@@ -35,4 +35,4 @@ def _fields(connection: Connection) -> dict[str, object]:
 def _identify_member(connection: Connection, member: Member) -> Result:
     member.meet(connection)
     member.tell("crew_identifying")
-    return Result(True, _identified(connection), {"id": f"{connection.device_info.id:08x}"})
+    return Result(True, _identify(connection), {"id": f"{connection.device_info.id:08x}"})

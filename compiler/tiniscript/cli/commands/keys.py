@@ -11,7 +11,7 @@ from pathlib import Path
 from tiniscript.base import files
 from tiniscript.cli import outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.texts import say, text
 from tiniscript.link import keys
 from tiniscript.link.authority import RobotKey
@@ -29,7 +29,7 @@ def run(options: Namespace, language: str) -> int:
     except BadKeys as why:
         raise _key_file_error(own, "own_keys_bad", why) from None
     if keys.is_shared(own.path):
-        warning = CommandError(0, "keys_shared", file=shown(str(own.path)))
+        warning = CommandError(0, "keys_shared", file=printable_name(str(own.path)))
         print(warning.sentence(language), file=sys.stderr)
     if options.export is not None:
         _export(robot_keys, options.export, language)
@@ -49,41 +49,43 @@ def run(options: Namespace, language: str) -> int:
 def _export(robot_keys: list[RobotKey], name: str, language: str) -> None:
     path = Path(name)
     if path.exists():
-        raise CommandError(2, "export_there", file=shown(name))
+        raise CommandError(2, "export_there", file=printable_name(name))
     taken = [key._replace(is_stale=False) for key in robot_keys if not key.is_pending]
-    outputs.write(path, keys.written(taken), "unwritable_more --export", keys.MODE)
-    say("keys_exported", language, n=len(taken), file=shown(name))
+    outputs.write(path, keys.encode_keys(taken), "unwritable_more --export", keys.MODE)
+    say("keys_exported", language, n=len(taken), file=printable_name(name))
 
 
 def _import(own: KeyFile, name: str, language: str) -> None:
     try:
-        brought = keys.read(files.contents(Path(name), keys.FILE_BYTES))
+        brought = keys.decode_keys(files.contents(Path(name), keys.FILE_BYTES))
     except (OSError, ValueError, BadKeys):
-        raise CommandError(2, "bad_keys", file=shown(name)) from None
+        raise CommandError(2, "bad_keys", file=printable_name(name)) from None
     try:
         changed = own.add(brought)
     except TooManyKeys:
-        raise CommandError(2, "too_many_keys", most=str(keys.MOST), file=shown(name)) from None
+        raise CommandError(
+            2, "too_many_keys", most=str(keys.MOST), file=printable_name(name)
+        ) from None
     except BadKeys as why:
         raise _key_file_error(own, "own_keys_full", why) from None
-    say("keys_imported", language, n=changed, all=len(brought), file=shown(name))
+    say("keys_imported", language, n=changed, all=len(brought), file=printable_name(name))
 
 
 def _forget(own: KeyFile, robot_keys: list[RobotKey], robot: str, language: str) -> None:
     gone = [key for key in robot_keys if robot.lower() == f"{key.id:08x}"]
     gone = gone or [key for key in robot_keys if robot == key.name]
     if len({key.id for key in gone}) != 1:
-        raise CommandError(2, "no_such_key", robot=shown(robot))
+        raise CommandError(2, "no_such_key", robot=printable_name(robot))
     try:
         own.forget(gone[0].id)
     except BadKeys as why:
         raise _key_file_error(own, "own_keys_full", why) from None
-    say("keys_forgotten", language, robot=shown(robot))
+    say("keys_forgotten", language, robot=printable_name(robot))
 
 
 def _accept(own: KeyFile, robot: str, language: str) -> None:
     if not re.fullmatch("[0-9a-fA-F]{8}", robot):
-        raise CommandError(2, "no_id", robot=shown(robot))
+        raise CommandError(2, "no_id", robot=printable_name(robot))
     try:
         own.accept(int(robot, 16))
     except BadKeys as why:
@@ -92,7 +94,9 @@ def _accept(own: KeyFile, robot: str, language: str) -> None:
 
 
 def _key_file_error(own: KeyFile, key: str, why: BadKeys) -> CommandError:
-    return CommandError(2, key, file=shown(str(own.path)), why=f": {why.why}" if why.why else "")
+    return CommandError(
+        2, key, file=printable_name(str(own.path)), why=f": {why.why}" if why.why else ""
+    )
 
 
 def _print(robot_keys: list[RobotKey], language: str) -> None:
@@ -100,7 +104,9 @@ def _print(robot_keys: list[RobotKey], language: str) -> None:
         say("no_keys", language)
     for key in sorted(robot_keys, key=lambda key: (key.name, key.id, key.which)):
         kind = text(f"kind_{KEYS[key.which][0].lower()}", language)
-        row = text("key_row", language).format(id=f"{key.id:08x}", kind=kind, name=shown(key.name))
+        row = text("key_row", language).format(
+            id=f"{key.id:08x}", kind=kind, name=printable_name(key.name)
+        )
         marks = [name for name in ("pending", "stale") if getattr(key, f"is_{name}")]
         more = "".join(f"   ({text(f'key_{name}', language)})" for name in marks)
         print(row.rstrip() + more)

@@ -11,7 +11,7 @@ from tiniscript.cli.lesson_check import check
 from tiniscript.cli.terminal import pager
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.cli.texts.options import LESSON_ACTIONS as ACTIONS
-from tiniscript.cli.texts.options import of_verb
+from tiniscript.cli.texts.options import options_of
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.lesson import Lesson, LessonRefused
 from tiniscript.lessons.markdown import as_text
@@ -24,7 +24,9 @@ def run(options: Namespace, language: str) -> int:
     action = options.action or LIST
     if action != LIST and action not in ACTIONS:
         known = f"{', '.join(list(ACTIONS)[:-1])} {text('or', language)} {list(ACTIONS)[-1]}"
-        raise CommandError(2, "lesson_action", known=known, found=inputs.shown(action) or "''")
+        raise CommandError(
+            2, "lesson_action", known=known, found=inputs.printable_name(action) or "''"
+        )
     _refuse_others(options, action)
     if action == LIST:
         return _list(language)
@@ -39,13 +41,13 @@ def run(options: Namespace, language: str) -> int:
             return _show(folder, options.teacher, language)
         return _sheet(folder, lesson, options, language)
     except LessonRefused as refused:
-        alone, file = ("no_such_lesson", "no_page"), inputs.shown(options.number)
-        raise inputs.refused(refused, language, "lesson_refused", alone, file=file) from None
+        alone, file = ("no_such_lesson", "no_page"), inputs.printable_name(options.number)
+        raise inputs.refusal(refused, language, "lesson_refused", alone, file=file) from None
 
 
 def _refuse_others(options: Namespace, action: str) -> None:
     """Refuse what only goes with another action."""
-    for option in of_verb("lesson"):
+    for option in options_of("lesson"):
         is_others = any(option.name in item for item in ACTIONS.values())
         if is_others and option.name not in ACTIONS.get(action, ()):
             if getattr(options, option.name):
@@ -90,9 +92,14 @@ def _show(folder: Path, is_teachers: bool, language: str) -> int:
 
 def _sheet(folder: Path, lesson: Lesson, options: Namespace, language: str) -> int:
     if options.output is None:
-        raise CommandError(2, "lesson_where", number=inputs.shown(options.number))
+        raise CommandError(2, "lesson_where", number=inputs.printable_name(options.number))
     page = sheet(_page(folder, options.teacher, language), lesson, options.teacher, language)
     if not outputs.put(options.output, page.encode()):
         return 0
-    say("lesson_sheet", language, file=inputs.shown(options.output), title=lesson.titles[language])
+    say(
+        "lesson_sheet",
+        language,
+        file=inputs.printable_name(options.output),
+        title=lesson.titles[language],
+    )
     return 0

@@ -15,15 +15,15 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit, remote_keys
 from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.description import introduced
+from tiniscript.cli.robot.description import introduce
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
-from tiniscript.cli.robot.live_state import Known, Line, Value, header, open_ends
+from tiniscript.cli.robot.live_state import Line, LiveState, Value, header, open_ends
 from tiniscript.cli.robot.remote_keys import TerminalRemote
 from tiniscript.cli.robot.run_monitor import INTERRUPTED, RunMonitor, stop_and_say
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.library import source_map
-from tiniscript.library.compiling import kit_of, naming
-from tiniscript.library.known_kits import lacking
+from tiniscript.library.compiling import kit_of, with_robot_hints
+from tiniscript.library.known_kits import missing_need
 from tiniscript.library.other_robots import is_other_robots
 from tiniscript.library.refusing import lacks_remote
 from tiniscript.link.messages import STATUSES
@@ -44,7 +44,7 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(2, "keys_no_terminal")
     robot = inputs.robot(options, language)
 
-    known = Known(robot.kit)
+    known = LiveState(robot.kit)
     if line is not None and line != "-" and not _is_runnable(line, known, robot, options):
         return 1
     with Connection(options, robot, language) as connection:
@@ -56,23 +56,23 @@ def run(options: Namespace, language: str) -> int:
         talk.meet()
         if line is None or line == "-":
             return talk.all_of(sys.stdin)
-        return talk.do(line, is_last=True)
+        return talk.run_line(line, is_last=True)
 
 
-def _is_runnable(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
+def _is_runnable(line: str, known: LiveState, robot: Robot, options: Namespace) -> bool:
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
     language: str = options.language
     if options.robot is None:
-        compiled = naming(known.line(line, 0).compiled, robot, is_chosen=True)
+        compiled = with_robot_hints(known.line(line, 0).compiled, robot, is_chosen=True)
         if is_other_robots(compiled.diagnostics):
-            result = own_kit.of_answering(options, robot, language)
+            result = own_kit.find_answering_robot(options, robot, language)
             if result is not None:
                 return True  # it is compiled again for that robot
-    return _compiled(line, known, robot, language, True, SHORT_BYTES, warns=False) is not None
+    return _compile(line, known, robot, language, True, SHORT_BYTES, warns=False) is not None
 
 
-def _compiled(
-    line: str, known: Known, robot: Robot, language: str, is_last: bool, room: int,
+def _compile(
+    line: str, known: LiveState, robot: Robot, language: str, is_last: bool, room: int,
     warns: bool = True,
 ) -> Line | None:  # fmt: skip
     """Compile a line into at most `room` bytes of code, and print its diagnostics, those of a right
@@ -84,11 +84,13 @@ def _compiled(
         raise CommandError(1, "live_button")
     result = known.line(line, 0 if is_last else room)
     if warns or not result.compiled.is_right:
-        outputs.print_diagnostics(naming(result.compiled, robot, is_chosen=True), language)
+        outputs.print_diagnostics(
+            with_robot_hints(result.compiled, robot, is_chosen=True), language
+        )
     if not result.compiled.is_right:
         return None
     assert result.compiled.verdict is not None
-    if lacks := lacking(result.compiled.verdict.needs, robot):
+    if lacks := missing_need(result.compiled.verdict.needs, robot):
         raise CommandError(1, lacks, robot=robot.name, file="prog.ts")
     code = len(result.compiled.code)
     if code > room:
@@ -99,7 +101,7 @@ def _compiled(
 class Repl:
     """Lines to a robot, one after the other."""
 
-    def __init__(self, connection: Connection, known: Known, options: Namespace) -> None:
+    def __init__(self, connection: Connection, known: LiveState, options: Namespace) -> None:
         self.connection = connection
         self.options = options
         self.language = connection.language
@@ -112,13 +114,13 @@ class Repl:
         if own_kit.take(self.connection, self.options):
             self.known.kit = self.connection.profile.kit
 
-    def do(self, line: str, is_last: bool = False) -> int:
+    def run_line(self, line: str, is_last: bool = False) -> int:
         """Run a line; return the exit code. Ctrl-C stops the robot."""
         if header(line) == "PING":
-            return introduced(self.connection, is_json=False)
+            return introduce(self.connection, is_json=False)
         robot = self.connection.profile
         room = short_bytes(self.connection.device_info)  # less where frames are sealed
-        result = _compiled(line, self.known, robot, self.language, is_last, room)
+        result = _compile(line, self.known, robot, self.language, is_last, room)
         if result is None:
             return 1
         if lacks_remote(result.compiled.code, self.known.kit, self.connection.device_info):
@@ -136,7 +138,7 @@ class Repl:
                 say("live_known", self.language, names=names)
         return code
 
-    def whole(self, line: str, more: Callable[[], str | None]) -> str:
+    def read_block(self, line: str, more: Callable[[], str | None]) -> str:
         """Return a line with those that its blocks go on over, up to the first one with a mistake.
 
         `more` returns the next line, or None if there is none.
@@ -153,17 +155,17 @@ class Repl:
 
     def _run(self, line: Line, is_last: bool) -> int:
         compiled = line.compiled
-        places = source_map.made(compiled)
+        places = source_map.map_of_compiled(compiled)
         source_map.remember(compiled.image, places)  # tsc doctor names a fault's line later
         kit = kit_of(line.compiled, self.connection.profile)
-        reply = self.connection.ask(lambda session: session.live(line.compiled.code, kit))
+        reply = self.connection.request(lambda session: session.live(line.compiled.code, kit))
         program = reply.values.program
         printer = printer_of(self.connection, False, places, program, line.whole)
         catch = Catch(line.shown, self.known, printer, is_last)
         simulator = self.connection.simulator
         if simulator is not None:
             simulator.watch()
-        quiet = self.connection.quiet.then(self.connection.text("line_runs"))
+        quiet = self.connection.quiet.with_words(self.connection.text("line_runs"))
         look = quiet.look if simulator is None else None  # its picture shows that
         monitor = RunMonitor(self.connection, printer, catch.hold, look)
         if self.remote is not None:
@@ -180,7 +182,7 @@ class Repl:
         self.meet()
         with TerminalRemote(self.connection) as self.remote:
             self.connection.say("live_keys")
-            code = self._attend() if line is None else self.do(line, is_last=True)
+            code = self._attend() if line is None else self.run_line(line, is_last=True)
             return 0 if self.remote.has_quit and code == INTERRUPTED else code
 
     def _attend(self) -> int:
@@ -204,7 +206,7 @@ class Repl:
             if line.strip():
                 if self._report_time_limit():
                     return 0
-                code = self.do(self.whole(line, lambda: next(lines, None)))
+                code = self.run_line(self.read_block(line, lambda: next(lines, None)))
                 if code or self.connection.is_time_over:
                     return code
         return 0
@@ -232,7 +234,7 @@ class Repl:
             while True:
                 self._print_pending_events()
                 try:
-                    line = self.whole(input(PROMPT), lambda: input(MORE))
+                    line = self.read_block(input(PROMPT), lambda: input(MORE))
                 except EOFError:
                     print()
                     return 0
@@ -242,7 +244,7 @@ class Repl:
                 if self._report_time_limit():
                     return 0
                 self._print_pending_events()
-                request = requested(line, self.known)
+                request = requested_command(line, self.known)
                 if request == LEAVE:
                     return 0
                 if request == HELP_ME:
@@ -255,7 +257,7 @@ class Repl:
     def _try(self, line: str) -> None:
         """Run a line; print any failure, and go on with the session."""
         try:
-            self.do(line)
+            self.run_line(line)
         except CommandError as failure:
             if failure.key in ("port_gone", "radio_gone", "holder_ended"):
                 raise
@@ -279,7 +281,7 @@ class Repl:
                 printer.tell(*found)
 
 
-def requested(line: str, known: Known) -> str:
+def requested_command(line: str, known: LiveState) -> str:
     """Return the command to tsc, not to the robot, that a line consists of, or an empty text.
 
     A name of the kit or of the user's program is no such command.
@@ -294,7 +296,7 @@ class Catch:
     """Hides the SHOW events that report a line's variables, and learns the values from them."""
 
     def __init__(
-        self, shown: tuple[str, ...], known: Known, printer: EventPrinter, says_done: bool
+        self, shown: tuple[str, ...], known: LiveState, printer: EventPrinter, says_done: bool
     ) -> None:
         self.shown = shown
         self.known = known
@@ -338,7 +340,7 @@ def _is_mark(event: ShownEvent) -> bool:
 
 
 @contextlib.contextmanager
-def _history(known: Known) -> Iterator[None]:
+def _history(known: LiveState) -> Iterator[None]:
     """Arrow keys bring back earlier lines, of earlier sessions too; Tab completes words."""
     if sys.platform == "win32":  # its console has a history of its own
         yield

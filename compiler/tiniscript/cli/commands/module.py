@@ -7,29 +7,38 @@ from argparse import Namespace
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.causes import rows
-from tiniscript.doctor.diagnosis import unopened
+from tiniscript.doctor.diagnosis import open_failure
 from tiniscript.doctor.findings import Finding, sure
 from tiniscript.doctor.system import System
 from tiniscript.link import ports
 from tiniscript.link.errors import PortError
 from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
-from tiniscript.link.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
+from tiniscript.link.modules.set_up import (
+    BAUD,
+    DONE,
+    GOOD,
+    NAME,
+    PIN,
+    Outcome,
+    Step,
+    WantedSettings,
+)
 from tiniscript.link.modules.talk import Module, ask, find_module
 from tiniscript.link.wire import Wire
 
 
 def run(options: Namespace, language: str) -> int:
-    expected = _wanted(options)
+    expected = _wanted_settings(options)
     port = _port(options)
     try:
-        wire = Wire(ports.opened(port, BAUDS[0]))
+        wire = Wire(ports.open_port(port, BAUDS[0]))
     except PortError as failure:
-        return _end(unopened(System(), port, failure)._replace(of="module"), language)
+        return _end(open_failure(System(), port, failure)._replace(of="module"), language)
     steps: list[Step] = []  # the speed, once a command for it may have been sent
     try:
         return _SetUp(wire, options, expected, language, steps).run()
@@ -56,14 +65,14 @@ def _speed_after_abort(steps: list[Step], language: str) -> str:
     return text("module_left", language).format(baud=steps[0].value)
 
 
-def _wanted(options: Namespace) -> Wanted:
+def _wanted_settings(options: Namespace) -> WantedSettings:
     """Return what the options ask for. Raises CommandError for what no module can have."""
     name: str | None = options.name
     if options.id is not None:
         if name is not None:
             raise CommandError(2, "module_name_and_id")
         if not re.fullmatch("[0-9a-fA-F]{1,8}", options.id):
-            raise CommandError(2, "module_bad_id", found=shown(options.id) or "''")
+            raise CommandError(2, "module_bad_id", found=printable_name(options.id) or "''")
         name = set_up.name_for(int(options.id, 16))
     baud = None
     if options.baud is not None:
@@ -71,23 +80,23 @@ def _wanted(options: Namespace) -> Wanted:
         if options.baud not in known:
             raise CommandError(
                 2, "module_bad_baud", known=", ".join(map(str, sorted(BAUDS))),
-                found=shown(options.baud) or "''",
+                found=printable_name(options.baud) or "''",
             )  # fmt: skip
         baud = known[options.baud]
-    result = Wanted(name, options.pin, baud)
+    result = WantedSettings(name, options.pin, baud)
     misfits = [set_up.misfit(result, dialect) for dialect in DIALECTS]
     if all(misfits):
         _refuse(result, max(DIALECTS, key=lambda dialect: dialect.name_bytes), misfits[0])
     return result
 
 
-def _refuse(wanted: Wanted, dialect: Dialect, what: str) -> None:
+def _refuse(wanted: WantedSettings, dialect: Dialect, what: str) -> None:
     if what == NAME:
         raise CommandError(
             2,
             "module_bad_name",
             most=str(dialect.name_bytes),
-            found=shown(wanted.name or "") or "''",
+            found=printable_name(wanted.name or "") or "''",
         )
     if what == PIN:
         raise CommandError(2, "module_bad_pin", digits=str(dialect.pin_digits), module=dialect.name)
@@ -98,17 +107,22 @@ def _port(options: Namespace) -> str:
         raise CommandError(2, "module_no_port")
     port = inputs.port(options.port)
     if ports.is_radio(port):
-        raise CommandError(2, "module_by_radio", port=shown(port))
+        raise CommandError(2, "module_by_radio", port=printable_name(port))
     return port
 
 
 class _SetUp:
     def __init__(
-        self, wire: Wire, options: Namespace, wanted: Wanted, language: str, begun: list[Step]
+        self,
+        wire: Wire,
+        options: Namespace,
+        wanted: WantedSettings,
+        language: str,
+        begun: list[Step],
     ) -> None:
         self.wire, self.options, self.wanted = wire, options, wanted
         self.language, self.begun = language, begun
-        self.port = shown(options.port)
+        self.port = printable_name(options.port)
 
     def run(self) -> int:
         doing = Doing()
@@ -127,7 +141,7 @@ class _SetUp:
         outcomes: list[Outcome] = []
         if not self.options.dry_run:
             self.begun += [step for step in plan if step.what == BAUD]
-            outcomes = set_up.done(self.wire, module, plan, self._print_outcome)
+            outcomes = set_up.apply_steps(self.wire, module, plan, self._print_outcome)
         else:
             self._show(plan)
         is_done = all(outcome.how in GOOD for outcome in outcomes)
@@ -156,10 +170,10 @@ class _SetUp:
             values[BAUD] = next(
                 (str(baud) for baud, value in dialect.bauds.items() if value == text), ""
             )
-        return {what: shown(value) for what, value in values.items() if value}
+        return {what: printable_name(value) for what, value in values.items() if value}
 
     def _introduce(self, module: Module, now: dict[str, str]) -> None:
-        version = shown(module.version) or self._text("module_no_version")
+        version = printable_name(module.version) or self._text("module_no_version")
         print(
             self._text("module_found", module=module.dialect.name, port=self.port,
                        version=version, baud=str(module.baud))
@@ -179,5 +193,5 @@ class _SetUp:
         name = self._text(f"module_what_{step.what}", value=step.value)
         if step.what == BAUD and how == DONE:
             how = "done_baud" if text == step.value else "done_later"
-        text = shown(text) or self._text("module_no_word")
+        text = printable_name(text) or self._text("module_no_word")
         _end(sure(f"module_{how}", name=name, said=text), self.language)

@@ -8,7 +8,7 @@ from time import monotonic
 
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import ROWS
-from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.robot.connect import Connection, connect
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.terminal.plot import Board
@@ -20,7 +20,7 @@ def run(options: Namespace, language: str) -> int:
 
     rows: Rows | None = None
     try:
-        with connected(options, language) as connection:
+        with connect(options, language) as connection:
             connection.meet()
             if options.csv is not None:  # without a robot the old file stays
                 rows = Rows(options.csv, ROWS)

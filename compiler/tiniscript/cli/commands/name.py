@@ -5,9 +5,9 @@ from __future__ import annotations
 from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import name_bytes
-from tiniscript.cli.robot.connect import connected
+from tiniscript.cli.robot.connect import connect
 from tiniscript.link.requests import TAKEN
 
 
@@ -16,11 +16,11 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(2, "no_name")
     name: str = options.name
     data = name_bytes(name)
-    with connected(options, language) as connection:
+    with connect(options, language) as connection:
         connection.meet()
-        reply = connection.ask(lambda session: session.name(data), TAKEN)
+        reply = connection.request(lambda session: session.name(data), TAKEN)
         connection.remember(name)
         if reply.status:  # the name is set, but may not be saved
             raise connection.failure(reply)
-        connection.say("named", name=shown(name))
+        connection.say("named", name=printable_name(name))
     return 0

@@ -10,18 +10,18 @@ from contextlib import closing
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import baud_of, opened_client
+from tiniscript.cli.inputs import printable_name
+from tiniscript.cli.robot.connect import baud_of, open_client
 from tiniscript.cli.robot.in_reach import AT_ONCE, find_robots
-from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, listed
-from tiniscript.cli.texts import Said, text
+from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, list_rows
+from tiniscript.cli.texts import Sentence, text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link import known_ports
-from tiniscript.link.authority import whose
+from tiniscript.link.authority import ownership_of
 from tiniscript.link.connection import stranger
-from tiniscript.link.foreign import told
+from tiniscript.link.foreign import explain
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.protocol import LOOKER
 from tiniscript.robots.profile import Robot
@@ -34,10 +34,10 @@ def run(options: Namespace, language: str) -> int:
     baud = None if options.baud is None else baud_of(options, robot, language)
     in_reach = NOWHERE
     if options.ask and options.port is None:
-        in_reach = find_robots(list(known_ports.known().names), language)
+        in_reach = find_robots(list(known_ports.remembered_ports().names), language)
         for note in in_reach.notes:  # what could not be searched
             print(note, file=sys.stderr, flush=True)
-    rows = listed(language, options.port, in_reach)
+    rows = list_rows(language, options.port, in_reach)
     if options.ask:
         absent: Row = {"answer": None, "said": text("out_of_reach", language)}
 
@@ -59,7 +59,7 @@ def run(options: Namespace, language: str) -> int:
 def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     """Return the robot that answers on a port, or why none does."""
     try:
-        with closing(opened_client(port, robot, LOOKER, baud, language, OPEN_S)) as client:
+        with closing(open_client(port, robot, LOOKER, baud, language, OPEN_S)) as client:
             reply = client.hello()
             device_info, heard = client.line.robot, client.line.heard
             found = stranger(client.line)
@@ -70,9 +70,11 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     if reply.status == OK and device_info is not None:
         opening.remember(port, device_info.name, is_used=False)
         called = (
-            shown(device_info.name) or shipped_of_kit(device_info.kit) or f"{device_info.id:08x}"
+            printable_name(device_info.name)
+            or shipped_of_kit(device_info.kit)
+            or f"{device_info.id:08x}"
         )
-        owner = whose(device_info)
+        owner = ownership_of(device_info)
         sentence = text("port_whose", language).format(
             said=text("port_robot", language).format(name=called),
             whose=text(f"whose_{owner}", language),
@@ -85,5 +87,5 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "said": sentence,
         }
     if found is not None and (found.has_row or found.is_sure):
-        return {"answer": None, "said": Said(told(found, language).said.rstrip("."))}
+        return {"answer": None, "said": Sentence(explain(found, language).said.rstrip("."))}
     return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}

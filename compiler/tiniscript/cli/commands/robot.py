@@ -14,14 +14,14 @@ from tiniscript.base.files import is_pipe
 from tiniscript.base.trace import Event
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import decimal, name_bytes, whole_number
 from tiniscript.cli.robot import simulator_options
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.terminal.screen import Screen
-from tiniscript.cli.terminal.signals import ended_by_signal
+from tiniscript.cli.terminal.signals import handle_signals
 from tiniscript.cli.terminal.world_drawing import WorldPicture
 from tiniscript.cli.texts import say_aside, text
 from tiniscript.library import install_advice, opening
@@ -53,10 +53,10 @@ def run(options: Namespace, language: str) -> int:
     hurry = simulator_options.hurry_of(options, language)
     faults = simulator_options.faults_of(options, language)
     memory = _memory(options.memory)
-    robot = simulator_options.made(options, profile, language, memory, baud)
+    robot = simulator_options.make_robot(options, profile, language, memory, baud)
     if memory is not None and len(memory) != len(robot.memory):
         size = str(len(robot.memory))
-        raise CommandError(2, "bad_memory", file=shown(options.memory), bytes=size)
+        raise CommandError(2, "bad_memory", file=printable_name(options.memory), bytes=size)
     if options.name is not None:
         _name(robot, options.name)
     transports = _transports(port, options.pty)
@@ -65,7 +65,7 @@ def run(options: Namespace, language: str) -> int:
         if options.announce:
             name = options.name or f"{profile.name}-{transports.port}"
             announcement = _announcement(name, transports.port)
-        running = directory.Running(
+        running = directory.RunningRobot(
             transports.address, robot.profile.name, robot.world.name, options.name or "",
             transports.terminal,
         )  # fmt: skip
@@ -104,7 +104,7 @@ class _Stage:
         robot = self.simulator.robot
         self._introduce()
         try:
-            with Keys() as keys, ended_by_signal() as ended:
+            with Keys() as keys, handle_signals() as ended:
                 self._begin()
                 while not ended.is_set and (end_ms is None or robot.now_ms < end_ms):
                     if pushes and robot.now_ms >= pushes[0][0]:
@@ -112,7 +112,7 @@ class _Stage:
                     self.simulator.turn(self._limit_s(pushes, end_ms))
                     self._print_events(robot.take_events())
                     self._save(is_due=False)
-                    if not self._handle_keys(keys.pressed()):
+                    if not self._handle_keys(keys.read_pressed()):
                         break
         except KeyboardInterrupt:
             pass
@@ -134,9 +134,9 @@ class _Stage:
         if transports.terminal:
             print(transports.terminal, flush=True)
         if self.announced:
-            print(shown(self.announced), flush=True)
+            print(printable_name(self.announced), flush=True)
         language = self.language
-        name = shown(self.options.name or "") or robot.profile.labels[language]["robot"]
+        name = printable_name(self.options.name or "") or robot.profile.labels[language]["robot"]
         say_aside("robot_here", language, robot=name, world=robot.world.labels[language])
 
     def _begin(self) -> None:
@@ -223,7 +223,7 @@ def _announcement(name: str, number: int) -> Announcement:
     try:
         return Announcement(name, number)
     except NameTaken:
-        raise CommandError(3, "name_taken", name=shown(name)) from None
+        raise CommandError(3, "name_taken", name=printable_name(name)) from None
     except OSError as why:
         raise CommandError(3, "no_announcement", why=why) from None
 
@@ -234,7 +234,7 @@ def _pushes_ms(option: str, found: str | None) -> list[int]:
     values = [decimal(part.strip()) for part in found.split(",")]
     known = [value for value in values if value is not None and value >= 0]
     if len(known) != len(values):
-        raise CommandError(2, "bad_button", option=option, found=shown(found) or "''")
+        raise CommandError(2, "bad_button", option=option, found=printable_name(found) or "''")
     return known
 
 
@@ -243,14 +243,16 @@ def _memory(name: str | None) -> bytes | None:
     if name is None:
         return None
     if is_pipe(name):
-        raise CommandError(2, "unreadable_memory", file=shown(name), why=os.strerror(errno.ESPIPE))
+        raise CommandError(
+            2, "unreadable_memory", file=printable_name(name), why=os.strerror(errno.ESPIPE)
+        )
     try:
         with Path(name).open("rb") as file:
             return file.read(MOST_BYTES)
     except FileNotFoundError:
         return None
     except (OSError, ValueError) as why:
-        raise CommandError(2, "unreadable_memory", file=shown(name), why=why) from None
+        raise CommandError(2, "unreadable_memory", file=printable_name(name), why=why) from None
 
 
 def _name(robot: VirtualRobot, name: str) -> None:

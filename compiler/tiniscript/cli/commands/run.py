@@ -10,12 +10,12 @@ from tiniscript.base.kit import Device
 from tiniscript.base.trace import Ending, Event
 from tiniscript.bytecode.image import Image
 from tiniscript.cli import images, inputs
-from tiniscript.cli.errors import CommandError, not_installed
+from tiniscript.cli.errors import CommandError, missing_package_error
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.options import sensor_lists, thousandths, whole_number
 from tiniscript.cli.paths import is_recording
 from tiniscript.cli.texts import say_aside
-from tiniscript.library.runs import begun, cpp_machine
+from tiniscript.library.runs import cpp_machine, iter_actions
 from tiniscript.robots.profile import Robot
 from tiniscript.vm.runner import MAX_STEPS, MachineOf
 
@@ -44,7 +44,7 @@ def run(options: Namespace, language: str) -> int:
     if ready is None:
         return 1
     machine_of = _cpp_machine(ready.image, robot) if options.machine == "cpp" else None
-    begins = begun(ready.image, robot, lists, max_ms, max_steps, seed, machine_of)
+    begins = iter_actions(ready.image, robot, lists, max_ms, max_steps, seed, machine_of)
     read: set[int] = set()
     events = _recording_reads(begins, read)
     if options.show and sys.stderr.isatty():
@@ -70,7 +70,7 @@ def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
     try:
         return cpp_machine(image, robot)
     except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
-        raise not_installed("no_wasmtime", why) from None
+        raise missing_package_error("no_wasmtime", why) from None
 
 
 def _recording_reads(events: Iterator[Event | Ending], read: set[int]) -> Iterator[Event | Ending]:

@@ -10,14 +10,14 @@ from pathlib import Path
 from tiniscript import robots
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.diagnosing import diagnosis_of, expected_of
 from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.cli.texts import say, text
 from tiniscript.cli.texts.causes import as_data, rows
 from tiniscript.doctor import report
-from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.examination import Expectations
 from tiniscript.doctor.findings import CAUSES, OK, OPEN, WRONG, Finding, sure
 from tiniscript.library import opening
 
@@ -47,12 +47,12 @@ def run(options: Namespace, language: str) -> int:
         data = ("\n".join(_report(findings, name, port or "", language)) + "\n").encode()
         outputs.write(Path(options.report), data, "unwritable_at --report")
         if not options.json:
-            say("selftest_report", language, file=shown(options.report))
+            say("selftest_report", language, file=printable_name(options.report))
     return 3 if any(finding.verdict == WRONG for finding in findings) else 0
 
 
 def _without_robot(
-    options: Namespace, port: str | None, expected: Expected, failure: CommandError,
+    options: Namespace, port: str | None, expected: Expectations, failure: CommandError,
     language: str,
 ) -> list[Finding]:  # fmt: skip
     """Return what the doctor finds where no robot has answered.
@@ -78,7 +78,7 @@ def _print(
         print(json.dumps({"robot": name, "port": port, "found": fields}, indent=2))
         return
     if name:
-        say("selftest_head", language, robot=name, port=shown(port or ""))
+        say("selftest_head", language, robot=name, port=printable_name(port or ""))
     print("\n".join(rows(findings, language)))
     counts = {item: sum(row.verdict == item for row in findings) for item in (OK, WRONG, OPEN)}
     good, wrong, left = counts[OK], counts[WRONG], counts[OPEN]
@@ -87,7 +87,7 @@ def _print(
 
 def _report(findings: list[Finding], name: str, port: str, language: str) -> list[str]:
     """Return the lines of a report: nothing in it tells whose robot or computer it is."""
-    hidden = [(item, report.shown_port(port)) for item in (port, shown(port)) if port]
+    hidden = [(item, report.shown_port(port)) for item in (port, printable_name(port)) if port]
     if name and name not in robots.names():  # a shipped one's says what it is, not whose
         hidden.append((name, report.HIDDEN))
 

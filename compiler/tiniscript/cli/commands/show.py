@@ -8,7 +8,7 @@ from tiniscript.cli import compiling, images, inputs, outputs
 from tiniscript.cli.disassembling import print_disassembly, print_json
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say
-from tiniscript.codegen.sketch.writing import BOARDS, lacks, sketch_of
+from tiniscript.codegen.sketch.writing import BOARDS, missing_feature, sketch_of
 from tiniscript.robots.profile import Robot
 
 
@@ -18,7 +18,7 @@ def run(options: Namespace, language: str) -> int:
     if options.arduino:
         return _sketch(options, given, robot, language)
     if options.output is not None:
-        raise CommandError(2, "output_needs_arduino", file=inputs.shown(options.output))
+        raise CommandError(2, "output_needs_arduino", file=inputs.printable_name(options.output))
     if given.is_image and options.robot is None:
         robot = images.robot_for(given, robot)
     ready = images.ready(given, robot, language)
@@ -27,7 +27,7 @@ def run(options: Namespace, language: str) -> int:
     if options.json:
         print_json(ready, robot)
     else:
-        print_disassembly(ready, robot, inputs.shown(given.name), language)
+        print_disassembly(ready, robot, inputs.printable_name(given.name), language)
     return 0
 
 
@@ -35,7 +35,7 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if options.json:
         raise CommandError(2, "sketch_or_json")
     if given.is_image:
-        raise CommandError(2, "sketch_needs_text", file=inputs.shown(given.name))
+        raise CommandError(2, "sketch_needs_text", file=inputs.printable_name(given.name))
     if robot.board.chip not in BOARDS:
         known = ", ".join(BOARDS)
         raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=known)
@@ -44,10 +44,10 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if not compiled.is_right:
         return 1
     assert compiled.program is not None
-    if missing := lacks(compiled.program, robot.kit):
-        raise CommandError(2, f"sketch_no_{missing}", file=inputs.shown(given.name))
+    if missing := missing_feature(compiled.program, robot.kit):
+        raise CommandError(2, f"sketch_no_{missing}", file=inputs.printable_name(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
     if outputs.put(options.output, sketch):
-        name = inputs.shown(robot.labels[language]["robot"])
-        say("sketch", language, file=inputs.shown(options.output), robot=name)
+        name = inputs.printable_name(robot.labels[language]["robot"])
+        say("sketch", language, file=inputs.printable_name(options.output), robot=name)
     return 0

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.robot.connect import Connection, connect
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
 
 
 def run(options: Namespace, language: str) -> int:
-    with connected(options, language) as connection:
+    with connect(options, language) as connection:
         connection.meet()
         try:
             return _start(connection, options.detach, options.json)
@@ -19,7 +19,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _start(connection: Connection, is_detached: bool, is_json: bool) -> int:
-    reply = connection.ask(lambda session: session.start(is_detached))
+    reply = connection.request(lambda session: session.start(is_detached))
     number, run = reply.values.program, reply.values.run
     key = "started_detached" if is_detached else "started"
     sentence = connection.text(key, checksum=f"{number:08x}")

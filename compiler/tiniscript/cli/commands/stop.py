@@ -7,7 +7,7 @@ from argparse import Namespace
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import are_many
 from tiniscript.cli.robot.stopping import hold_back, may_be_opened, stop_one
@@ -24,9 +24,9 @@ def run(options: Namespace, language: str) -> int:
         options.virtual = options.virtual and not options.ports
         is_many = are_many(options)
     if is_many:
-        from tiniscript.cli.robot.fleet import together
+        from tiniscript.cli.robot.fleet import run_together
 
-        return together(options, robot, language, stop_one)
+        return run_together(options, robot, language, stop_one)
     while True:
         with Connection(options, robot, language) as connection:
             port = connection.port
@@ -37,8 +37,8 @@ def run(options: Namespace, language: str) -> int:
                     print(json.dumps({"port": port, "is_done": True}))
                 else:
                     key = "held_back" if options.teacher else "stopped_on"
-                    say(key, language, port=shown(port))
+                    say(key, language, port=printable_name(port))
                 return 0
             if not may_be_opened(connection):
-                raise CommandError(3, "not_confirmed", port=shown(port))
+                raise CommandError(3, "not_confirmed", port=printable_name(port))
         options.port = port

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 from tiniscript.cli import inputs, page_build
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.terminal.progress import waiting
-from tiniscript.cli.terminal.signals import ended_by_signal
+from tiniscript.cli.terminal.progress import show_wait
+from tiniscript.cli.terminal.signals import handle_signals
 from tiniscript.cli.texts import say_aside
 from tiniscript.studio import building, class_keeping, serving
 from tiniscript.studio.classroom import Classroom
@@ -57,10 +57,12 @@ def _serve(
     except OSError as why:
         address = f"http://{host}:{port}/"
         key = "studio_no_address" if options.is_class else "studio_taken"
-        raise CommandError(3, key, port=str(port), why=why, address=shown(address)) from None
+        raise CommandError(
+            3, key, port=str(port), why=why, address=printable_name(address)
+        ) from None
     thread = Thread(target=server.serve_forever, name="studio", daemon=True)
     try:
-        with ended_by_signal():
+        with handle_signals():
             thread.start()
             entrance = server.entrance()
             print(entrance, flush=True)
@@ -87,10 +89,10 @@ def _serve(
     finally:
         if thread.is_alive():
             server.shutdown()  # of one that has not begun it would wait for ever
-        with waiting("studio_stops", language):
+        with show_wait("studio_stops", language):
             unconfirmed = hosting.close()
         for silent in unconfirmed:
-            say_aside("not_confirmed", language, port=shown(silent))
+            say_aside("not_confirmed", language, port=printable_name(silent))
         server.server_close()
     return 0
 
@@ -98,7 +100,7 @@ def _serve(
 def _class_keeper() -> class_keeping.Keeper:
     try:
         return class_keeping.Keeper()
-    except class_keeping.Taken:
+    except class_keeping.ClassTaken:
         raise CommandError(3, "studio_two_classes") from None
 
 
@@ -132,5 +134,5 @@ def _address_option(address: str) -> str:
     except ValueError:
         result = IPv4Address(0)
     if result.is_unspecified or result.is_multicast:
-        raise CommandError(2, "studio_bad_address", found=shown(address))
+        raise CommandError(2, "studio_bad_address", found=printable_name(address))
     return str(result)

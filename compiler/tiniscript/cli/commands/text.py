@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.robot.connect import connected
+from tiniscript.cli.robot.connect import connect
 from tiniscript.link.messages import OWNED
 
 
@@ -13,7 +13,7 @@ def run(options: Namespace, language: str) -> int:
     if options.whether is None:
         raise CommandError(2, "on_or_off")
     is_allowed = options.whether == "on"
-    with connected(options, language) as connection:
+    with connect(options, language) as connection:
         info = connection.meet()
         connection.ask_or(lambda session: session.allow_text(is_allowed), "text_none", "BAD_VALUE")
         key = "text_on" if is_allowed else "text_off"

@@ -12,32 +12,32 @@ from typing import Any
 from tiniscript.base.fixed_point import ONE
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.options import thousandths, whole_number
-from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.robot.connect import Connection, connect
 from tiniscript.cli.robot.description import trim_in_words
-from tiniscript.cli.robot.trim_wizard import guided
+from tiniscript.cli.robot.trim_wizard import guide
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
-from tiniscript.link.trim import MOST_PACE, Pace, Trim, told
+from tiniscript.link.trim import MOST_PACE, Pace, Trim, trim_from_reply
 
 
 def run(options: Namespace, language: str) -> int:
     given = _trim_options(options, language)
-    with connected(options, language) as connection:
+    with connect(options, language) as connection:
         connection.meet()
-        before = told(connection.ask(lambda session: session.trim()).values)
+        before = trim_from_reply(connection.request(lambda session: session.trim()).values)
         if options.show:
             _print(connection, "trim_tells", before, options.json)
             return 0
         if options.reset or given:
-            trim = _changed(before, given, options.reset)
+            trim = _change_trim(before, given, options.reset)
         else:
-            trim = guided(connection, before)
+            trim = guide(connection, before)
         # This trim may be set already; the status OK means that it is saved.
-        connection.ask(lambda session: session.trim(trim.data()))
+        connection.request(lambda session: session.trim(trim.data()))
         _print(connection, "trim_keeps", trim, options.json)
     return 0
 
 
-def _changed(before: Trim, given: dict[str, Any], is_reset: bool) -> Trim:
+def _change_trim(before: Trim, given: dict[str, Any], is_reset: bool) -> Trim:
     """Return a trim with what the options say."""
     paces = {name: given.pop(name) for name in Pace._fields if name in given}
     if paces and before.pace is None:

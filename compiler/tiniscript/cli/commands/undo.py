@@ -8,10 +8,10 @@ from typing import ClassVar
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
-from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.fleet import run_together
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.library import source_map
@@ -29,10 +29,10 @@ class UndoSaving(Saving):
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     if are_many(options):
-        return together(options, robot, language, _undo_member)
+        return run_together(options, robot, language, _undo_member)
     with Connection(options, robot, language) as connection:
         connection.meet()
-        receipt = Undone(connection)
+        receipt = UndoReceipt(connection)
         print(json.dumps(receipt.fields()) if options.json else receipt.text(), flush=True)
         try:
             UndoSaving(connection, printer_of(connection, options.json), receipt.values).wait()
@@ -43,32 +43,32 @@ def run(options: Namespace, language: str) -> int:
     # the command that held the port has ended, as its program has
     with Connection(options, robot, language) as connection:
         connection.meet()
-        status = connection.ask(lambda session: session.status()).values
+        status = connection.request(lambda session: session.status()).values
         if status.program != receipt.values.program:
-            raise CommandError(3, "undo_lost", port=shown(connection.port))
+            raise CommandError(3, "undo_lost", port=printable_name(connection.port))
         UndoSaving(connection, printer_of(connection, options.json), receipt.values).wait()
     return 0
 
 
 def _undo_member(connection: Connection, member: Member) -> Result:
     member.meet(connection)
-    receipt = Undone(connection)
+    receipt = UndoReceipt(connection)
     member.tell("crew_saving")
     quiet = EventPrinter(connection.language, False, out=lambda line: None)
     UndoSaving(connection, quiet, receipt.values).wait()
-    return Result(True, receipt.line(), receipt.named())
+    return Result(True, receipt.line(), receipt.program_fields())
 
 
-class Undone:
+class UndoReceipt:
     """The receipt of UNDO."""
 
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
-        self.values: ReceiptReply = connection.ask(lambda session: session.undo()).values
+        self.values: ReceiptReply = connection.request(lambda session: session.undo()).values
         places = source_map.recall(self.values.program)
         self.program = None if places is None else places.name
 
-    def named(self) -> dict[str, object]:
+    def program_fields(self) -> dict[str, object]:
         """Return which program is back, as data. `program`: its file, where that is known."""
         return {"checksum": f"{self.values.program:08x}", "program": self.program}
 
@@ -79,14 +79,14 @@ class Undone:
             "event": "RECEIPT",
             "robot": self.connection.device_info.name,
             "port": self.connection.port,
-            **self.named(),
+            **self.program_fields(),
             "saved": saved,
             "slot": self.values.slot if saved == "STORED" else None,
         }
 
     def line(self) -> str:
         """Return which program is back, in one line."""
-        name = f" ({shown(self.program)})" if self.program is not None else ""
+        name = f" ({printable_name(self.program)})" if self.program is not None else ""
         checksum = f"{self.values.program:08x}"
         return self.connection.text("undone_line", checksum=checksum, name=name)
 

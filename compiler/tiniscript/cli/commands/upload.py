@@ -41,23 +41,23 @@ def run(options: Namespace, language: str) -> int:
     if options.record is not None and (is_many or not is_followed):
         raise CommandError(2, "record_follows")
     if options.record is not None:
-        from tiniscript.cli.robot.recorded_run import known_robot, source_text
+        from tiniscript.cli.robot.recorded_run import require_known_robot, source_text
 
-        known_robot(robot)
+        require_known_robot(robot)
         options.recorded_text = source_text(given)
     if options.breaks and (is_many or not is_followed):
         raise CommandError(2, "break_follows")
     if is_many:
         from tiniscript.cli.robot.fleet_upload import upload_to_many
 
-        return upload_to_many(options, robot, language, ready, inputs.shown(given.name))
+        return upload_to_many(options, robot, language, ready, inputs.printable_name(given.name))
     with Connection(options, robot, language) as connection:
         if connection.simulator is not None and options.detach:
             raise CommandError(2, "virtual_and_detach")
         if ready.image.start == "PING":  # a program that asks who is there
-            from tiniscript.cli.robot.description import introduced
+            from tiniscript.cli.robot.description import introduce
 
-            return introduced(connection, options.json)
+            return introduce(connection, options.json)
         connection.meet()
         is_kit_wrong = ready.image.devices and connection.device_info.kit != robot.kit.fingerprint
         if is_open and is_kit_wrong and own_kit.take(connection, options):
@@ -65,7 +65,7 @@ def run(options: Namespace, language: str) -> int:
             if ready is None:
                 return 1
         try:
-            return _upload(connection, ready, inputs.shown(given.name), options)
+            return _upload(connection, ready, inputs.printable_name(given.name), options)
         except KeyboardInterrupt:
             return stop_and_say(connection)
 
@@ -83,7 +83,7 @@ def _ready(
     try:
         return images.ready(given, robot, language, is_strict=True, is_open=True)
     except images.OtherRobot as other:
-        result = own_kit.of_answering(options, robot, language)
+        result = own_kit.find_answering_robot(options, robot, language)
         if result is not None:
             return images.ready(given, result, language, is_strict=True)
         outputs.print_diagnostics(other.compiled, language)
@@ -113,7 +113,7 @@ def _upload(
         from tiniscript.studio import recordings
 
         own = connection.simulator
-        robot_ms = None if own is None else own.told_ms
+        robot_ms = None if own is None else own.event_ms
         text, robot = options.recorded_text, connection.profile
         head = recordings.head(recordings.REAL, text, robot, values.program)
         recorder = Recorder(options.record, head, began_s, robot_ms)

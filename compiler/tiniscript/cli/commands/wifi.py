@@ -9,9 +9,9 @@ from argparse import Namespace
 from functools import partial
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot import robot_broker
-from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.robot.connect import Connection, connect
 from tiniscript.cli.terminal import asking
 from tiniscript.cli.texts import text
 from tiniscript.link.messages import (
@@ -42,7 +42,7 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(2, "broker_no_user")
     broker = robot_broker.settings(options, language) if options.broker is not None else None
     name = None if options.network is None else _name_bytes(options.network)
-    with connected(options, language) as connection:
+    with connect(options, language) as connection:
         info = connection.meet()
         features = info.values.features
         if not features & SEALS:
@@ -55,7 +55,7 @@ def run(options: Namespace, language: str) -> int:
         if options.forget or name is not None:
             _refuse_itself(connection)
         if options.forget:
-            connection.ask(lambda session: session.forget_wifi())
+            connection.request(lambda session: session.forget_wifi())
             connection.say("wifi_forgotten")
         elif name is not None:
             _join(connection, name, options.access_point)
@@ -79,10 +79,10 @@ def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
     prompt = text("wifi_password", connection.language)
     password = asking.password(prompt, LEAST_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")
     network = Network(name, password, is_access_point)
-    connection.ask(lambda session: session.join(network))
+    connection.request(lambda session: session.join(network))
     ask = partial(_wifi_state, connection)
     _print_wifi_state(
-        connection, robot_broker.awaited(ask, lambda wifi_reply: wifi_reply.state in ENDS)
+        connection, robot_broker.await_state(ask, lambda wifi_reply: wifi_reply.state in ENDS)
     )
 
 
@@ -98,7 +98,7 @@ def _print_wifi_state(connection: Connection, wifi_reply: WifiReply) -> None:
     key = "wifi_off" if mode == "OFF" else f"wifi_{mode}_{state}".lower()
     if mode != "OFF" and state == "OFF":
         key = "wifi_station_searching"
-    network = shown(wifi_reply.network.decode("utf-8", "replace"))
+    network = printable_name(wifi_reply.network.decode("utf-8", "replace"))
     host = f"tini-{connection.device_info.id & 0xFFFF:04x}"
     connection.say(key, network=network, address=address(wifi_reply), host=host)
 

@@ -30,7 +30,12 @@ def run(options: Namespace, language: str) -> int:
         say("wiring_page", language)
         return 0
     if outputs.put(options.output, html_of(plan).encode()):
-        say("wiring", language, file=inputs.shown(options.output), robot=inputs.shown(plan.robot))
+        say(
+            "wiring",
+            language,
+            file=inputs.printable_name(options.output),
+            robot=inputs.printable_name(plan.robot),
+        )
     return 0
 
 
@@ -44,7 +49,7 @@ def _merge_by_tag(rows: list[tuple[str, ...]]) -> list[tuple[str, ...]]:
 
 def _print_rows(rows: list[tuple[str, ...]]) -> None:
     """Print a table; on a terminal its last column is broken where the lines end."""
-    shown = [[inputs.shown(cell) for cell in row] for row in rows]
+    shown = [[inputs.printable_name(cell) for cell in row] for row in rows]
     widths = [max(cell_len(row[k]) for row in shown) for k in range(len(shown[0]))]
     indent = sum(widths[:-1]) + len(GAP) * (len(widths) - 1)
     room = widths[-1]

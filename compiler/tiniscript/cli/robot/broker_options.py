@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.terminal import asking
 from tiniscript.cli.texts import text
 from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
@@ -31,7 +31,7 @@ def place(options: Namespace, is_tls: bool = False) -> Place:
     match = re.fullmatch(r"([A-Za-z0-9][A-Za-z0-9._-]{0,252})(?::([0-9]{1,5}))?", options.broker)
     port = int(match[2] or (TLS_PORT if is_tls else PLAIN_PORT)) if match else 0
     if match is None or not 0 < port < 1 << 16:
-        raise CommandError(2, "broker_bad_host", found=shown(options.broker) or "''")
+        raise CommandError(2, "broker_bad_host", found=printable_name(options.broker) or "''")
     return Place(match[1].lower(), port)
 
 
@@ -39,7 +39,7 @@ def group(options: Namespace) -> str:
     """Return the name of the class. Raises CommandError."""
     name = GROUP if options.group is None else str(options.group)
     if not is_class(name):
-        raise CommandError(2, "class_bad_name", found=shown(name) or "''")
+        raise CommandError(2, "class_bad_name", found=printable_name(name) or "''")
     return name
 
 
@@ -50,7 +50,7 @@ def user(options: Namespace, language: str) -> tuple[bytes, bytes]:
     name = options.user.encode("utf-8", "surrogateescape")
     if not 1 <= len(name) <= NETWORK_BYTES or not options.user.isprintable():
         raise CommandError(2, "broker_bad_user")
-    prompt = text("broker_password", language).format(user=shown(options.user))
+    prompt = text("broker_password", language).format(user=printable_name(options.user))
     return name, asking.password(prompt, 1, PASSWORD_BYTES, "broker_bad_password")
 
 
@@ -66,4 +66,6 @@ def trust(options: Namespace) -> bytes | None:
     try:
         return Path(options.trust).read_bytes()
     except (OSError, ValueError) as why:
-        raise CommandError(2, "broker_unread", file=shown(options.trust), why=why) from None
+        raise CommandError(
+            2, "broker_unread", file=printable_name(options.trust), why=why
+        ) from None

@@ -10,21 +10,21 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import CLASS_ROWS
 from tiniscript.cli.robot import broker_options
-from tiniscript.cli.robot.connect import Connection, opening_port
+from tiniscript.cli.robot.connect import Connection, convert_port_error
 from tiniscript.cli.robot.description import in_a_line
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.fleet import run_together
 from tiniscript.cli.robot.fleet_upload import upload_to_many
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.robot.stopping import stop_one
-from tiniscript.cli.spreadsheet import no_formula
+from tiniscript.cli.spreadsheet import escape_formula
 from tiniscript.cli.texts import say, say_aside, text
-from tiniscript.cli.texts.options import of_verb
+from tiniscript.cli.texts.options import options_of
 from tiniscript.link.errors import NOT_INSTALLED, PortError
 from tiniscript.link.port_connection import now_ms
 
@@ -48,16 +48,16 @@ class Classroom:
         self.language = language
         self.place = broker_options.place(options, options.tls)
         self.group = broker_options.group(options)
-        self.broker = self._connected(options)
+        self.broker = self._connect(options)
 
-    def _connected(self, options: Namespace) -> Broker:
-        with opening_port(f"mqtt://{self.place}"):
+    def _connect(self, options: Namespace) -> Broker:
+        with convert_port_error(f"mqtt://{self.place}"):
             try:
                 from tiniscript.link.transports import broker
             except ImportError as missing:
                 raise PortError(NOT_INSTALLED, missing.name or "") from None
             broker.sign_in(*self.place, self._access(options))
-            return broker.connected(*self.place)
+            return broker.connect(*self.place)
 
     def _access(self, options: Namespace) -> Access:
         from tiniscript.link.transports.broker import Access
@@ -68,12 +68,14 @@ class Classroom:
 
     def present(self) -> list[Present]:
         """Return the robots that the broker knows, those that have gone, too."""
-        with opening_port(f"mqtt://{self.place}"):
+        with convert_port_error(f"mqtt://{self.place}"):
             try:
                 result = self.broker.present(self.group)
             finally:
-                for topic, size in self.broker.skipped.items():
-                    say_aside("class_skipped", self.language, topic=shown(topic), bytes=size)
+                for topic, size in self.broker.skipped_topics.items():
+                    say_aside(
+                        "class_skipped", self.language, topic=printable_name(topic), bytes=size
+                    )
         if not any(item.is_here for item in result):
             raise CommandError(3, "class_empty", group=self.group, host=str(self.place))
         return result
@@ -86,7 +88,7 @@ class Classroom:
         from tiniscript.link.transports.broker import port_of
 
         ports = [port_of(*self.place, self.group, item.id) for item in found if item.is_here]
-        of_fleet = {option.name: option.unset for option in of_verb(UPLOAD)}
+        of_fleet = {option.name: option.unset for option in options_of(UPLOAD)}
         own = Namespace(**{**of_fleet, "port": None, **vars(self.options)})
         own.ports, own.verb = ports, verb
         if verb == UPLOAD:
@@ -97,10 +99,10 @@ class Classroom:
 def list_robots(room: Classroom) -> int:
     result = room.present()
     own = room.targets(result)
-    code = together(own, inputs.robot(own, room.language), room.language, in_a_line)
+    code = run_together(own, inputs.robot(own, room.language), room.language, in_a_line)
     for item in result:
         if not item.is_here and not own.json:
-            say("class_gone", room.language, robot=shown(item.name), id=item.id)
+            say("class_gone", room.language, robot=printable_name(item.name), id=item.id)
     return code
 
 
@@ -112,7 +114,7 @@ def upload(room: Classroom) -> int:
     ready = images.ready(given, robot, room.language, is_strict=True)
     if ready is None:
         return 1
-    return upload_to_many(own, robot, room.language, ready, shown(given.name))
+    return upload_to_many(own, robot, room.language, ready, printable_name(given.name))
 
 
 def stop(room: Classroom) -> int:
@@ -125,10 +127,10 @@ def stop(room: Classroom) -> int:
         result = room.present()
     except CommandError:
         if is_published:
-            say_aside("class_stop_sent", room.language, group=shown(room.group))
+            say_aside("class_stop_sent", room.language, group=printable_name(room.group))
         raise
     own = room.targets(result, "stop")
-    return together(own, inputs.robot(own, room.language), room.language, stop_one)
+    return run_together(own, inputs.robot(own, room.language), room.language, stop_one)
 
 
 def show(room: Classroom) -> int:
@@ -140,7 +142,7 @@ def show(room: Classroom) -> int:
     rows = Rows(options.csv, CLASS_ROWS) if options.csv is not None else None
     listener = Listener(own.json, end_s, rows)
     try:
-        code = together(own, inputs.robot(own, language), language, listener.listen)
+        code = run_together(own, inputs.robot(own, language), language, listener.listen)
     finally:
         if rows is not None:
             rows.close()
@@ -167,7 +169,7 @@ class Listener:
             member.print(line if self.is_json else f"{connection.name}: {line}")
 
         add = self.rows.add if self.rows is not None else None
-        who = no_formula(shown(connection.name)), f"{connection.device_info.id:08x}"
+        who = escape_formula(printable_name(connection.name)), f"{connection.device_info.id:08x}"
         printer = EventPrinter(
             connection.language, self.is_json, about=about, has_times=self.is_json, out=out,
             err=out, rows=partial(add, *who) if add is not None else None,

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, TypeVar
 from tiniscript import robots
 from tiniscript.cli import inputs, streams
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import asking
-from tiniscript.cli.terminal.progress import Quiet, waiting
-from tiniscript.cli.texts import Said, say_aside, text
+from tiniscript.cli.terminal.progress import Quiet, show_wait
+from tiniscript.cli.texts import Sentence, say_aside, text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
 from tiniscript.library.client import Client
@@ -51,7 +51,7 @@ STOP_S = 1.5  # timeout for a stop when the command ends and may have no reader
 VIRTUAL = ""  # no port: this command starts its own virtual robot
 
 
-def connected(options: Namespace, language: str) -> Connection:
+def connect(options: Namespace, language: str) -> Connection:
     return Connection(options, inputs.robot(options, language), language)
 
 
@@ -94,15 +94,15 @@ class Connection(Client):
             self.simulator = CommandSimulator(options, robot, language)
             result = self.simulator.port
         self.port, self.language = result, language
-        sentence = text("waits_for_robot", language).format(port=shown(result))
+        sentence = text("waits_for_robot", language).format(port=printable_name(result))
         self.quiet = Quiet(sentence, is_seen=not is_one_of_many)
         asked_baud = None if options.baud is None else baud
         try:
             verb = options.verb
-            with self._waiting(), told():
+            with self._show_wait(), convert_robot_error():
                 super().__init__(
                     result, verb, robot, asked_baud, language, is_shared=verb in SHARED,
-                    heed=self._pass_interrupt,
+                    heed=self._raise_if_interrupted,
                 )  # fmt: skip
         except BaseException:
             self._end_simulator()
@@ -129,13 +129,13 @@ class Connection(Client):
         self.drives = False  # nothing of its own
         with suppress(OSError):
             if not self.is_one_of_many:
-                say_aside("holds_for_others", self.language, port=shown(self.port))
+                say_aside("holds_for_others", self.language, port=printable_name(self.port))
         try:
             with suppress(CommandError):  # the port is gone
                 self.hold_for_others()
         except KeyboardInterrupt:
             if not self.stop():
-                say_aside("not_confirmed", self.language, port=shown(self.port))
+                say_aside("not_confirmed", self.language, port=printable_name(self.port))
             raise
 
     def stop_unseen(self) -> bool:
@@ -147,7 +147,7 @@ class Connection(Client):
         is_confirmed = self.stop(STOP_S)
         key = "output_stopped" if is_confirmed else "not_confirmed"
         with suppress(OSError):
-            say_aside(key, self.language, port=shown(self.port))
+            say_aside(key, self.language, port=printable_name(self.port))
         return is_confirmed
 
     @property
@@ -165,7 +165,7 @@ class Connection(Client):
         """Send HELLO until the robot answers, and remember it. Raises CommandError if none does."""
         self._is_meeting = True
         self.quiet.begin()
-        with self._waiting():
+        with self._show_wait():
             device_info = super().meet(board, is_patient or (lambda: self.starts_nothing))
         self._is_meeting = False
         self.quiet.go_on()
@@ -208,17 +208,17 @@ class Connection(Client):
         return is_own and not self._is_stopped_unseen
 
     def stop(self, limit_s: float | None = None) -> bool:
-        with self._waiting("waits_for_stop"):
+        with self._show_wait("waits_for_stop"):
             return super().stop(limit_s)
 
     @contextmanager
-    def _waiting(self, key: str = "waits_for_robot") -> Iterator[None]:
+    def _show_wait(self, key: str = "waits_for_robot") -> Iterator[None]:
         """Say what takes so long, once; a fleet has a table that does."""
         is_robot = key == "waits_for_robot"
         if self.is_one_of_many or (is_robot and self.quiet.is_told):
             yield
             return
-        with waiting(key, self.language, self.port) as silence:
+        with show_wait(key, self.language, self.port) as silence:
             try:
                 yield
             finally:
@@ -247,7 +247,7 @@ class Connection(Client):
     def text(self, key: str, **values: object) -> str:
         """Return a sentence, which may name the robot that has answered, and its port."""
         name = "" if self.line.robot is None else self.name
-        names = {"robot": name, "port": shown(self.port)}
+        names = {"robot": name, "port": printable_name(self.port)}
         return text(key, self.language).format(**{**names, **values})
 
     def say(self, key: str, **values: object) -> None:
@@ -258,7 +258,7 @@ class Connection(Client):
         self, make: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
     ) -> Reply[T]:
         """Make a request, of which these refusals have the sentence `key`. Raises CommandError."""
-        reply = self.ask(make, [STATUSES[status] for status in statuses])
+        reply = self.request(make, [STATUSES[status] for status in statuses])
         if reply.status:
             raise CommandError(3, key, robot=self.name)
         return reply
@@ -274,14 +274,14 @@ class Connection(Client):
             if result is not None and bookkeeping.hides(result[1]):
                 continue
             if result is not None and result[1].name == "LOST":
-                raise CommandError(3, "link_lost", port=shown(self.port))
+                raise CommandError(3, "link_lost", port=printable_name(self.port))
             yield result
 
     def interrupt(self) -> None:
         """Pass a Ctrl-C to the thread that waits here; Python reports it only to the main one."""
         self.is_interrupted = True
 
-    def _pass_interrupt(self) -> None:
+    def _raise_if_interrupted(self) -> None:
         if self.is_interrupted:
             self.is_interrupted = False
             raise KeyboardInterrupt
@@ -290,13 +290,15 @@ class Connection(Client):
         """Return the sentence for an outcome that is not OK."""
         reason = reason_of(self.line, reply)
         if reason == "status":
-            return CommandError(3, "plain", said=self.said(reply))
+            return CommandError(3, "plain", said=self.refusal_text(reply))
         if reason == FOREIGN:
             what, then = self.foreign()
-            return CommandError(3, reason, port=shown(self.port), what=Said(what), then=Said(then))
-        return CommandError(3, reason, port=shown(self.port), id=f"{reply.detail:08x}")
+            return CommandError(
+                3, reason, port=printable_name(self.port), what=Sentence(what), then=Sentence(then)
+            )
+        return CommandError(3, reason, port=printable_name(self.port), id=f"{reply.detail:08x}")
 
-    def said(self, reply: Reply[object]) -> str:
+    def refusal_text(self, reply: Reply[object]) -> str:
         """Return the meaning of a robot's refusal, and what to do."""
         said, advice = sentence(reply.status, reply.detail, self.language)
         if reply.status == STATUSES["WRONG_KIT"]:
@@ -305,19 +307,19 @@ class Connection(Client):
                 advice = text("choose_kit", self.language).format(robot=name)
         return f"{said} {advice}".strip()
 
-    def gone(self, gone: ConnectionLost) -> CommandError:
+    def error_for_loss(self, loss: ConnectionLost) -> CommandError:
         """Return the sentence for a connection that has ended."""
-        lost = self.lost(gone)
+        lost = self.robot_error_for_loss(loss)
         return CommandError(3, lost.key, **lost.values)
 
 
 def name_of(info: DeviceInfo, language: str) -> str:
     """Return the name of a robot for messages: its own, else that of its profile."""
-    return shown(info.name) or shipped_of_kit(info.kit) or text("robot", language)
+    return printable_name(info.name) or shipped_of_kit(info.kit) or text("robot", language)
 
 
 @contextmanager
-def told() -> Iterator[None]:
+def convert_robot_error() -> Iterator[None]:
     """Have a RobotError say what the command says of it."""
     try:
         yield
@@ -327,12 +329,12 @@ def told() -> Iterator[None]:
         raise CommandError(3, error.key, **error.values) from None
 
 
-def opened_client(
+def open_client(
     port: str, robot: Robot, verb: str, baud: int | None, language: str,
     limit_s: float,
 ) -> Client:  # fmt: skip
     """Connect to a port through its server, or open it. Raises CommandError."""
-    with told():
+    with convert_robot_error():
         return Client(port, verb, robot, baud, language, limit_s, is_shared=verb in SHARED)
 
 
@@ -343,7 +345,7 @@ def port_failure(port: str, failure: PortError) -> CommandError:
 
 
 @contextmanager
-def opening_port(port: str) -> Iterator[None]:
+def convert_port_error(port: str) -> Iterator[None]:
     """Raise CommandError where a port does not open."""
     try:
         yield
@@ -380,13 +382,13 @@ def _select_port(options: Namespace, language: str) -> str:
         return inputs.port(port)
     if (there := opening.last_port()) is not None:
         return there
-    last = known_ports.known().last
-    virtual = directory.for_all() if can_bring else directory.running()
+    last = known_ports.remembered_ports().last
+    virtual = directory.for_all() if can_bring else directory.running_robots()
     if len(virtual) == 1:
         return virtual[0].address
     if not asking.can_ask() or getattr(options, "asks_nothing", False):
         if last is not None:
-            raise CommandError(3, "last_port_missing", port=shown(last))
+            raise CommandError(3, "last_port_missing", port=printable_name(last))
         if virtual:
             raise CommandError(
                 3, "which_virtual", known=", ".join(item.address for item in virtual)
@@ -401,7 +403,7 @@ def about_port(listed: ListedPort, language: str) -> str:
     return listed.description if is_told else text("port_built_in", language)
 
 
-def about_virtual(running: directory.Running, language: str) -> str:
+def about_virtual(running: directory.RunningRobot, language: str) -> str:
     """Return the description of a virtual robot; a shipped world has a name in each language."""
     from tiniscript.virtual import worlds
 
@@ -412,21 +414,21 @@ def about_virtual(running: directory.Running, language: str) -> str:
     return f"{running.name}: {sentence}" if running.name else sentence
 
 
-def _ask_port(language: str, can_bring: bool, virtual: list[directory.Running]) -> str:
+def _ask_port(language: str, can_bring: bool, virtual: list[directory.RunningRobot]) -> str:
     """Let the person choose a port, or one of the virtual robots."""
-    names = known_ports.known().names
+    names = known_ports.remembered_ports().names
     from tiniscript.link import ports
 
-    result = ports.listed()
+    result = ports.list_ports()
     choices = [item.port for item in result]
     choices += [port for port in names if port not in choices and is_address(port)
                 and not is_gone(port)]  # fmt: skip
     choices += [item.address for item in virtual if item.address not in choices]
     if not choices:
         if can_bring:
-            from tiniscript.cli.robot.simulator import offered
+            from tiniscript.cli.robot.simulator import offer
 
-            if offered(language):
+            if offer(language):
                 return VIRTUAL
         raise CommandError(3, "no_ports")
     about = {item.port: about_port(item, language) for item in result}
@@ -434,7 +436,9 @@ def _ask_port(language: str, can_bring: bool, virtual: list[directory.Running]) 
     say_aside("choose_port", language)
     for number, port in enumerate(choices, 1):
         more = "   ".join(filter(None, (names.get(port), about.get(port))))
-        print(f"  {number}  {shown(port)}   {shown(more)}".rstrip(), file=sys.stderr)
+        print(
+            f"  {number}  {printable_name(port)}   {printable_name(more)}".rstrip(), file=sys.stderr
+        )
     if can_bring:
         choices.append(VIRTUAL)
         print(f"  {len(choices)}  {text('choice_virtual', language)}", file=sys.stderr)

@@ -27,15 +27,20 @@ class NoPerson(Exception):
     """Nobody answers."""
 
 
-class Turned(NamedTuple):
+class WheelTurn(NamedTuple):
     """What a person saw of a motor: which wheel turned, if any, and which way."""
 
     wheel: str
     is_forward: bool
 
 
-SEEN = (Turned("left", True), Turned("left", False), Turned("right", True), Turned("right", False))
-STILL = Turned("", False)
+SEEN = (
+    WheelTurn("left", True),
+    WheelTurn("left", False),
+    WheelTurn("right", True),
+    WheelTurn("right", False),
+)
+STILL = WheelTurn("", False)
 
 
 class Conversation:
@@ -65,7 +70,7 @@ class Conversation:
                 return int(result)
             say_aside("ask_number", self.language, high=high)
 
-    def does(self, line: str) -> list[int]:
+    def run_line(self, line: str) -> list[int]:
         """Let the robot do a line now; return what it showed. Raises CommandError."""
         values: list[int] = []
         messages: list[str] = []
@@ -80,27 +85,27 @@ class Conversation:
             raise CommandError(3, "plain", said=" ".join(messages))
         return values
 
-    def saw(self, line: str, key: str, again: int, **values: str) -> int:
+    def ask_what_was_seen(self, line: str, key: str, again: int, **values: str) -> int:
         """Let the robot do a line, and ask what the person saw; `again` shows it once more."""
         result = again
         while result == again:
             if not self.is_asking:
                 raise NoPerson
-            self.does(line)
+            self.run_line(line)
             result = self.choice(key, again, **values)
         return result
 
     def lift(self) -> None:
         self.answer("ask_lift")
 
-    def turned(self, side: str) -> Turned:
+    def turn_motor(self, side: str) -> WheelTurn:
         """Turn the motor of a side; return what the person saw. Raises NoPerson, CommandError."""
         key = "ask_turned" if side == "left" else "ask_turned_other"
-        result = self.saw(f"{MOTORS[side]}; W(1); M(0, 0)", key, AGAIN)
+        result = self.ask_what_was_seen(f"{MOTORS[side]}; W(1); M(0, 0)", key, AGAIN)
         return STILL if result == NOTHING else SEEN[result - 1]
 
 
-def as_seen(before: Trim, left: Turned, right: Turned) -> Trim | None:
+def trim_from_answers(before: Trim, left: WheelTurn, right: WheelTurn) -> Trim | None:
     """Return the trim with which each wheel turns forward for its side.
 
     With `before`, the motor of the left side turned the one wheel, that of the right side the

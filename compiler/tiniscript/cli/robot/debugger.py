@@ -8,7 +8,7 @@ from functools import partial
 from struct import iter_unpack
 
 from tiniscript.base.fixed_point import value_of, value_text
-from tiniscript.bytecode.statements import begins
+from tiniscript.bytecode.statements import statement_starts
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.images import Ready
 from tiniscript.cli.options import whole_number
@@ -39,7 +39,7 @@ def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, .
         raise CommandError(2, "break_image")
     if len(set(lines)) > MOST_BREAKPOINTS:
         raise CommandError(2, "break_most", most=str(MOST_BREAKPOINTS))
-    statements = begins(ready.image.code)
+    statements = statement_starts(ready.image.code)
     matches = []
     for line in lines:
         places = [
@@ -72,7 +72,7 @@ class Debugger:
         self.connection = connection
         self.printer = printer
         self.map: Map = ready.places
-        self.statements = begins(ready.image.code)
+        self.statements = statement_starts(ready.image.code)
         self.keys = Keys()
         self.has_keys = sys.stdin.isatty() and is_in_front() and not printer.is_json
         self.is_halted = False
@@ -105,14 +105,14 @@ class Debugger:
     def look(self) -> None:
         """Do what the first key says that was pressed at this halt; while the program runs, none
         does anything."""
-        pressed = self.keys.pressed() if self.has_keys else ""
+        pressed = self.keys.read_pressed() if self.has_keys else ""
         key = next((key for key in pressed if key in STEP + GO), "")
         if key and self.is_halted:
             self._resume(RESUME_STEP if key in STEP else RESUME_GO)
 
     def _resume(self, how: int) -> None:
         self.is_halted, self.is_stepping = False, how == RESUME_STEP
-        self.connection.ask(lambda session: session.resume(how))
+        self.connection.request(lambda session: session.resume(how))
 
     def _print_halt(self, at: int, task: int, place: MapLocation | None) -> None:
         language = self.printer.language
@@ -141,7 +141,7 @@ class Debugger:
         names."""
         names, values = self.map.variables, list[int]()
         while len(values) < len(names):
-            reply = self.connection.ask(partial(Requester.read_variables, first=len(values)))
+            reply = self.connection.request(partial(Requester.read_variables, first=len(values)))
             piece = [value for (value,) in iter_unpack("<i", reply.values.values)]
             if not piece:
                 break
@@ -151,7 +151,7 @@ class Debugger:
 
     def _tasks(self, halted: int) -> list[tuple[int, int]]:
         """Return state and line of each task beside the one that is halted, and has not ended."""
-        reply = self.connection.ask(lambda session: session.read_tasks())
+        reply = self.connection.request(lambda session: session.read_tasks())
         result = []
         for number, (state, at, _) in enumerate(iter_unpack("<BHI", reply.values.tasks)):
             place = self.map.at(at)

@@ -8,7 +8,7 @@ from statistics import median
 from typing import NamedTuple
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection, name_of
 from tiniscript.cli.robot.event_printer import fault_sentence
 from tiniscript.cli.robot.member import Member, Result
@@ -17,7 +17,7 @@ from tiniscript.doctor.examination import trips_of
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.library import source_map
 from tiniscript.library.known_kits import shipped_of_kit
-from tiniscript.link.authority import OF_ANOTHER, whose
+from tiniscript.link.authority import OF_ANOTHER, ownership_of
 from tiniscript.link.messages import (
     RESETS,
     SAVED,
@@ -33,13 +33,13 @@ from tiniscript.link.names import fault_name, row_name
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import DeviceInfo, Reply
-from tiniscript.link.trim import Pace, Trim, told
+from tiniscript.link.trim import Pace, Trim, trim_from_reply
 
 COUNT = 10  # round trips
 
 
 class Description(NamedTuple):
-    """The replies of a robot to HELLO, STATUS and TRIM. `owner`: see `authority.whose`."""
+    """The replies of a robot to HELLO, STATUS and TRIM. `owner`: see `authority.ownership_of`."""
 
     port: str
     device_info: DeviceInfo
@@ -113,7 +113,10 @@ class Description(NamedTuple):
         return "\n".join(lines)
 
     def _text(self, key: str, **values: object) -> str:
-        names = {"robot": name_of(self.device_info, self.language), "port": shown(self.port)}
+        names = {
+            "robot": name_of(self.device_info, self.language),
+            "port": printable_name(self.port),
+        }
         return text(key, self.language).format(**{**names, **values})
 
     def _program(self) -> str:
@@ -122,7 +125,7 @@ class Description(NamedTuple):
         if why:
             return say(why)
         places = source_map.recall(status.program)
-        name = f" ({shown(places.name)})" if places is not None else ""
+        name = f" ({printable_name(places.name)})" if places is not None else ""
         saved = say(f"saved_{fields['saved']}", slot=status.slot)
         return say("info_program", checksum=fields["program"], name=name, code=status.length,
                    saved=saved)  # fmt: skip
@@ -151,14 +154,14 @@ class Description(NamedTuple):
         return self._text("info_fault", fault=sentence)
 
 
-def described(connection: Connection) -> Description:
+def describe_robot(connection: Connection) -> Description:
     """Ask a robot that has answered HELLO what it says about itself."""
-    status = connection.ask(lambda session: session.status()).values
-    owner = whose(connection.device_info)
+    status = connection.request(lambda session: session.status()).values
+    owner = ownership_of(connection.device_info)
     trim: Trim | None = None
     if owner != OF_ANOTHER:  # it would count as a wrong key
         with suppress(CommandError):
-            trim = told(connection.ask(lambda session: session.trim()).values)
+            trim = trim_from_reply(connection.request(lambda session: session.trim()).values)
     return Description(
         connection.port, connection.device_info, status, trim, owner, connection.language
     )
@@ -167,15 +170,15 @@ def described(connection: Connection) -> Description:
 def in_a_line(connection: Connection, member: Member) -> Result:
     """Describe one of many robots."""
     member.meet(connection)
-    description = described(connection)
+    description = describe_robot(connection)
     return Result(True, description.line(), description.fields())
 
 
-def introduced(connection: Connection, is_json: bool) -> int:
+def introduce(connection: Connection, is_json: bool) -> int:
     """Print what a robot says about itself and how soon it answers; return the exit code."""
     connection.meet()
     trips = _trips(connection, COUNT)
-    description = described(connection)
+    description = describe_robot(connection)
     if is_json:
         print(json.dumps({**description.fields(), **trips_as_data(trips)}, indent=2))
     else:

@@ -11,13 +11,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from tiniscript.cli import inputs
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection, baud_of
 from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
-from tiniscript.doctor.examination import PINGS, Expected, Heard, examine
+from tiniscript.doctor.examination import PINGS, Expectations, RobotAnswers, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
@@ -31,14 +31,14 @@ from tiniscript.link.messages import OWNED, SEALS
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.port_names import same_for_all
-from tiniscript.link.requests import Reply, described
-from tiniscript.link.sharing.shared_connection import joined
+from tiniscript.link.requests import Reply, device_info_of
+from tiniscript.link.sharing.shared_connection import join
 from tiniscript.link.wire import Wire
 from tiniscript.virtual import directory
 
 
 def diagnosis_of(
-    options: Namespace, port: str | None, expected: Expected, language: str,
+    options: Namespace, port: str | None, expected: Expectations, language: str,
     watch_ms: int = 0, may_open: bool = False,
 ) -> Diagnosis:  # fmt: skip
     """Let the doctor look at a port, or at the one that there is; say what it does meanwhile.
@@ -62,23 +62,23 @@ def diagnosis_of(
         doing.end()
 
 
-def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expected:
+def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expectations:
     """Return the robot that the options name, and what this computer knows of all."""
     robot = inputs.robot(options, language)
     kit = None if options.robot is None else robot.kit.fingerprint
-    return Expected(kit, robot.name, name_of, _has_key, _doubt, pings=pings)
+    return Expectations(kit, robot.name, name_of, _has_key, _doubt, pings=pings)
 
 
 def examination_of(
-    connection: Connection, expected: Expected,
+    connection: Connection, expected: Expectations,
     on_step: Callable[[str], None] = lambda what: None,
-) -> tuple[list[Finding], Heard | None]:  # fmt: skip
+) -> tuple[list[Finding], RobotAnswers | None]:  # fmt: skip
     """Let the doctor examine a robot that has answered; return what it found and heard."""
     robot = SharedRobot(connection.line, connection.wait)
     reply = robot.hello()
     if reply is None:
         raise connection.failure(Reply(LOST))
-    heard: list[Heard] = []
+    heard: list[RobotAnswers] = []
     findings = examine(robot, reply, expected._replace(hear=heard.append), on_step=on_step)
     return findings, heard[-1] if heard else None
 
@@ -89,7 +89,7 @@ def _has_key(robot: int) -> bool:
 
 def _doubt(port: str, hello: HelloReply) -> str:
     """Return the cause why this may be another robot than the one of a key of this computer."""
-    keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), described(hello)
+    keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), device_info_of(hello)
     if is_other(keys, same_for_all(port), info):
         return "other_robot"
     is_right = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
@@ -98,7 +98,7 @@ def _doubt(port: str, hello: HelloReply) -> str:
 
 def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agreed: bool) -> Doors:
     def open_wire(port: str, baud: int) -> Wire:
-        return Wire(ports.opened(port, baud))
+        return Wire(ports.open_port(port, baud))
 
     def confirms_opening(port: str) -> bool:
         if options.yes or is_agreed:
@@ -106,7 +106,7 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
         if options.json or not can_ask():
             return False
         doing.end()
-        return confirm(text("doctor_yes", language).format(port=shown(port)))
+        return confirm(text("doctor_yes", language).format(port=printable_name(port)))
 
     @contextmanager
     def share(port: str) -> Iterator[LinkConnection]:
@@ -116,6 +116,6 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
             yield connection.line
 
     return Doors(
-        System(), open_wire, lambda port: joined(port, "doctor"), confirms_opening, ports.is_radio,
+        System(), open_wire, lambda port: join(port, "doctor"), confirms_opening, ports.is_radio,
         share, lambda what: doing.tell(text(f"doing_{what}", language).format(n=pings)),
     )  # fmt: skip

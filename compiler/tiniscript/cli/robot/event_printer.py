@@ -11,9 +11,9 @@ from collections.abc import Callable, Mapping
 
 from tiniscript.base.fixed_point import value_of, value_text
 from tiniscript.cli.faults import fault_text
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.spreadsheet import no_formula
+from tiniscript.cli.spreadsheet import escape_formula
 from tiniscript.cli.texts import has_text, text
 from tiniscript.library import source_map
 from tiniscript.library.shows import Finder, Show
@@ -97,13 +97,13 @@ class EventPrinter:
             sentence = text("missed", self.language).format(n=event.count)
             self.say(since_ms, "MISSED", str(event.count), sentence, count=event.count)
         elif event.name == "TEXT":
-            words = shown(event.text.decode("utf-8", "replace"))
+            words = printable_name(event.text.decode("utf-8", "replace"))
             sentence = text("robot_text", self.language).format(said=words)
-            self.say(since_ms, "TEXT", no_formula(words), sentence, text=words)
+            self.say(since_ms, "TEXT", escape_formula(words), sentence, text=words)
 
     def name_of(self, event: ShownEvent) -> str:
         """Return the name of a value, by which it is told from the values of all other SHOWs."""
-        show = self.shows.of(event)
+        show = self.shows.show_of(event)
         if show is None:
             return ""
         place = f"{show.line}:{show.column}" if show.shares_line else str(show.line)
@@ -116,7 +116,7 @@ class EventPrinter:
 
     def _tell_value(self, since_ms: int, event: ShownEvent) -> None:
         value = event.value, bool(event.is_yes_no)
-        what, show = value_text(*value), self.shows.of(event)
+        what, show = value_text(*value), self.shows.show_of(event)
         if show is None:
             self.say(since_ms, "SHOW", what, value=value_of(*value))
             return
@@ -140,7 +140,7 @@ class EventPrinter:
         """Print an event: `said`, or its name and its values. JSON gets the fields, a row the
         `cell` that says which SHOW it was."""
         if self.rows is not None:
-            self.rows(since_ms, name, what, no_formula(cell))
+            self.rows(since_ms, name, what, escape_formula(cell))
         if self.is_json:
             times = {"ms": since_ms} if self.has_times else {}
             self.out(json.dumps({**times, "event": name, **self.about, **fields}))

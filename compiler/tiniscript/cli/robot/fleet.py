@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member, Result, Target, targets
 from tiniscript.cli.texts import text
@@ -42,14 +42,14 @@ NO_ROBOT = (
 )  # fmt: skip
 
 
-class Again(Exception):
+class Reconnect(Exception):
     """The connection to a robot has to be opened again."""
 
 
 Work = Callable[[Connection, Member], Result]
 
 
-def together(options: Namespace, robot: Robot, language: str, work: Work) -> int:
+def run_together(options: Namespace, robot: Robot, language: str, work: Work) -> int:
     """Run `work` for many robots and print the results; return the exit code.
 
     Ctrl-C stops all of them. Raises CommandError if there is none.
@@ -187,11 +187,11 @@ class Fleet:
     def _run(self, member: Member, work: Work) -> None:
         try:
             self._connect(member, work)
-        except Again:
+        except Reconnect:
             self._run(member, work)
             return
         except CommandError as failure:
-            member.result = self._failed(member, failure)
+            member.result = self._failure_result(member, failure)
         except Exception as bug:
             member.bug = bug
             member.result = Result(False, "")
@@ -206,15 +206,15 @@ class Fleet:
             try:
                 member.result = work(connection, member)
             except KeyboardInterrupt:
-                member.result = self._stopped(connection)
+                member.result = self._stop_result(connection)
 
-    def _stopped(self, connection: Connection) -> Result:
+    def _stop_result(self, connection: Connection) -> Result:
         if connection.stop():
             return Result(False, text("robot_stopped", self.language))
-        failure = CommandError(3, "not_confirmed", port=shown(connection.port))
+        failure = CommandError(3, "not_confirmed", port=printable_name(connection.port))
         return Result(False, failure.plain(self.language))
 
-    def _failed(self, member: Member, failure: CommandError) -> Result:
+    def _failure_result(self, member: Member, failure: CommandError) -> Result:
         target = member.target
         is_absent = failure.key in NOBODY or (failure.key in NO_ROBOT and not target.is_known)
         sentence = failure.plain(self.language)
@@ -262,7 +262,7 @@ class Fleet:
         done = sum(member.mark == "ok" for member in self.members)
         lines = [text("crew_sum", self.language).format(done=done, all=there)]
         if absent:
-            ports = ", ".join(shown(member.target.port) for member in absent)
+            ports = ", ".join(printable_name(member.target.port) for member in absent)
             lines.append(text("crew_absent", self.language).format(ports=ports))
         print("\n".join(lines), file=sys.stderr, flush=True)
 

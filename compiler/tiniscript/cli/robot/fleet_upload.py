@@ -13,7 +13,7 @@ from tiniscript.cli.robot import program_upload
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.description import measure_line
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.fleet import run_together
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.terminal.progress import MOST_PERCENT
@@ -28,7 +28,7 @@ def upload_to_many(
     images.keep_map(ready)
     is_ping = ready.image.start == "PING"  # a program that asks who is there
     work = measure_line if is_ping else partial(_upload, options, ready, name)
-    return together(options, robot, language, work)
+    return run_together(options, robot, language, work)
 
 
 def _upload(

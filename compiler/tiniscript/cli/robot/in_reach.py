@@ -25,7 +25,7 @@ from tiniscript.link.port_names import (
     name_in,
     same_for_all,
 )
-from tiniscript.link.sharing.registry import Registration, all_found
+from tiniscript.link.sharing.registry import Registration, find_all
 from tiniscript.link.sharing.shared_connection import is_alive
 from tiniscript.virtual import directory
 
@@ -62,7 +62,7 @@ def find_robots(known: list[str], language: str) -> InReach:
 
 
 def _by_radio(known: list[str], language: str) -> InReach:
-    seen = ports.in_reach()
+    seen = ports.find_in_reach()
     names = [canonical(each.name) for each in seen]
     rows = []
     for each, name in zip(seen, names, strict=True):
@@ -75,7 +75,7 @@ def _by_radio(known: list[str], language: str) -> InReach:
 
 
 def _by_name(known: list[str], language: str) -> InReach:
-    there = ports.announced()
+    there = ports.find_announced()
     rows = []
     for announced in there:
         name = TCP + announced.name if announced.name.isprintable() else announced.port
@@ -107,7 +107,7 @@ def in_use(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
     held = [registration.port for registration in alive()]
     result = [] if is_virtual else held[:]
-    for robot in directory.running():
+    for robot in directory.running_robots():
         names = [robot.address, *([robot.terminal] if robot.terminal else [])]
         through = [port for port in names if same_for_all(port) in held]
         result.append(through[0] if through else robot.address)  # one robot, one port
@@ -116,7 +116,7 @@ def in_use(is_virtual: bool = False) -> list[str]:
 
 def alive() -> list[Registration]:
     """Return the servers that still run; a hanging one delays no other check."""
-    registrations = all_found()
+    registrations = find_all()
     if len(registrations) < 2:  # starting threads takes longer than one answer
         return list(filter(is_alive, registrations))
     with ThreadPoolExecutor(AT_ONCE) as pool:

@@ -68,7 +68,7 @@ def open_ends(text: str) -> str:
     return "; ".join(reversed(ends))
 
 
-class Known:
+class LiveState:
     """The DEFs and the variables of a live session."""
 
     def __init__(self, kit: Kit) -> None:
@@ -91,7 +91,7 @@ class Known:
         plain = compile_text(f"{before}{body}", self.kit)
         if not plain.is_right:
             return Line(_compiled_part(plain, len(before)), (), own)
-        shown = _assigned(plain, len(values))
+        shown = _assigned_variables(plain, len(values))
         if all(isinstance(node, ast.Def) for node in parsed):
             return Line(_compiled_part(plain, len(before)), (), own, does_nothing=True)
         if shown:
@@ -118,7 +118,7 @@ class Known:
         return values, defs
 
 
-def _assigned(compiled: Compiled, start: int) -> tuple[str, ...]:
+def _assigned_variables(compiled: Compiled, start: int) -> tuple[str, ...]:
     """Return the variables that are set from `start` on."""
     program = compiled.program
     assert program is not None
@@ -138,7 +138,7 @@ def _map_of(compiled: Compiled, end: int) -> Map:
         place if place.span.end <= end else place._replace(span=nowhere)
         for place in compiled.places
     )
-    return source_map.made(compiled._replace(places=places))
+    return source_map.map_of_compiled(compiled._replace(places=places))
 
 
 def _compiled_part(compiled: Compiled, start: int, end: int | None = None) -> Compiled:

@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.texts import text
 from tiniscript.link import known_ports
 from tiniscript.link.port_names import is_there, same_for_all
-from tiniscript.link.sharing.registry import all_found
+from tiniscript.link.sharing.registry import find_all
 from tiniscript.virtual import directory
 
 
@@ -47,15 +47,15 @@ def targets(options: Namespace) -> list[Target]:
 
     Ports in use come first, then ports of known robots. Opens none.
     """
-    known = known_ports.known().names
+    known = known_ports.remembered_ports().names
     expected = [inputs.port(port) for port in options.ports]
     if options.all:
-        expected = [registration.port for registration in all_found()]
+        expected = [registration.port for registration in find_all()]
         expected += [port for port in known if is_there(port) and not directory.is_gone(port)]
         from tiniscript.link import ports
 
-        expected += [item.port for item in ports.listed()]
-        expected += [robot.address for robot in directory.running()]
+        expected += [item.port for item in ports.list_ports()]
+        expected += [robot.address for robot in directory.running_robots()]
     names = {same_for_all(port): name for port, name in reversed(known.items())}
     chosen = {same_for_all(port): port for port in reversed(expected)}
     return [
@@ -110,7 +110,7 @@ class Member:
             return ""
         return "absent" if self.is_absent else "ok" if self.result.is_done else "bad"
 
-    def said(self, language: str) -> str:
+    def state_text(self, language: str) -> str:
         """Return the current state, or the result."""
         if self.result is not None:
             return self.result.said
@@ -121,7 +121,11 @@ class Member:
     @property
     def row(self) -> str:
         text = self.result.said if self.result is not None else ""
-        name = f"{shown(self.name)} ({shown(self.target.port)})" if self.name else self.target.port
+        name = (
+            f"{printable_name(self.name)} ({printable_name(self.target.port)})"
+            if self.name
+            else self.target.port
+        )
         return f"{name}: {text}"
 
     def as_json(self) -> str:

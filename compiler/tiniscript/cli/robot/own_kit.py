@@ -9,10 +9,10 @@ from __future__ import annotations
 from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.texts import say_aside
-from tiniscript.library.known_kits import of_kit
+from tiniscript.library.known_kits import robot_of_kit
 from tiniscript.robots.profile import Robot
 
 
@@ -24,15 +24,15 @@ def take(connection: Connection, options: Namespace) -> bool:
     kit = connection.device_info.kit
     if options.robot is not None or kit == connection.profile.kit.fingerprint:
         return False
-    robot = of_kit(kit)
+    robot = robot_of_kit(kit)
     if robot is None:
         return False
     connection.profile = robot
-    say_aside("own_kit", connection.language, robot=shown(robot.name))
+    say_aside("own_kit", connection.language, robot=printable_name(robot.name))
     return True
 
 
-def of_answering(options: Namespace, robot: Robot, language: str) -> Robot | None:
+def find_answering_robot(options: Namespace, robot: Robot, language: str) -> Robot | None:
     """Return the profile of the robot that answers on the port of the options; asks no question.
 
     Returns None if no robot answers, its kit is unknown, or it is `robot`.
@@ -47,4 +47,4 @@ def of_answering(options: Namespace, robot: Robot, language: str) -> Robot | Non
             kit = connection.meet().kit
     except CommandError:
         return None
-    return None if kit == robot.kit.fingerprint else of_kit(kit)
+    return None if kit == robot.kit.fingerprint else robot_of_kit(kit)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import about_port, about_virtual
 from tiniscript.cli.robot.in_reach import InReach, alive
 from tiniscript.cli.texts import text
@@ -15,11 +15,11 @@ NOWHERE = InReach({}, [], [], [])  # nothing was searched
 Row = dict[str, object]  # a port as data
 
 
-def listed(language: str, only: str | None = None, in_reach: InReach = NOWHERE) -> list[Row]:
+def list_rows(language: str, only: str | None = None, in_reach: InReach = NOWHERE) -> list[Row]:
     """Return the ports that the system lists, those in reach, and others that had a robot."""
-    known = known_ports.known()
-    virtual = {each.address: each for each in directory.running()}
-    about = {each.port: about_port(each, language) for each in ports.listed()}
+    known = known_ports.remembered_ports()
+    virtual = {each.address: each for each in directory.running_robots()}
+    about = {each.port: about_port(each, language) for each in ports.list_ports()}
     about |= in_reach.about
     held = {registration.port: registration.verb for registration in alive()}
     names = [only] if only is not None else list(about)
@@ -49,11 +49,11 @@ def lines(rows: list[Row], language: str) -> list[str]:
 
 def _line(row: Row, language: str) -> str:
     """Return a port as a line: its name, the system's description, and the robot there."""
-    parts = [shown(str(row["port"])), shown(str(row["description"]))]
+    parts = [printable_name(str(row["port"])), printable_name(str(row["description"]))]
     if "said" in row:
         parts.append(str(row["said"]))
     elif row["remembered"]:
-        name = shown(str(row["remembered"]))
+        name = printable_name(str(row["remembered"]))
         parts.append(text("port_remembered", language).format(name=name))
     if row["held_by"]:
         parts.append(text("port_held", language).format(verb=row["held_by"]))

@@ -12,11 +12,11 @@ from collections.abc import Callable
 
 from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.debugger import Debugger, places_of, require_breakpoints
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, ended
+from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, exit_code_of
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.texts import text
 from tiniscript.library.compiling import compile_text, kit_of
@@ -41,8 +41,8 @@ def send_program(
     if reply.status:
         raise _failure(connection, reply, ready)
     if places:  # it starts with them
-        connection.ask(lambda session: session.break_at(places))
-        return connection.ask(lambda session: session.start()).values
+        connection.request(lambda session: session.break_at(places))
+        return connection.request(lambda session: session.start()).values
     return reply.values
 
 
@@ -94,7 +94,7 @@ def has_button(connection: Connection, ready: images.Ready, options: Namespace) 
 
 
 def _failure(connection: Connection, reply: Reply[object], ready: images.Ready) -> CommandError:
-    port = inputs.shown(connection.port)
+    port = inputs.printable_name(connection.port)
     if reply.status == STATUSES["TOO_LARGE"]:
         code, room = len(ready.image.code), reply.detail
         return CommandError(
@@ -137,7 +137,7 @@ def follow_line(
     """
     compiled = compile_text(f"SI|{line}", connection.profile.kit)
     kit = kit_of(compiled, connection.profile)
-    run = connection.ask(lambda session: session.live(compiled.code, kit)).values.run
+    run = connection.request(lambda session: session.live(compiled.code, kit)).values.run
     return RunMonitor(connection, printer, hold).follow(run)
 
 
@@ -164,7 +164,7 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
         simulator.push()
     with Keys() as keys:
         while True:
-            for key in keys.pressed() if is_person else "":
+            for key in keys.read_pressed() if is_person else "":
                 if key in QUIT:
                     return DONE
                 if key in PUSH:
@@ -178,7 +178,7 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
             _check_event(connection, result[1], saving.program)
             if result[1].name != "STARTED":
                 printer.tell(*result)
-            code = ended(result[1], None)
+            code = exit_code_of(result[1], None)
             if code is not None and not (is_person and _is_push(result[1])):
                 return code
 
@@ -186,9 +186,9 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
 def _check_event(connection: Connection, event: Event, program: int) -> None:
     """Raise CommandError if the robot is lost or has another program."""
     if event.name == "LOST":
-        raise CommandError(3, "link_lost", port=shown(connection.port))
+        raise CommandError(3, "link_lost", port=printable_name(connection.port))
     if event.name == "STARTED" and event.program != program:
-        raise CommandError(3, "replaced", port=shown(connection.port))
+        raise CommandError(3, "replaced", port=printable_name(connection.port))
 
 
 def _is_push(event: Event) -> bool:

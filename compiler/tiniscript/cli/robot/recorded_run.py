@@ -13,11 +13,11 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.inputs import Input
 from tiniscript.cli.options import sensor_lists, thousandths, whole_number
-from tiniscript.cli.robot.simulator_options import refusing, world_of
+from tiniscript.cli.robot.simulator_options import convert_refusal, world_of
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 from tiniscript.studio import recordings
-from tiniscript.studio.playing import SAME, STEP_MS, Parting, Played, Ready, ready
+from tiniscript.studio.playing import SAME, STEP_MS, Parting, PlayedRun, Ready, ready
 from tiniscript.studio.recordings import MOST_MS, VIRTUAL, BadRecording, Row
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual.robot import Settings
@@ -35,7 +35,7 @@ def refuse(options: Namespace, names: tuple[str, ...], key: str) -> None:
             raise CommandError(2, key, option="--" + name.replace("_", "-"))
 
 
-def known_robot(robot: Robot) -> None:
+def require_known_robot(robot: Robot) -> None:
     """Raise CommandError where nobody else could play a run of this robot."""
     if robot.name not in robots.names() or robots.load(robot.name).kit != robot.kit:
         raise CommandError(2, "record_robot", known=", ".join(robots.names()))
@@ -53,17 +53,17 @@ def record(given: Input, options: Namespace, language: str) -> int:
     refuse(options, NOT_RECORDED, "record_only")
     source = source_text(given)
     robot = inputs.robot_for(given, options, language)
-    known_robot(robot)
+    require_known_robot(robot)
     max_ms = thousandths("--max-time", options.max_time, MAX_MS, 0, MOST_MS, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     message = sensor_lists(options.sensor, robot, language)
-    world, form = recordings.kept(world_of(options, language))
+    world, form = recordings.stored_form(world_of(options, language))
     result = images.ready(given, robot, language, is_strict=True)
     if result is None:
         return 1
     image = result.image
     data = pack(image.start, image.devices, image.code, image.later, image.needs)
-    with refusing(world.name, language):
+    with convert_refusal(world.name, language):
         run = Simulation(robot.name, world, data, settings=Settings(seed=seed, told=message))
     if image.start == "SB":
         run.push()
@@ -79,7 +79,7 @@ def record(given: Input, options: Namespace, language: str) -> int:
     head = recordings.head(
         VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=message
     )
-    whole = recordings.written(head, rows, end_ms)
+    whole = recordings.encode(head, rows, end_ms)
     outputs.write(Path(options.record), whole.encode(), "unwritable_more --record")
     if fault:
         text = fault_text(fault, fault_at or 0, result.places, given.is_image, language)
@@ -94,8 +94,8 @@ def play(given: Input, options: Namespace, language: str) -> int:
     if options.world is not None and run.recording.is_virtual:
         raise CommandError(2, "play_only", option="--world")
     world = run.recording.world or world_of(options, language)
-    with refusing(world.name, language):
-        played = Played(run, world)
+    with convert_refusal(world.name, language):
+        played = PlayedRun(run, world)
     while not played.is_over:
         played.go(STEP_MS)
     started_ms = played.robot.started_ms or 0
@@ -111,9 +111,9 @@ def play(given: Input, options: Namespace, language: str) -> int:
 
 def _read(given: Input) -> Ready:
     try:
-        return ready(recordings.read(given.data))
+        return ready(recordings.decode(given.data))
     except BadRecording as bad:
-        values = {"file": inputs.shown(given.name), "line": str(bad.line)}
+        values = {"file": inputs.printable_name(given.name), "line": str(bad.line)}
         raise CommandError(2, f"recording_{bad.reason}", **values) from None
 
 

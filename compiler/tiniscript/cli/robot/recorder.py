@@ -14,8 +14,8 @@ from threading import Lock
 from time import monotonic
 
 from tiniscript.base import files
-from tiniscript.cli.errors import CommandError, unwritable
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.errors import CommandError, unwritable_error
+from tiniscript.cli.inputs import printable_name
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import END, MOST_MS, Row
 
@@ -64,7 +64,7 @@ class Rows:
             self._file.close()
 
     def _failure(self, why: Exception) -> CommandError:
-        return unwritable(self._how, shown(self._name), why)
+        return unwritable_error(self._how, printable_name(self._name), why)
 
 
 ENDS = ("DONE", "FAULT", "STOPPED", "MISSED")

@@ -16,7 +16,7 @@ from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.payloads import EmptyReply
-from tiniscript.link.remote import NOTHING, Pressed, has_remote, pressed
+from tiniscript.link.remote import NOTHING, Pressed, has_remote, pressed_of
 from tiniscript.link.requests import OK, Reply
 
 FIRST_S, REPEAT_S = 0.7, 0.15  # for which a press holds a key
@@ -63,8 +63,8 @@ class HeldKeys:
         is_repeat = now_s < self._until_s.get(name, now_s)
         self._until_s[name] = now_s + (REPEAT_S if is_repeat else FIRST_S)
 
-    def held(self, now_s: float) -> Pressed:
-        return pressed(name for name, until_s in self._until_s.items() if now_s < until_s)
+    def pressed_at(self, now_s: float) -> Pressed:
+        return pressed_of(name for name, until_s in self._until_s.items() if now_s < until_s)
 
 
 class TerminalRemote:
@@ -90,15 +90,15 @@ class TerminalRemote:
     def look(self) -> None:
         """Pass on what is held. Raises CommandError where the robot takes no keys from here."""
         now_s = monotonic()
-        if self._held.take(self._keys.pressed(), now_s):
+        if self._held.take(self._keys.read_pressed(), now_s):
             self.has_quit = True
             raise KeyboardInterrupt
         self._refuse()
-        held = self._held.held(now_s)
+        held = self._held.pressed_at(now_s)
         if held == self._said and (held == NOTHING or now_s - self._said_s < SAY_S):
             return
         self._said, self._said_s = held, now_s
-        self._request = self._connection.do(lambda session: session.press(*held))
+        self._request = self._connection.begin_request(lambda session: session.press(*held))
 
     def _refuse(self) -> None:
         outcome = None if self._request is None else self._request.outcome

@@ -12,10 +12,10 @@ from functools import partial
 from ipaddress import IPv4Address
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot import broker_options
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.library.install_advice import quoted
+from tiniscript.library.install_advice import quote
 from tiniscript.link.messages import BROKER_NAME_BYTES, STATUSES, TRUST_BYTES
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.port_names import is_at_broker
@@ -61,7 +61,7 @@ def _tls(options: Namespace, place: broker_options.Place, is_name: bool) -> Tls 
         raise CommandError(2, "broker_tls_name", host=place.host)
     trust = _certificate(data)
     if trust is None or len(trust) > TRUST_BYTES:
-        file = shown(options.trust)
+        file = printable_name(options.trust)
         raise CommandError(2, "broker_bad_trust", file=file, bytes=str(TRUST_BYTES))
     return Tls(trust, int(time.strftime("%Y%m%d")))
 
@@ -93,13 +93,13 @@ def use(connection: Connection, broker: BrokerSettings | None, options: Namespac
     if broker is None:
         connection.say("broker_off")
         return
-    wifi_reply = awaited(
+    wifi_reply = await_state(
         partial(_broker_state, connection), lambda reply: _state(reply) != "SEARCHING"
     )
     tell(connection, wifi_reply, broker.name.decode(), _class_command(options))
 
 
-def awaited(ask: Callable[[], WifiReply], is_over: Callable[[WifiReply], bool]) -> WifiReply:
+def await_state(ask: Callable[[], WifiReply], is_over: Callable[[WifiReply], bool]) -> WifiReply:
     """Return what the robot tells when something has come of it, or after READY_S."""
     end_s = time.monotonic() + READY_S
     while not is_over(wifi_reply := ask()) and time.monotonic() < end_s:
@@ -109,7 +109,7 @@ def awaited(ask: Callable[[], WifiReply], is_over: Callable[[WifiReply], bool]) 
 
 def tell_if_any(connection: Connection) -> None:
     """Say where the robot's broker is, if it has one."""
-    reply = connection.wait(connection.do(lambda session: session.broker()))
+    reply = connection.wait(connection.begin_request(lambda session: session.broker()))
     if reply.status == STATUSES["OK"] and reply.values.network:
         tell(connection, reply.values)
 
@@ -121,7 +121,7 @@ def tell(connection: Connection, wifi_reply: WifiReply, name: str = "", command:
     """
     state = _state(wifi_reply)
     key = f"broker_{state.lower()}" if wifi_reply.network else "broker_none"
-    group = shown(wifi_reply.network.decode("utf-8", "replace"))
+    group = printable_name(wifi_reply.network.decode("utf-8", "replace"))
     sentence = connection.text(key, address=name or address(wifi_reply), group=group)
     if command and state == "READY":
         sentence += connection.text("broker_all", command=command)
@@ -138,7 +138,7 @@ def _class_command(options: Namespace) -> str:
         words += ["--user", options.user]
     if options.tls:
         words += ["--tls", "--trust", options.trust]
-    return shown(" ".join(["tsc", "class", *(quoted(str(word)) for word in words)]))
+    return printable_name(" ".join(["tsc", "class", *(quote(str(word)) for word in words)]))
 
 
 def _state(wifi_reply: WifiReply) -> str:
@@ -148,12 +148,12 @@ def _state(wifi_reply: WifiReply) -> str:
 
 
 def _broker_state(connection: Connection) -> WifiReply:
-    return connection.ask(lambda session: session.broker()).values
+    return connection.request(lambda session: session.broker()).values
 
 
 def _refuse_itself(connection: Connection, broker: IPv4Address) -> None:
     """Refuse a broker at 127.0.0.1: no robot but one that is on this computer is at it."""
-    wifi_reply = connection.ask(lambda session: session.wifi()).values
-    its = IPv4Address(wifi_reply.address.to_bytes(4, "little"))
-    if not its.is_loopback:
+    wifi_reply = connection.request(lambda session: session.wifi()).values
+    robot_address = IPv4Address(wifi_reply.address.to_bytes(4, "little"))
+    if not robot_address.is_loopback:
         raise CommandError(2, "broker_itself", host=str(broker), robot=connection.name)

@@ -9,7 +9,7 @@ from time import monotonic
 from typing import ClassVar
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.texts import say_aside, text
@@ -62,7 +62,7 @@ class RunMonitor:
                 continue
             time_ms, event = result
             try:
-                if not follower.is_about(event, shown(self.connection.port)):
+                if not follower.is_about(event, printable_name(self.connection.port)):
                     continue
             except RobotError as error:
                 raise CommandError(3, error.reason, **error.values) from None
@@ -70,20 +70,20 @@ class RunMonitor:
                 self.printer.tell(time_ms, event)
                 if event.name != "STARTED":
                     self.connection.quiet.note_words()
-            code = ended(event, run)
+            code = exit_code_of(event, run)
             if code is not None:
                 return code
 
     def stop_in_time(self) -> int:
         """Stop a virtual robot at its time limit: it stands already, but its firmware runs on."""
         if not self.connection.stop():
-            raise CommandError(3, "not_confirmed", port=shown(self.connection.port))
+            raise CommandError(3, "not_confirmed", port=printable_name(self.connection.port))
         language = self.connection.language
         self.printer.say(0, "TIME_OVER", "", text("time_over", language))
         return DONE
 
 
-def ended(event: Event, run: int | None) -> int | None:
+def exit_code_of(event: Event, run: int | None) -> int | None:
     """Return the exit code where an event ends a run, else None. A `run` of None is any."""
     end = end_of(event, run)
     if end is None:
@@ -102,7 +102,7 @@ def stop_and_say(connection: Connection) -> int:
     if is_confirmed:
         say_aside("robot_stopped", connection.language)
         return INTERRUPTED
-    raise CommandError(3, "not_confirmed", port=shown(connection.port))
+    raise CommandError(3, "not_confirmed", port=printable_name(connection.port))
 
 
 class Saving:
@@ -130,14 +130,14 @@ class Saving:
             self._asked is None and not self._robots.is_over and monotonic() - self._asked_s > ASK_S
         ):
             self._asked_s = monotonic()
-            self._asked = self.connection.do(Requester.status)
+            self._asked = self.connection.begin_request(Requester.status)
 
     def wait(self) -> None:
         """Wait until it is saved. Raises CommandError where it is not."""
         if self._robots.is_over:
             return
         for _ in self._robots.rounds():
-            self._learn(self.connection.ask(Requester.status), is_running=False)
+            self._learn(self.connection.request(Requester.status), is_running=False)
             if not self._robots.is_over:
                 self.connection.event()
         reason = self._robots.reason

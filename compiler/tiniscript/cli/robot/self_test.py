@@ -17,17 +17,17 @@ from tiniscript.cli.robot.conversation import (
     YES,
     Conversation,
     NoPerson,
-    Turned,
-    as_seen,
+    WheelTurn,
+    trim_from_answers,
 )
 from tiniscript.cli.robot.description import trim_in_words
 from tiniscript.cli.robot.diagnosing import examination_of
-from tiniscript.doctor.examination import Expected, Heard
+from tiniscript.doctor.examination import Expectations, RobotAnswers
 from tiniscript.doctor.findings import Finding, sure
-from tiniscript.library.known_kits import of_kit
+from tiniscript.library.known_kits import robot_of_kit
 from tiniscript.link.messages import RESETS, SAVED
 from tiniscript.link.names import row_name
-from tiniscript.link.trim import Trim, told
+from tiniscript.link.trim import Trim, trim_from_reply
 from tiniscript.robots.profile import Robot
 
 PARTS = ("kit", "firmware", "line", "supply", "store")  # of which a robot tells itself
@@ -42,11 +42,11 @@ ANSWERED = ("plain", "selftest_silent")  # failures that the robot has told: it 
 class SelfTest(Conversation):
     """The checks of a robot that has answered. `is_asking`: a person is beside it."""
 
-    def __init__(self, connection: Connection, expected: Expected, is_asking: bool) -> None:
+    def __init__(self, connection: Connection, expected: Expectations, is_asking: bool) -> None:
         super().__init__(connection, is_asking)
         self.expected = expected
         self.found: list[Finding] = []
-        self.heard: Heard | None = None
+        self.heard: RobotAnswers | None = None
         self.trim = Trim()
 
     def run(self) -> list[Finding]:
@@ -60,7 +60,7 @@ class SelfTest(Conversation):
     def _check(self) -> None:
         self._add("is_there")
         robot = self._examine()
-        self.trim = told(self.connection.ask(lambda session: session.trim()).values)
+        self.trim = trim_from_reply(self.connection.request(lambda session: session.trim()).values)
         self.found.append(self._trim_is())
         if robot is None:
             return
@@ -84,7 +84,7 @@ class SelfTest(Conversation):
         expected = self.connection.profile
         kit = self.connection.device_info.kit
         causes, self.heard = examination_of(self.connection, self.expected)
-        known = expected if kit == expected.kit.fingerprint else of_kit(kit)
+        known = expected if kit == expected.kit.fingerprint else robot_of_kit(kit)
         good = self._passed_parts(known.name if known is not None else "")
         for part in PARTS:
             self.found += [cause for cause in causes if cause.part == part] or good.get(part, [])
@@ -110,15 +110,15 @@ class SelfTest(Conversation):
 
     def _discs(self) -> None:
         """Let it stand, and longer than wheels roll: an edge is none of a wheel."""
-        before = self.connection.ask(lambda session: session.status()).values.noise
+        before = self.connection.request(lambda session: session.status()).values.noise
         try:
-            self.does(STANDS)
+            self.run_line(STANDS)
         except CommandError as failure:
             if failure.key not in ANSWERED:
                 raise
             self._add("plain", "discs", said=failure.sentence(self.language))
             return
-        after = self.connection.ask(lambda session: session.status()).values.noise
+        after = self.connection.request(lambda session: session.status()).values.noise
         left, right = (str((now - then) % 256) for now, then in zip(after, before, strict=True))
         if left == right == "0":
             self._add("discs_rest")
@@ -173,12 +173,12 @@ class SelfTest(Conversation):
         for side in SIDES:
             self._motor(side, is_lifted)
 
-    def _motor(self, side: str, is_lifted: bool) -> Turned | None:
+    def _motor(self, side: str, is_lifted: bool) -> WheelTurn | None:
         """Return what a person saw of a motor, which is found; None where nobody did."""
         try:
             if not is_lifted:
                 raise NoPerson
-            turned = self.turned(side)
+            turned = self.turn_motor(side)
         except NoPerson:
             self._add("unasked", side)
             return None
@@ -188,17 +188,17 @@ class SelfTest(Conversation):
         if not turned.wheel:
             self._add("still", side)
         else:
-            self._add("turns" if turned == Turned(side, True) else "other_turn", side)
+            self._add("turns" if turned == WheelTurn(side, True) else "other_turn", side)
         return turned
 
-    def _learns(self, left: Turned, right: Turned) -> bool:
+    def _learns(self, left: WheelTurn, right: WheelTurn) -> bool:
         """Have the robot keep how its motors are wired, if that is new and the person wants it."""
-        trim = as_seen(self.trim, left, right)
+        trim = trim_from_answers(self.trim, left, right)
         if trim is None or trim == self.trim:
             return False
         with suppress(NoPerson):
             if self.choice("ask_learn", 2) == YES:
-                self.connection.ask(lambda session: session.trim(trim.data()))
+                self.connection.request(lambda session: session.trim(trim.data()))
                 self.trim = trim
                 return True
         return False
@@ -208,7 +208,7 @@ class SelfTest(Conversation):
 
     def _buzzer(self) -> None:
         try:
-            answer = self.saw("BEEP(0.5, 440)", "ask_buzzer", AGAIN)
+            answer = self.ask_what_was_seen("BEEP(0.5, 440)", "ask_buzzer", AGAIN)
         except NoPerson:
             self._add("unasked", "buzzer")
         except CommandError as failure:
@@ -223,7 +223,7 @@ class SelfTest(Conversation):
 
     def _read(self, sensor: Device) -> list[int]:
         """Return readings, in thousandths, or 0 and 1. Raises CommandError."""
-        values = self.does("; W(0.1); ".join([f"SHOW({sensor.name})"] * READINGS))
+        values = self.run_line("; W(0.1); ".join([f"SHOW({sensor.name})"] * READINGS))
         if len(values) != READINGS:
             raise CommandError(3, "selftest_silent")
         return values

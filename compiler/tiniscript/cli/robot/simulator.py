@@ -40,7 +40,7 @@ def running_address(options: Namespace) -> str | None:
     can_bring = hasattr(options, "world")
     if can_bring and simulator_options.wants_own(options):
         return None
-    result = directory.for_all() if can_bring else directory.running()
+    result = directory.for_all() if can_bring else directory.running_robots()
     if not result and not can_bring:
         raise CommandError(3, "no_virtual")
     if len(result) > 1:
@@ -68,7 +68,7 @@ class CommandSimulator(SimulatorThread):
         self._undrawn: deque[Event] = deque(maxlen=MOST_EVENTS)
         self._told: deque[Event] = deque(maxlen=MOST_EVENTS)  # what `told_ms` may be asked for
         self._rounds = 0  # rounds after which the picture is up to date
-        robot = simulator_options.made(options, profile, language)
+        robot = simulator_options.make_robot(options, profile, language)
         super().__init__(robot, options.verb, hurry, faults)
         self.simulator.lasts_ms = self.end_ms
         self._thread.start()
@@ -119,7 +119,7 @@ class CommandSimulator(SimulatorThread):
         sys.stdout.flush()
         print(line, file=sys.stderr, flush=True)
 
-    def told_ms(self, event: str) -> int:
+    def event_ms(self, event: str) -> int:
         """Return when the robot did what it tells next as `event`, since its program began.
 
         Of what it has not told itself (that its values did not arrive), the time now.
@@ -176,7 +176,7 @@ class CommandSimulator(SimulatorThread):
             return 0
         return (self.robot.now_ms if ended_ms is None else ended_ms) - started_ms
 
-    def took_turn(self) -> None:
+    def on_turn(self) -> None:
         with self._drawing:
             events = self.robot.take_events()
             self._told.extend(event for event in events if event.what in TOLD)
@@ -196,7 +196,7 @@ class CommandSimulator(SimulatorThread):
             screen.draw(self._picture, self.robot.now_ms)
 
 
-def offered(language: str) -> bool:
+def offer(language: str) -> bool:
     """Ask whether to use the virtual robot; an empty answer is yes."""
     answer = asking.answer(text("offer_virtual", language))
     return bool(answer) and answer.strip().lower()[:1] in ("", "y", "s")

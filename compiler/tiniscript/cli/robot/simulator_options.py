@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tiniscript.cli import outputs
-from tiniscript.cli.errors import CommandError, not_installed
-from tiniscript.cli.inputs import refused, shown
+from tiniscript.cli.errors import CommandError, missing_package_error
+from tiniscript.cli.inputs import printable_name, refusal
 from tiniscript.cli.options import decimal, sensor_lists, thousandths, whole_number
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import virtual_names
@@ -32,7 +32,7 @@ def wants_own(options: Namespace) -> bool:
     return any(getattr(options, name, None) not in (None, []) for name in virtual_names())
 
 
-def made(
+def make_robot(
     options: Namespace,
     profile: Robot,
     language: str,
@@ -47,25 +47,25 @@ def made(
     motors = _motors(options.motors, language)
     message = sensor_lists(options.sensor, profile, language)
     settings = Settings(seed=seed, noise=noise, motors=motors, told=message, baud=baud)
-    with refusing(world.name, language):
-        return VirtualRobot(profile.speaking(language), world, settings, memory)
+    with convert_refusal(world.name, language):
+        return VirtualRobot(profile.with_language(language), world, settings, memory)
 
 
 @contextmanager
-def refusing(world: str, language: str) -> Iterator[None]:
+def convert_refusal(world: str, language: str) -> Iterator[None]:
     """Raise CommandError where a world is refused, or what a virtual robot needs is missing."""
     try:
         yield
     except NoWebAssembly as why:
-        raise not_installed("virtual_needs_wasmtime", why) from None
+        raise missing_package_error("virtual_needs_wasmtime", why) from None
     except WorldRefused as why:
-        raise refused(why, language, "world_refused", file=shown(world)) from None
+        raise refusal(why, language, "world_refused", file=printable_name(world)) from None
 
 
 def world_of(options: Namespace, language: str) -> World:
     """Return the world that `--world` names, or the default one."""
     name = worlds.DEFAULT if options.world is None else options.world
-    with refusing(name, language):
+    with convert_refusal(name, language):
         return worlds.load(name)
 
 
@@ -74,7 +74,7 @@ def hurry_of(options: Namespace, language: str) -> float:
     if options.hurry == "max":
         return 0.0
     if options.hurry is not None and decimal(options.hurry) is None:
-        raise CommandError(2, "bad_hurry", found=shown(options.hurry) or "''")
+        raise CommandError(2, "bad_hurry", found=printable_name(options.hurry) or "''")
     return number("--hurry", options.hurry, ONE, ONE // 10, FASTEST, language)
 
 
@@ -97,7 +97,7 @@ def check_picture(options: Namespace) -> None:
     try:
         import PIL.Image  # noqa: F401
     except ImportError as why:
-        raise not_installed("plot_needs_pillow", why) from None
+        raise missing_package_error("plot_needs_pillow", why) from None
 
 
 def draw_picture(options: Namespace, robot: VirtualRobot, language: str) -> None:
@@ -122,7 +122,7 @@ def summary(
         cm=round(driving.driven_cm), seconds=f"{passed_ms / 1000:.1f}", n=driving.bumps
     )
     if options.plot is not None:
-        result += " " + text("picture", language).format(file=shown(options.plot))
+        result += " " + text("picture", language).format(file=printable_name(options.plot))
     return result
 
 
@@ -138,7 +138,7 @@ def _motors(found: str | None, language: str) -> tuple[float, float]:
         return 100.0, 100.0
     parts = found.split(",")
     if len(parts) != 2:
-        raise CommandError(2, "bad_motors", found=shown(found) or "''")
+        raise CommandError(2, "bad_motors", found=printable_name(found) or "''")
     left, right = (
         number("--motors", part.strip(), 0, MOTOR_LOW, MOTOR_HIGH, language) for part in parts
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.texts import text
@@ -18,10 +18,10 @@ def stop_one(connection: Connection, member: Member) -> Result:
             return Result(True, text("held_back_short", connection.language))
         return Result(True, text("robot_stopped", connection.language))
     if may_be_opened(connection):
-        from tiniscript.cli.robot.fleet import Again
+        from tiniscript.cli.robot.fleet import Reconnect
 
-        raise Again
-    raise CommandError(3, "not_confirmed", port=shown(connection.port))
+        raise Reconnect
+    raise CommandError(3, "not_confirmed", port=printable_name(connection.port))
 
 
 def hold_back(connection: Connection) -> None:

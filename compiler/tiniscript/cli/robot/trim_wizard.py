@@ -10,9 +10,9 @@ import sys
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.conversation import YES, Conversation, NoPerson, as_seen
+from tiniscript.cli.robot.conversation import YES, Conversation, NoPerson, trim_from_answers
 from tiniscript.cli.texts import say_aside
-from tiniscript.cli.texts.causes import label, said
+from tiniscript.cli.texts.causes import label, sentences_of
 from tiniscript.doctor.findings import Finding, sure
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.requests import TAKEN
@@ -32,7 +32,7 @@ STOPPED = ("stopped_elsewhere", "stopped_midway", "plain")
 TRIES = 4
 
 
-def guided(connection: Connection, before: Trim) -> Trim:
+def guide(connection: Connection, before: Trim) -> Trim:
     """Ask until the robot drives straight; return the new trim."""
     try:
         return TrimWizard(connection).trim(before)
@@ -56,13 +56,13 @@ def _give_back(connection: Connection, before: Trim) -> None:
     """Restore the robot's former trim, with retries: a stop may still be in progress."""
     for _ in range(TRIES - 1):
         try:
-            connection.ask(lambda session: session.trim(before.data()), TAKEN)
+            connection.request(lambda session: session.trim(before.data()), TAKEN)
         except CommandError as failure:
             if not _is_there(failure):
                 raise
         else:
             return
-    connection.ask(lambda session: session.trim(before.data()), TAKEN)
+    connection.request(lambda session: session.trim(before.data()), TAKEN)
 
 
 class TrimWizard(Conversation):
@@ -83,13 +83,13 @@ class TrimWizard(Conversation):
             return trim
         if self.choice("trim_measure", 2) != YES:
             return trim._replace(pace=before.pace)
-        ahead = self._measured("F", AHEAD_S, "trim_how_far")
-        turning = self._measured("R", TURN_S, "trim_how_round")
+        ahead = self._measure("F", AHEAD_S, "trim_how_far")
+        turning = self._measure("R", TURN_S, "trim_how_round")
         return trim._replace(pace=Pace(*ahead, *turning))
 
-    def does(self, line: str) -> list[int]:
+    def run_line(self, line: str) -> list[int]:
         try:
-            return super().does(line)
+            return super().run_line(line)
         except CommandError as failure:
             if failure.key != "plain":
                 raise
@@ -100,10 +100,10 @@ class TrimWizard(Conversation):
         """Turn each motor; return the trim with which they are those of their wheels."""
         seen = []
         for side in ("left", "right"):
-            seen.append(self.turned(side))
+            seen.append(self.turn_motor(side))
             if not seen[-1].wheel:
                 raise self._failure(sure("still")._replace(of=side))
-        trim = as_seen(Trim(), *seen)
+        trim = trim_from_answers(Trim(), *seen)
         if trim is None:
             raise self._failure(sure("same_wheel"))
         return trim
@@ -111,12 +111,12 @@ class TrimWizard(Conversation):
     def _least(self) -> int:
         """Return the smallest power that moves both wheels, or 0 if the smallest step does."""
         for power in range(LEAST_STEP, MOST_LEAST + 1, LEAST_STEP):
-            self.does(f"M({power}, {power}); W(1); M(0, 0)")
+            self.run_line(f"M({power}, {power}); W(1); M(0, 0)")
             if self.choice("trim_moves", 2, n=str(power)) == YES:
                 return power if power > LEAST_STEP else 0
         raise self._failure(sure("too_weak", n=str(MOST_LEAST)))
 
-    def _measured(self, move: str, seconds: int, question: str) -> list[float]:
+    def _measure(self, move: str, seconds: int, question: str) -> list[float]:
         """Return how much it went, or turned, in a second at each power."""
         while True:
             result = [
@@ -130,10 +130,10 @@ class TrimWizard(Conversation):
         """Return how far it went in centimetres, or turned in degrees, as the person measured."""
         self.answer("trim_mark")
         while True:
-            self.does(f"{move}({seconds}, {power})")
+            self.run_line(f"{move}({seconds}, {power})")
             answer = self.answer(question, n=str(power))
             while answer:
-                size = measured(answer, move == "R")
+                size = parse_measure(answer, move == "R")
                 if size is not None and size <= MOST_PACE * seconds:
                     return size
                 say_aside(f"{question}_number", self.language)
@@ -144,7 +144,7 @@ class TrimWizard(Conversation):
         step, last = FIRST_STEP, 0
         self._set(trim)
         while True:
-            self.does(f"F(2, {power})")
+            self.run_line(f"F(2, {power})")
             answer = self.choice("trim_straight", AGAIN)
             if answer == 1:
                 return trim.balance
@@ -162,15 +162,15 @@ class TrimWizard(Conversation):
             self._set(trim)
 
     def _failure(self, finding: Finding) -> CommandError:
-        result = said(finding, self.language)
+        result = sentences_of(finding, self.language)
         part = label(finding, self.language)
         return CommandError(3, "trim_found", part=part, found=result.what, then=result.then)
 
     def _set(self, trim: Trim) -> None:
-        self.connection.ask(lambda session: session.trim(trim.data()), TAKEN)  # kept at the end
+        self.connection.request(lambda session: session.trim(trim.data()), TAKEN)  # kept at the end
 
 
-def measured(answer: str, is_turn: bool) -> float | None:
+def parse_measure(answer: str, is_turn: bool) -> float | None:
     """Return the centimetres or degrees that a person wrote, with a comma or a point; else None."""
     match = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
     if match is None:

@@ -51,7 +51,7 @@ class Canvas:
         return bytes(self._cells[number * self.columns : (number + 1) * self.columns])
 
 
-def layered(layers: Sequence[tuple[Canvas, str]]) -> list[Text]:
+def merge_layers(layers: Sequence[tuple[Canvas, str]]) -> list[Text]:
     """Return the rows of canvases of one size that lie on each other, the topmost one first.
 
     A character has the dots of all of them and the style of the topmost one that has any there.

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.member import Member
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.cli.texts import text
@@ -69,7 +69,7 @@ class FleetTable:
         wide = self.wide
         for member, name, port in zip(rows, *_columns(rows), strict=True):
             line = Text(f"{set_cell_size(name, wide[0])}  {set_cell_size(port, wide[1])}  ")
-            line.append(member.said(self.language), style=STYLES[member.mark])
+            line.append(member.state_text(self.language), style=STYLES[member.mark])
             lines.append(line)
         if hidden:
             more = text("crew_more", self.language).format(n=hidden)
@@ -81,5 +81,5 @@ class FleetTable:
 
 def _columns(members: Sequence[Member]) -> tuple[list[str], list[str]]:
     """Return names and ports."""
-    names = [shown(member.name or "?") for member in members]
-    return names, [shown(member.target.port) for member in members]
+    names = [printable_name(member.name or "?") for member in members]
+    return names, [printable_name(member.target.port) for member in members]

@@ -32,10 +32,10 @@ class Keys:
 
             termios.tcsetattr(self._file, termios.TCSADRAIN, self._saved)  # type: ignore[arg-type]
 
-    def pressed(self) -> str:
+    def read_pressed(self) -> str:
         """Return the keys that were pressed since the last time."""
         if sys.platform == "win32":
-            return _pressed_on_windows()
+            return _read_on_windows()
         if self._file < 0:
             return ""
         if not select.select([self._file], [], [], 0)[0]:
@@ -53,7 +53,7 @@ def is_in_front() -> bool:
         return True
 
 
-def _pressed_on_windows() -> str:
+def _read_on_windows() -> str:
     if sys.platform != "win32" or not sys.stdin.isatty():
         return ""
     import msvcrt

@@ -22,7 +22,7 @@ def show(said: str, language: str) -> None:
     """Show a text; a long one with a pager, until the person leaves that."""
     sys.stdout.flush()
     command = _command(language) if _is_long_there(said) else ""
-    if not command or not _paged(said, command):
+    if not command or not _page(said, command):
         print(said, end="")
 
 
@@ -45,7 +45,7 @@ def _command(language: str) -> str:
     return command.strip()
 
 
-def _paged(said: str, command: str) -> bool:
+def _page(said: str, command: str) -> bool:
     """Show a text with a pager; return whether it could be started.
 
     Ctrl-C belongs to the pager: tsc waits until the pager has left the terminal.

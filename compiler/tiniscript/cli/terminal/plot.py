@@ -15,7 +15,7 @@ from rich.text import Text
 
 from tiniscript.base.fixed_point import as_text
 from tiniscript.cli.terminal import FRAME_S
-from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, layered
+from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, merge_layers
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.link.outcomes import Event, ShownEvent
 
@@ -107,7 +107,7 @@ class Plot:
             round((high - value) / (high - low) * (rows - 1)): as_text(value)
             for value in range(low, high + 1, step)
         }
-        for row, curve in enumerate(layered(canvases)):
+        for row, curve in enumerate(merge_layers(canvases)):
             label = marks.get(row, "")
             lines.append(Text(f"{label:>{margin - 1}} ", style="dim").append_text(curve))
         return lines

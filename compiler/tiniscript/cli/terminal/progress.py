@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from tiniscript.cli.inputs import shown
+from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.streams import are_read
 from tiniscript.cli.texts import text
 
@@ -137,7 +137,7 @@ class Quiet:
         """The wait has ended, and nothing was said: what comes next is the same silence."""
         self._until_s = monotonic()
 
-    def then(self, said: str) -> Quiet:
+    def with_words(self, said: str) -> Quiet:
         """Return the same silence, of which something else is said."""
         quiet = Quiet(said, self._is_seen)
         quiet._since_s = self._since_s
@@ -154,9 +154,9 @@ class Quiet:
 
 
 @contextmanager
-def waiting(key: str, language: str, port: str = "") -> Iterator[Silence]:
+def show_wait(key: str, language: str, port: str = "") -> Iterator[Silence]:
     """Say the sentence `key` if this has not ended, nor been cancelled, in a moment."""
-    silence = Silence(text(key, language).format(port=shown(port)))
+    silence = Silence(text(key, language).format(port=printable_name(port)))
     try:
         yield silence
     finally:

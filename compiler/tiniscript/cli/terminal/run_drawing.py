@@ -93,7 +93,7 @@ class Picture:
         if width >= BESIDE:
             columns = self.sketch.columns(width - min(44, width * 11 // 20) - 2, room)
             values = self._values(min(WIDEST, width - columns - 2), room, now_ms)
-            way = self.sketch.drawn(columns, room, now_ms)
+            way = self.sketch.draw(columns, room, now_ms)
             values += [Text()] * (room - len(values))
             for line in way:
                 line.align("left", columns + 2)
@@ -101,7 +101,7 @@ class Picture:
         else:
             values = self._values(width, max(room - 3, min(room, 3)), now_ms)
             rows = room - len(values)
-            below = (self.sketch.drawn(width, rows, now_ms) if rows > 1 < width else []) + values
+            below = (self.sketch.draw(width, rows, now_ms) if rows > 1 < width else []) + values
         lines = [self._title(width), *below]
         for line in lines:
             line.rstrip()

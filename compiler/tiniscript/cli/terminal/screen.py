@@ -57,19 +57,19 @@ class Frame:
         if width != self._width:
             rows += sum(max(0, line.cell_len - 1) // width for line in self.lines)
         parts = [*(f"{line}{TO_LINE_END}\n" for line in above.split("\n"))] if above else []
-        parts.append(f"{TO_LINE_END}\n".join(map(self._styled, lines)))
+        parts.append(f"{TO_LINE_END}\n".join(map(self._style, lines)))
         erased = TO_SCREEN_END if width != self._width else ""
         return f"\r{_cursor_up(rows)}{erased}{''.join(parts)}{TO_SCREEN_END}"
 
     def _changes(self, lines: Sequence[Text]) -> str:
         """Return what writes the lines that are not as they were; there are as many as before."""
         rows = [
-            "" if new == old and new.style == old.style else self._styled(new) + TO_LINE_END
+            "" if new == old and new.style == old.style else self._style(new) + TO_LINE_END
             for new, old in zip(lines, self.lines, strict=True)
         ]
         return f"\r{_cursor_up(len(rows) - 1)}" + "\r\n".join(rows) if any(rows) else ""
 
-    def _styled(self, line: Text) -> str:
+    def _style(self, line: Text) -> str:
         with self.console.capture() as capture:
             self.console.print(line, end="", no_wrap=True, overflow="ignore", crop=False)
         return capture.get()

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 
-class Ended:
+class EndRequest:
     """Whether a signal has asked the process to end."""
 
     def __init__(self) -> None:
@@ -22,9 +22,9 @@ class Ended:
 
 
 @contextmanager
-def ended_by_signal() -> Iterator[Ended]:
+def handle_signals() -> Iterator[EndRequest]:
     """A signal that ends this process works as Ctrl-C does, so that no files are left over."""
-    ended = Ended()
+    ended = EndRequest()
     numbers = (signal.SIGTERM, signal.SIGINT)
     tell = sys.unraisablehook
 

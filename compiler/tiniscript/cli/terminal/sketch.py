@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from rich.text import Text
 
-from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, Dot, layered, put
+from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, Dot, merge_layers, put
 from tiniscript.robots.kinematics import START, Pose, Way
 from tiniscript.robots.profile import Robot
 
@@ -80,15 +80,15 @@ class Sketch:
         """Return how many columns of `most` the picture takes: a way may go anywhere."""
         return most
 
-    def drawn(self, columns: int, rows: int, now_ms: float) -> list[Text]:
-        ahead = self.way.ahead(now_ms)
+    def draw(self, columns: int, rows: int, now_ms: float) -> list[Text]:
+        ahead = self.way.points_ahead(now_ms)
         view = self._view(columns, rows, ahead)
         corners = self.way.corners
         self.canvas.lines(map(view.dot, corners[max(0, self.joined - 1) :]))
         self.joined = len(corners)
         whole = self.canvas.copy()
         whole.lines(map(view.dot, [corners[-1], *ahead]))
-        lines = layered([(whole, WAY)])
+        lines = merge_layers([(whole, WAY)])
         here = self.way.pose(now_ms)
         put(lines, view.dot(START), "o", WAY)
         put(lines, view.dot(here), ARROWS[round(here.heading / 45) % 8], ROBOT)

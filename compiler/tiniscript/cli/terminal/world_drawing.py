@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from rich.text import Text
 
 from tiniscript.base.trace import Event
-from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, Dot, layered, put
+from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, Dot, merge_layers, put
 from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.cli.terminal.sketch import ARROWS, ROBOT, WAY, Sketch, round_scale
 from tiniscript.cli.texts import text
@@ -91,7 +91,7 @@ class WorldSketch(Sketch):
             self._room = most, rows, min(most, right // ACROSS + 1)
         return self._room[2]
 
-    def drawn(self, columns: int, rows: int, now_ms: float) -> list[Text]:
+    def draw(self, columns: int, rows: int, now_ms: float) -> list[Text]:
         ground = self.floor
         if ground is None or (ground.columns, ground.rows) != (columns, rows):
             ground = self.floor = Floor(self.world, columns, rows)
@@ -101,7 +101,7 @@ class WorldSketch(Sketch):
         outline = driving.hull.outline(pose, 16)
         hull.lines(map(ground.dot, [*outline, outline[0]]))
         way = ground.way(driving.corners, pose)
-        lines = layered([(hull, ROBOT), (way, WAY), (ground.walls, WALLS)])
+        lines = merge_layers([(hull, ROBOT), (way, WAY), (ground.walls, WALLS)])
         for lamp in self.world.lamps:
             put(lines, ground.dot(lamp.place), "*", LAMP)
         put(lines, ground.dot(pose), ARROWS[round((pose.heading - 90) / 45) % 8], ROBOT)

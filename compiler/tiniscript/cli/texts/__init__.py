@@ -20,11 +20,11 @@ COUNTED = ("counted_bytes", "counted_checks")
 SEVERAL = 5  # as sentences have it
 
 
-class Said(str):
+class Sentence(str):
     """A sentence, or several: `format` makes all values printable.
 
     A value may come from a file or a robot: it must not move the cursor or begin a line. A value
-    that is a `Said` itself stays unchanged. Printed, it is still one: a terminal wraps it.
+    that is a `Sentence` itself stays unchanged. Printed, it is still one: a terminal wraps it.
     `language` is the one that it is in.
     """
 
@@ -33,29 +33,29 @@ class Said(str):
     def __str__(self) -> str:
         return self
 
-    def format(self, *values: object, **named: object) -> Said:
+    def format(self, *values: object, **named: object) -> Sentence:
         plain = {key: _printable(value) for key, value in named.items()}
         template = "".join(self)
         for key, value in plain.items():
             if isinstance(value, int | str) and str(value).isdecimal():
                 for counted in COUNTED:
                     several, form = (
-                        f"{{{key}}} {languages.counted(CATALOGUE, counted, n, self.language)}"
+                        f"{{{key}}} {languages.plural_text(CATALOGUE, counted, n, self.language)}"
                         for n in (SEVERAL, int(value))
                     )
                     template = template.replace(several, form)
-        return Said(template.format(*map(_printable, values), **plain))
+        return Sentence(template.format(*map(_printable, values), **plain))
 
 
 def _printable(value: object) -> object:
-    if isinstance(value, str) and not isinstance(value, Said):
+    if isinstance(value, str) and not isinstance(value, Sentence):
         return printable(value, LONGEST)
     return value
 
 
 def text(key: str, language: str) -> str:
-    """Return a sentence as `Said`."""
-    result = Said(languages.text(CATALOGUE, key, language))
+    """Return the sentence with this key."""
+    result = Sentence(languages.text(CATALOGUE, key, language))
     result.language = language
     return result
 
@@ -71,7 +71,7 @@ def say_aside(key: str, language: str, /, **values: object) -> None:
 
 
 def has_text(key: str) -> bool:
-    return languages.found(CATALOGUE, key, languages.SOURCE) is not None
+    return languages.find_text(CATALOGUE, key, languages.SOURCE) is not None
 
 
 def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:

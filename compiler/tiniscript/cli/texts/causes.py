@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from tiniscript.cli.texts import Said, has_text, text
+from tiniscript.cli.texts import Sentence, has_text, text
 from tiniscript.doctor.findings import CAUSES, Finding
 from tiniscript.link import foreign
 from tiniscript.link.messages import RESETS
@@ -19,7 +19,9 @@ class Sentences(NamedTuple):
     then: str
 
 
-def said(finding: Finding, language: str, values: Mapping[str, str] | None = None) -> Sentences:
+def sentences_of(
+    finding: Finding, language: str, values: Mapping[str, str] | None = None
+) -> Sentences:
     """Return what is said of a finding; `values`: instead of its own."""
     filled = dict(finding.values if values is None else values)
     if filled.get("reset") in dict(RESETS):
@@ -35,7 +37,7 @@ def said(finding: Finding, language: str, values: Mapping[str, str] | None = Non
     if cause in ("no_port", "charging_cable") and filled.get("ports"):
         seen, then = "seen_no_port_others", "next_no_port_others"
     if cause in foreign.NAMES:
-        what, advice = (Said(each) for each in foreign.sentence(cause, language))
+        what, advice = (Sentence(each) for each in foreign.sentence(cause, language))
         if cause == foreign.ECHO:
             seen = "seen_echo_sketch"
         elif cause == foreign.TEXT and not filled["said"]:
@@ -50,7 +52,7 @@ def said(finding: Finding, language: str, values: Mapping[str, str] | None = Non
 
 def as_data(finding: Finding, language: str) -> dict[str, object]:
     """Return a finding as data: what a program reads, and what a person would."""
-    what, seen, then = said(finding, language)
+    what, seen, then = sentences_of(finding, language)
     return {
         "cause": finding.cause,
         "is_wrong": finding.is_wrong,
@@ -71,7 +73,7 @@ def rows(findings: Iterable[Finding], language: str) -> list[str]:
     """Return the lines of a conversation about parts: what came of each, and what to do."""
     lines = []
     for finding in findings:
-        what, seen, then = said(finding, language)
+        what, seen, then = sentences_of(finding, language)
         mark = text(f"finding_{finding.verdict}", language)
         row = text("finding_row", language)
         lines.append(row.format(mark=mark, what=label(finding, language), said=what))

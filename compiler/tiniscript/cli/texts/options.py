@@ -8,7 +8,7 @@ Parsers, help, completion, `cli/paths.py` and the documents are made from it and
 from typing import NamedTuple
 
 from tiniscript.base.languages import languages
-from tiniscript.cli.texts.verbs import STEPS, said, settings, steps_of, typed
+from tiniscript.cli.texts.verbs import STEPS, command_words, settings, steps_of, verb_text
 from tiniscript.robots.text_levels import LEVELS
 
 
@@ -60,13 +60,13 @@ class Option(NamedTuple):
 
     def help(self, language: str) -> str:
         """Return what it does."""
-        return said(f"option/{self.flags}/{self.verbs.split()[0]}", language)
+        return verb_text(f"option/{self.flags}/{self.verbs.split()[0]}", language)
 
     def shown_value(self, language: str) -> str:
         """Return the name of its value in help."""
-        return said(f"value/{self.value}", language) or self.value
+        return verb_text(f"value/{self.value}", language) or self.value
 
-    def taken_by(self, verb: str) -> bool:
+    def is_taken_by(self, verb: str) -> bool:
         return self.verbs == "*" or verb in self.verbs.split()
 
 
@@ -315,9 +315,9 @@ OPTIONS: tuple[Option, ...] = (
 # fmt: on
 
 
-def of_verb(verb: str) -> list[Option]:
+def options_of(verb: str) -> list[Option]:
     """Return the options of a command, or of `tsc` itself, in the order of help."""
-    return [option for option in OPTIONS if option.taken_by(verb)]
+    return [option for option in OPTIONS if option.is_taken_by(verb)]
 
 
 def choosers_of(command: str) -> list[Option]:
@@ -325,8 +325,8 @@ def choosers_of(command: str) -> list[Option]:
     return [
         option
         for name in steps_of(command)
-        for option in of_verb(name)
-        if STEPS[name].head == typed(command) and option.flags in STEPS[name].choosers
+        for option in options_of(name)
+        if STEPS[name].head == command_words(command) and option.flags in STEPS[name].choosers
     ]
 
 
@@ -350,7 +350,7 @@ def chosen(verb: str, words: list[str]) -> tuple[str, list[str]]:
 def first_word(verb: str, words: list[str]) -> int | None:
     """Return where the first word is that is neither an option nor the value of one."""
     commands = (verb, *steps_of(verb))
-    valued = {flag for command in commands for option in of_verb(command)
+    valued = {flag for command in commands for option in options_of(command)
               if option.kind is not None for flag in option.flags.split()}  # fmt: skip
     is_value = False
     for k, word in enumerate(words):
@@ -362,7 +362,7 @@ def first_word(verb: str, words: list[str]) -> int | None:
 
 def shown_of(verb: str) -> list[Option]:
     """Return the options of a verb, or of `tsc` itself, that help and documents show."""
-    return [option for option in of_verb(verb) if verb not in option.silent.split()]
+    return [option for option in options_of(verb) if verb not in option.silent.split()]
 
 
 def virtual_names() -> list[str]:

@@ -99,19 +99,19 @@ FIRST = (
 NOTES = ("note/program", "note/exit")
 
 
-def said(key: str, language: str) -> str:
+def verb_text(key: str, language: str) -> str:
     """Return a text of the catalogue, which may have none."""
-    return languages.found("help", key, language) or ""
+    return languages.find_text("help", key, language) or ""
 
 
-def typed(command: str) -> str:
+def command_words(command: str) -> str:
     """Return what is typed after `tsc` for a command: `doctor --ports`."""
     return STEPS[command].typed if command in STEPS else command
 
 
 def steps_of(command: str) -> list[str]:
     """Return what begins with a command: the steps of a verb, `set owner --list` of `set owner`."""
-    begin = f"{typed(command)} "
+    begin = f"{command_words(command)} "
     return [
         name
         for name, step in STEPS.items()
@@ -131,4 +131,4 @@ def of_verb(verb: str, what: str, language: str) -> str:
     `example` is what may be typed for it, `summary` what that does, `says` what the command does,
     `ends` what else there is to know. Where it is used in several ways, `usage` has a line for each.
     """
-    return said(f"verb/{verb}/{what}", language) or typed(verb) * (what == "example")
+    return verb_text(f"verb/{verb}/{what}", language) or command_words(verb) * (what == "example")

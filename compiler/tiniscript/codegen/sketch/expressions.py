@@ -84,13 +84,13 @@ class Expressions:
 
     def _unary(self, op: str, operand: _Operand) -> _Operand:
         if op == "NOT":
-            return operand._replace(text="!" + _bracketed(operand, _UNARY), binds=_UNARY)
-        its = self._calculated(operand)
+            return operand._replace(text="!" + _bracket(operand, _UNARY), binds=_UNARY)
+        result = self._as_number(operand)
         if op == "ABS":
-            return its._replace(text=f"{self.use('absolute')}({its.text})", binds=_PRIMARY)
+            return result._replace(text=f"{self.use('absolute')}({result.text})", binds=_PRIMARY)
         self.use("NEG")
-        gap = " " if its.text.startswith("-") else ""
-        return its._replace(text=f"-{gap}{_bracketed(its, _UNARY)}", binds=_UNARY)
+        gap = " " if result.text.startswith("-") else ""
+        return result._replace(text=f"-{gap}{_bracket(result, _UNARY)}", binds=_UNARY)
 
     def _binary(self, op: str, left: _Operand, right: _Operand) -> _Operand:
         is_random = left.is_random or right.is_random or op == "RANDOM"
@@ -106,26 +106,26 @@ class Expressions:
         sign, binds = SIGNS[op], _BINDS[op]
         if op in ARITHMETIC or op in COMPARED:
             if left.is_literal and (right.is_literal or (op in ARITHMETIC and not self.is_exact)):
-                left = self._calculated(left)
+                left = self._as_number(left)
             if op in ARITHMETIC or self.is_exact:
                 self.use(op)
         # Brackets that C++ does not need stand where it warns without them.
         low, high = (8, 8) if op in COMPARED else (binds, binds + 1)
         if op == "OR":
             low, high = (6 if left.binds == _BINDS["AND"] else binds), 6
-        made_text = f"{_bracketed(left, low)} {sign} {_bracketed(right, high)}"
+        made_text = f"{_bracket(left, low)} {sign} {_bracket(right, high)}"
         if first:
             return _Operand(f"({kept}{made_text})", _PRIMARY, is_random=True)
         return _Operand(made_text, binds, is_random=is_random)
 
-    def _calculated(self, operand: _Operand) -> _Operand:
+    def _as_number(self, operand: _Operand) -> _Operand:
         """Return an operand that C++ does not calculate with its own whole numbers."""
         if not operand.is_literal or not self.is_exact:
             return operand
         return _Operand(f"{self.use('Number')}({operand.text})", _PRIMARY)
 
 
-def _bracketed(operand: _Operand, binds: int) -> str:
+def _bracket(operand: _Operand, binds: int) -> str:
     """Return an operand as it stands beside an operator that binds so tightly."""
     return operand.text if operand.binds >= binds else f"({operand.text})"
 

@@ -33,7 +33,7 @@ void $$$name($$N seconds, int power) {
 
 HELPERS: dict[str, str] = {
     **{name: _MOVE.substitute(name=name, powers=_POWERS[name]) for name in _POWERS},
-    **{name: _START.substitute(name=name, powers=_POWERS[its]) for name, its in _STARTS.items()},
+    **{name: _START.substitute(name=name, powers=_POWERS[move]) for name, move in _STARTS.items()},
     "stop_motors": "void $stop_motors() { $motors(0, 0); }",
     "wait": "void $wait($N seconds) { $wait_ms($to_ms(seconds)); }",
     "start_wait": """\
@@ -196,7 +196,7 @@ ISR(TIMER1_COMPA_vect) {
 }"""
 
 
-def servo_shared(pins: Sequence[str]) -> str:
+def shared_servo_code(pins: Sequence[str]) -> str:
     return (
         f"const byte $SERVOS = {len(pins)};\n"
         f"const byte $SERVO_PINS[$SERVOS] = {{{', '.join(pins)}}};\n"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.base.languages import found, keys, languages, text
+from tiniscript.base.languages import find_text, keys, languages, text
 
 # What has a name of its own in each language, and the parameters and variables of helpers.
 IDENTIFIERS, LOCALS = (
@@ -18,14 +18,14 @@ IDENTIFIERS, LOCALS = (
 _LOCAL = re.compile(rf"(?<![$\w.])({'|'.join(LOCALS)})(?!\w)")
 
 
-def said(key: str, language: str) -> str:
+def note_text(key: str, language: str) -> str:
     """Return a note, or nothing where nothing is said."""
-    return found("sketch", f"said/{key}", language) or ""
+    return find_text("sketch", f"said/{key}", language) or ""
 
 
-def called(key: str, language: str) -> str:
+def translated_name(key: str, language: str) -> str:
     """Return what something is called; other names stay what they are."""
-    return found("sketch", f"name/{key}", language) or key
+    return find_text("sketch", f"name/{key}", language) or key
 
 
 def with_locals(code: str, language: str) -> str:
@@ -80,9 +80,11 @@ class Names:
 
     def __init__(self, language: str) -> None:
         self._prefix = text("sketch", "prefix", language)
-        self._taken = {called(name, language) for name in IDENTIFIERS for language in languages()}
+        self._taken = {
+            translated_name(name, language) for name in IDENTIFIERS for language in languages()
+        }
 
-    def of(self, name: str, before: str = "") -> str:
+    def name_of(self, name: str, before: str = "") -> str:
         """Return the name in C++ of a name in capitals; `before` is the verb of a function."""
         words = [word for word in name.lower().split("_") if word]
         result = "".join(word.capitalize() for word in words)

@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import ONE, as_text, limited, whole
+from tiniscript.base.fixed_point import ONE, as_text, clamp, whole
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, printable
 from tiniscript.codegen.sketch.expressions import Expressions, has_random, reads_once
@@ -17,7 +17,7 @@ from tiniscript.codegen.sketch.names import counter
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Term
 from tiniscript.semantics.optimizer import constant
-from tiniscript.semantics.ways import timed
+from tiniscript.semantics.ways import to_timed
 
 WIDEST = 100  # columns of a line with what stands beside it
 BESIDE = 40  # the column of what stands beside code
@@ -36,7 +36,7 @@ class Comment(NamedTuple):
     text: str
 
 
-class Named(NamedTuple):
+class SketchNames(NamedTuple):
     """What things are called in C++. `reads` and `sets` are functions."""
 
     sensors: Sequence[str]
@@ -51,7 +51,7 @@ class Statements:
         self,
         source: Source,
         kit: Kit,
-        names: Named,
+        names: SketchNames,
         write: Expressions,
         comments: Sequence[Comment],
     ) -> None:
@@ -89,10 +89,10 @@ class Statements:
             if len(padded) <= WIDEST:
                 plain = padded
             else:
-                self.lines.append(f"{indent}// {_truncated(beside, WIDEST - len(indent) - 3)}")
+                self.lines.append(f"{indent}// {_truncate(beside, WIDEST - len(indent) - 3)}")
         self.lines.append(plain)
 
-    def said(self, start: int) -> str:
+    def instruction_text(self, start: int) -> str:
         """Return the instruction or the header of a block that begins at an offset."""
         text, at, open_brackets = self.source.text, start, 0
         while at < len(text):
@@ -130,7 +130,7 @@ class Statements:
             self.if_(statement)
             return
         self.remarks(start)
-        text = self.said(start)
+        text = self.instruction_text(start)
         if isinstance(statement, ir.Read):
             name = text.upper() if text.replace("_", "").isalnum() else ""
             self.line(self.reading(statement.sensor), name)
@@ -167,7 +167,7 @@ class Statements:
             self.line(f"{first} = {texts[k]};")
             texts[k] = first
         name = self.names.procedures[call.procedure]
-        self.line(f"{name}({', '.join(texts)});", self.said(call.span.start))
+        self.line(f"{name}({', '.join(texts)});", self.instruction_text(call.span.start))
 
     def reading(self, sensor: int) -> str:
         self.read_sensors.add(sensor)
@@ -185,7 +185,7 @@ class Statements:
         for value, limits in parts:
             fixed = constant(value)
             if fixed is not None:
-                rounded = max(0, fixed) if limits is None else limited(whole(fixed), *limits) * ONE
+                rounded = max(0, fixed) if limits is None else clamp(whole(fixed), *limits) * ONE
                 texts.append(self.write.text((Term("NUMBER", rounded),)))
                 continue
             text = self.write.text(value)
@@ -213,21 +213,21 @@ class Statements:
 
     def drive(self, move: ir.Move) -> list[str]:
         if move.unit:
-            move = timed(move, self.kit)
+            move = to_timed(move, self.kit)
         parts: list[Part] = [] if move.time is None else [(move.time, None)]
         if move.power is not None:
             parts.append((move.power, (0, 100)))
         texts = self.arguments(*parts)
         return texts if move.time is not None else [self.use("FOREVER"), *texts]
 
-    def set(self, its: ir.Set, said: str) -> None:
-        self.set_actuators.add(its.actuator)
-        device = self.kit.actuators[its.actuator]
+    def set(self, statement: ir.Set, said: str) -> None:
+        self.set_actuators.add(statement.actuator)
+        device = self.kit.actuators[statement.actuator]
         if device.is_yes_no:
-            value = self.write.text(its.value)
+            value = self.write.text(statement.value)
         else:
-            (value,) = self.arguments((its.value, (device.low // ONE, device.high // ONE)))
-        self.line(f"{self.names.sets[its.actuator]}({value});", said)
+            (value,) = self.arguments((statement.value, (device.low // ONE, device.high // ONE)))
+        self.line(f"{self.names.sets[statement.actuator]}({value});", said)
 
     def until(self, move: ir.Move, until: ir.Until, said: str) -> None:
         self.call(_STARTS.get(move.direction, "start_wait"), said, self.drive(move))
@@ -271,7 +271,7 @@ class Statements:
     def if_(self, statement: ir.If) -> None:
         nested = 0
         for k, arm in enumerate(statement.arms):
-            text = self.said(arm.span.start)
+            text = self.instruction_text(arm.span.start)
             self.remarks_in(arm.span.start, k)
             before = len(self.lines)
             inline = len(arm.reads) == 1 and reads_once(arm.condition, arm.reads[0])
@@ -335,7 +335,7 @@ def harmless(text: str) -> str:
     return printable(text).replace("??/", "?? /").rstrip("\\ ")
 
 
-def _truncated(text: str, most: int) -> str:
+def _truncate(text: str, most: int) -> str:
     return text if len(text) <= most else text[: most - 1] + "…"
 
 

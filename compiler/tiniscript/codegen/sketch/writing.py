@@ -13,8 +13,14 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source
 from tiniscript.codegen.sketch import helpers, numbers
 from tiniscript.codegen.sketch.expressions import FUNCTIONS, Expressions, is_float
-from tiniscript.codegen.sketch.names import IDENTIFIERS, Names, called, said, with_locals
-from tiniscript.codegen.sketch.statements import Comment, Named, Statements, harmless
+from tiniscript.codegen.sketch.names import (
+    IDENTIFIERS,
+    Names,
+    note_text,
+    translated_name,
+    with_locals,
+)
+from tiniscript.codegen.sketch.statements import Comment, SketchNames, Statements, harmless
 from tiniscript.codegen.sketch.wiring import SketchPlan, is_count, is_small
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
@@ -26,7 +32,7 @@ from tiniscript.syntax.lexer import scan
 def needs_numbers(program: ir.Program, robot: Robot) -> bool:
     """Whether a program calculates: then it needs numbers that are exact."""
     kit, wired = robot.kit, robot.board.sensors
-    for statement in ir.every(program):
+    for statement in ir.all_statements(program):
         if isinstance(statement, ir.Show) and not statement.is_yes_no:
             value = statement.value[0]
             if value.op == "SENSOR" and not is_count(kit.sensors[value.value], wired[value.value]):
@@ -34,7 +40,7 @@ def needs_numbers(program: ir.Program, robot: Robot) -> bool:
         if isinstance(statement, ir.Assign) or any(map(_is_computed, _arguments(statement, robot))):
             return True
         for expression in ir.expressions(statement):
-            if any(_calculates(term) for term in expression):
+            if any(_needs_arithmetic(term) for term in expression):
                 return True
     return not is_small(kit.sensors)
 
@@ -58,7 +64,7 @@ def _is_computed(expression: ir.Expression | None) -> bool:
     return expression is not None and constant(expression) is None
 
 
-def _calculates(term: ir.Term) -> bool:
+def _needs_arithmetic(term: ir.Term) -> bool:
     if term.op == "NUMBER":
         return not is_float(term.value) or abs(term.value) >= 2**24
     return term.op in FUNCTIONS or term.op in ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG", "ABS",
@@ -70,22 +76,22 @@ _WORD = re.compile(r"\$(\w+?)(?=_\$|_PIN\b|\b)")
 BOARDS = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
 
 
-def lacks(program: ir.Program, kit: Kit) -> str | None:
+def missing_feature(program: ir.Program, kit: Kit) -> str | None:
     """Return what a program needs and no sketch has: "tasks", "remote" or "ways".
 
     Tasks are TASK and WHEN, ways are CM and DEG that are calculated. None where there is a sketch.
     """
-    statements = list(ir.every(program))
+    statements = list(ir.all_statements(program))
     read = {statement.sensor for statement in statements if isinstance(statement, ir.Read)}
     if program.tasks:
         return "tasks"
-    if any(k >= len(kit.sensors) for k in read | ir.named("SENSOR", statements)):
+    if any(k >= len(kit.sensors) for k in read | ir.referenced("SENSOR", statements)):
         return "remote"
     return "ways" if any(map(is_open_way, statements)) else None
 
 
 def sketch_of(source: Source, program: ir.Program, robot: Robot, language: str) -> str:
-    """Return the sketch of a checked program that `lacks` nothing, for a robot on an AVR.
+    """Return the sketch of a checked program with no `missing_feature`, for a robot on an AVR.
 
     See `robots.firmware.fits`.
     """
@@ -102,14 +108,22 @@ class _Sketch:
         names = Names(language)
         kit = robot.kit
         devices = (
-            [names.of(sensor.name) for sensor in kit.sensors],
-            [names.of(sensor.name, called("read", language)) for sensor in kit.sensors],
-            [names.of(actuator.name, called("set", language)) for actuator in kit.actuators],
+            [names.name_of(sensor.name) for sensor in kit.sensors],
+            [
+                names.name_of(sensor.name, translated_name("read", language))
+                for sensor in kit.sensors
+            ],
+            [
+                names.name_of(actuator.name, translated_name("set", language))
+                for actuator in kit.actuators
+            ],
         )
-        procedures = [names.of(procedure.name) for procedure in program.procedures]
-        variables = {variable: names.of(variable) for variable in dict.fromkeys(program.variables)}
+        procedures = [names.name_of(procedure.name) for procedure in program.procedures]
+        variables = {
+            variable: names.name_of(variable) for variable in dict.fromkeys(program.variables)
+        }
         # values of two DEFs may have one name
-        self.named = Named(
+        self.named = SketchNames(
             *devices, procedures, [variables[variable] for variable in program.variables]
         )
         self.write = Expressions(self.use, self.is_exact, self.named.variables, self.named.sensors)
@@ -121,7 +135,7 @@ class _Sketch:
 
     def use(self, key: str) -> str:
         self.needed[key] = None
-        return called(key, self.language)
+        return translated_name(key, self.language)
 
     def label(self, name: str) -> str:
         return harmless(self.robot.labels[self.language][name])
@@ -130,7 +144,7 @@ class _Sketch:
         return with_locals(code, self.language)
 
     def says(self, key: str, **values: str) -> str:
-        return said(key, self.language).format(**values)
+        return note_text(key, self.language).format(**values)
 
     # -- the whole
 
@@ -140,7 +154,7 @@ class _Sketch:
         body = program.body
         is_ping = program.start == "PING"
         last = body[-1] if body else None
-        if isinstance(last, ir.Loop) and last.times is None and not ir.loops_end(last.body):
+        if isinstance(last, ir.Loop) and last.times is None and not ir.breaks_out(last.body):
             body, loop = body[:-1], last.body
         procedures = [self.procedure(rows, procedure) for procedure in program.procedures]
         rows.given = self.arguments
@@ -148,7 +162,7 @@ class _Sketch:
         if isinstance(last, ir.Loop) and loop:
             start = last.span.start
             rows.remarks(start)
-            rows.line(f"// {rows.said(start)}: {self.says('in_loop')}")
+            rows.line(f"// {rows.instruction_text(start)}: {self.says('in_loop')}")
         main, rows.lines = rows.lines, []
         rows.body(loop)
         rows.rest()
@@ -179,7 +193,7 @@ class _Sketch:
         name = self.named.procedures[self.program.procedures.index(procedure)]
         head, rows.lines = rows.lines, []
         rows.given = self.arguments - {*procedure.values}  # those of this DEF it sets itself
-        read = ir.named("VARIABLE", ir.walk(procedure.body))
+        read = ir.referenced("VARIABLE", ir.walk(procedure.body))
         for k in procedure.values:
             if k not in read:  # or a compiler warns
                 rows.line(f"(void){self.named.variables[k]};")
@@ -188,7 +202,7 @@ class _Sketch:
         types = ("bool" if self.yes_no[k] else "$N" for k in procedure.values)
         names = (self.named.variables[k] for k in procedure.values)
         header = f"void {name}({', '.join(map(' '.join, zip(types, names, strict=True)))}) {{"
-        beside = f"{header:<38}  // {rows.said(procedure.span.start)}"
+        beside = f"{header:<38}  // {rows.instruction_text(procedure.span.start)}"
         return "\n".join([*head, beside, *body, "}"])
 
     def layout(
@@ -224,8 +238,8 @@ class _Sketch:
             if key in self.functions
         }
         written = [
-            *(self.commented(note, code) for note, code in zip(about, wired, strict=True)),
-            *(self.commented(self.note(key), code) for key, code in functions.items()),
+            *(self.with_comment(note, code) for note, code in zip(about, wired, strict=True)),
+            *(self.with_comment(self.note(key), code) for key, code in functions.items()),
         ]
         used = [*procedures, *wired, *functions.values()]
         pieces = [
@@ -233,7 +247,7 @@ class _Sketch:
             "#include <Arduino.h>\n",
             self.constants(),
             self.number() if self.is_exact else "",
-            self.kept(rows),
+            self.variables(rows),
             self.prototypes(used),
             f"void setup() {{\n{_lines(begin, main)}}}\n",
             f"void loop() {{\n{_lines(repeated)}}}\n",
@@ -242,7 +256,7 @@ class _Sketch:
             pieces += [_heading(self.says("def")), *(f"{procedure}\n" for procedure in procedures)]
         if written:
             pieces += [_heading(self.says("helpers")), *written]
-        return self.filled("\n".join(piece for piece in pieces if piece))
+        return self.fill_words("\n".join(piece for piece in pieces if piece))
 
     # -- its parts
 
@@ -276,7 +290,9 @@ class _Sketch:
 
     def follow(self, texts: Iterable[str]) -> None:
         """Find the helpers that texts and other helpers need."""
-        by_name = {called(key, self.language): key for key in self.functions if key in IDENTIFIERS}
+        by_name = {
+            translated_name(key, self.language): key for key in self.functions if key in IDENTIFIERS
+        }
         for text in texts:
             for word in re.findall(r"\w+", text):
                 if word in by_name and f"{word}(" in text:
@@ -326,15 +342,15 @@ class _Sketch:
         return "\n".join([head, *self.plan.constants]) + "\n"
 
     def number(self) -> str:
-        return self.commented(self.says("Number"), self.in_language(numbers.STRUCT.rstrip()))
+        return self.with_comment(self.says("Number"), self.in_language(numbers.STRUCT.rstrip()))
 
-    def kept(self, rows: Statements) -> str:
+    def variables(self, rows: Statements) -> str:
         """Return the variables of the program, of the readings, and those that functions share."""
         lines = []
         for k, name in enumerate(self.named.variables):
             if k not in self.arguments:
                 lines.append(f"bool {name} = false;" if self.yes_no[k] else f"$N {name} = 0;")
-        named = ir.named("SENSOR", ir.every(self.program))  # read or not
+        named = ir.referenced("SENSOR", ir.all_statements(self.program))  # read or not
         for k in sorted(rows.read_sensors | named):
             kind = self.plan.kind(k)
             lines.append(f"{kind} {self.named.sensors[k]} = {'false' if kind == 'bool' else '0'};")
@@ -343,7 +359,7 @@ class _Sketch:
             if key in self.needed:
                 pieces.append((f"// {self.says(note)}\n" if note else "") + code)
         if self.plan.servo_pins:
-            pieces.append(helpers.servo_shared(self.plan.servo_pins))
+            pieces.append(helpers.shared_servo_code(self.plan.servo_pins))
         if self.write.kept:
             kept = ", ".join(f"first{k + 1}" for k in range(self.write.kept))
             pieces.append(f"// {self.says('shared_first')}\n$N {kept};")
@@ -371,18 +387,20 @@ class _Sketch:
             return self.says("start_forward")
         return self.says(key)
 
-    def commented(self, note: str, code: str) -> str:
+    def with_comment(self, note: str, code: str) -> str:
         comment = "\n".join(_wrap(note, "// ", "// ")) + "\n" if note else ""
         return f"{comment}{code}\n"
 
-    def filled(self, text: str) -> str:
+    def fill_words(self, text: str) -> str:
         """Return a text with names in the place of its `$words`."""
         is_forever = self.in_language(helpers.IS_FOREVER[self.is_exact])
         text = text.replace("$is_forever", is_forever)
-        text = re.sub(r"\$N\b", called("Number", self.language) if self.is_exact else "float", text)
+        text = re.sub(
+            r"\$N\b", translated_name("Number", self.language) if self.is_exact else "float", text
+        )
 
         def name(match: re.Match[str]) -> str:
-            return called(match[1], self.language)
+            return translated_name(match[1], self.language)
 
         return _WORD.sub(name, text)
 

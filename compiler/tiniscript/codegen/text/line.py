@@ -20,7 +20,7 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token, scan
 EMPTY = "SI|"  # a program that does nothing: an empty line would be none
 
 
-def spelled_out(tokens: Iterable[Token]) -> Iterator[Token]:
+def spell_out(tokens: Iterable[Token]) -> Iterator[Token]:
     """Yield tokens; in place of a word that stands for instructions those of them."""
     rest = iter(tokens)
     for token in rest:
@@ -29,11 +29,11 @@ def spelled_out(tokens: Iterable[Token]) -> Iterator[Token]:
             yield token
             continue
         values = _values(rest) if word.arguments else []
-        given = dict(zip([its.name.upper() for its in word.arguments], values, strict=True))
-        meant = []
-        for its in scan(word.stands_for).tokens[:-1]:
-            meant += given.get(its.text, [its._replace(start=token.start, end=token.end)])
-        yield from spelled_out(meant)
+        given = dict(zip([part.name.upper() for part in word.arguments], values, strict=True))
+        expansion = []
+        for part in scan(word.stands_for).tokens[:-1]:
+            expansion += given.get(part.text, [part._replace(start=token.start, end=token.end)])
+        yield from spell_out(expansion)
 
 
 def _values(tokens: Iterator[Token]) -> list[list[Token]]:
@@ -57,7 +57,7 @@ def line_of(source: Source) -> str:
     brackets = 0
     before = ""  # the kind of the last token, or nothing at the beginning
     is_ended = False  # whether an instruction has ended since then
-    for token in spelled_out(scan(source.text).tokens):
+    for token in spell_out(scan(source.text).tokens):
         kind = token.kind
         if kind is END:
             break

@@ -19,7 +19,7 @@ from tiniscript.bytecode.opcodes import SHORTS
 from tiniscript.codegen.lower_expression import push_bytes
 from tiniscript.syntax.blocks import ENDS
 from tiniscript.syntax.cursor import AT_END
-from tiniscript.syntax.later_words import among
+from tiniscript.syntax.later_words import kit_for_tokens
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
 
@@ -76,7 +76,9 @@ class Reader:
         self.brackets = 0
         self.is_way = False  # of the instruction whose brackets have been read
         self.one_too_many: Span | None = None  # the first bracket after MOST_BRACKETS
-        self.sensors = {device.name: k for k, device in enumerate(among(tokens, kit).readings)}
+        self.sensors = {
+            device.name: k for k, device in enumerate(kit_for_tokens(tokens, kit).readings)
+        }
         self.actuators = {device.name: k for k, device in enumerate(kit.actuators)}
         self.variables: dict[str, int] = {}
         self.own: dict[str, int] = {}  # the values of the DEF that is open
@@ -101,7 +103,7 @@ class Reader:
             self.has_room(0)
             self.length += 1
 
-    def numbered(self, number: int) -> None:
+    def emit_numbered(self, number: int) -> None:
         self.emit(1 if number < SHORTS else 2)
 
     def push(self) -> None:
@@ -185,7 +187,7 @@ class Reader:
         if self.token.kind == "=":
             self.assignment(name)
         elif name in self.sensors:
-            self.numbered(self.sensors[name])
+            self.emit_numbered(self.sensors[name])
             self.read |= 1 << self.sensors[name]
         elif name in self.defs:
             self.give(self.defs[name].values)
@@ -193,7 +195,7 @@ class Reader:
             self.emit(_JUMP)
         else:
             self.arguments()
-            self.numbered(self.actuators[name])
+            self.emit_numbered(self.actuators[name])
 
     def assignment(self, name: str) -> None:
         number = self.number_of(name, self.count)
@@ -205,7 +207,7 @@ class Reader:
         if number == self.count:
             self.variables[name] = number
             self.count += 1
-        self.numbered(number)
+        self.emit_numbered(number)
 
     def number_of(self, name: str, other: int) -> int:
         """Return the number of a variable, and `other` where there is none."""
@@ -233,7 +235,7 @@ class Reader:
         for number in values:
             self.push()
             self.value()
-            self.numbered(number)
+            self.emit_numbered(number)
             self.take_inner()
         if not values:
             self.take_inner()
@@ -245,15 +247,15 @@ class Reader:
         self.brackets -= token.kind == ")"
         return token
 
-    def command(self, its: Word) -> None:
-        word = its.text
+    def command(self, spec: Word) -> None:
+        word = spec.text
         if word == "ELSEIF":
             self.next_arm()
         elif word == "WHILE":
             self.emit(_JUMP)
             self.open(word)
         is_forever = self.arguments()
-        if its.role.lasts:
+        if spec.role.lasts:
             code = 2 if self.is_way else 1
             if self.token.kind is WORD:
                 self.take()
@@ -357,10 +359,10 @@ class Reader:
             number = self.sensors[token.text]
             if not self.known >> number & 1:
                 self.known |= 1 << number
-                self.numbered(number)
-            self.numbered(number)
+                self.emit_numbered(number)
+            self.emit_numbered(number)
         else:
-            self.numbered(self.number_of(token.text, 0))  # TRUE and its kin are one byte, too
+            self.emit_numbered(self.number_of(token.text, 0))  # TRUE and its kin are one byte, too
         return True
 
     def number(self, token: Token) -> None:
@@ -415,9 +417,9 @@ class Reader:
     def reduce(self, binding: int) -> None:
         """Apply what waits and binds at least so tightly, back to an open bracket."""
         while self.waiting and self.waiting[-1][0] >= binding:
-            its, _ = self.waiting.pop()
+            precedence, _ = self.waiting.pop()
             self.pop()
-            if its <= AND:
+            if precedence <= AND:
                 self.pop()
             else:
                 self.emit(1)

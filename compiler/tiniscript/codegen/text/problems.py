@@ -6,7 +6,7 @@ room for one language. A number is never used for something else. Texts are ASCI
 
 from __future__ import annotations
 
-from tiniscript.base.languages import found
+from tiniscript.base.languages import find_text
 
 LONGEST = 40  # characters of a text
 
@@ -33,6 +33,6 @@ REMARKS = (
 NAMES = dict(enumerate(PROBLEMS, 1))
 
 
-def said(kind: str, name: str, language: str) -> str:
+def problem_text(kind: str, name: str, language: str) -> str:
     """Return the text of a `problem` or a `remark`."""
-    return found("robot", f"{kind}/{name}", language) or ""
+    return find_text("robot", f"{kind}/{name}", language) or ""

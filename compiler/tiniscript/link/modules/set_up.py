@@ -23,7 +23,7 @@ LETTERS = set("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_ 
 TINI = "Tini-"  # how a name from a robot's id begins
 
 
-class Wanted(NamedTuple):
+class WantedSettings(NamedTuple):
     """What a module is to have; None leaves it as it is."""
 
     name: str | None = None
@@ -52,7 +52,7 @@ def name_for(robot_id: int) -> str:
     return f"{TINI}{robot_id & 0xFFFF:04X}"
 
 
-def misfit(wanted: Wanted, dialect: Dialect) -> str:
+def misfit(wanted: WantedSettings, dialect: Dialect) -> str:
     """Return what this kind of module cannot have: `name`, `pin`, `baud`, or an empty text."""
     name, pin, baud = wanted
     if name is not None and (
@@ -66,7 +66,7 @@ def misfit(wanted: Wanted, dialect: Dialect) -> str:
     return BAUD if baud is not None and baud not in dialect.bauds else ""
 
 
-def steps(wanted: Wanted, dialect: Dialect) -> list[Step]:
+def steps(wanted: WantedSettings, dialect: Dialect) -> list[Step]:
     """Return what is to be sent, in this order. Nothing is sent here."""
     name, pin, baud = wanted
     plan = (
@@ -78,7 +78,7 @@ def steps(wanted: Wanted, dialect: Dialect) -> list[Step]:
             for what, value, forms, written in plan if value is not None]  # fmt: skip
 
 
-def done(
+def apply_steps(
     wire: Wire, module: Module, plan: list[Step], on_outcome: Callable[[Outcome], None]
 ) -> list[Outcome]:
     """Do the steps, and stop at the first that goes wrong. `on_outcome` gets each at once."""
@@ -139,7 +139,7 @@ def _check_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
         return outcome._replace(how=LOST) if outcome.how == SILENT else outcome
     if dialect.restart:
         ask(wire, dialect.restart, dialect.ending, dialect.wait_ms)
-        wire.heard(RESTART_MS, RESTART_MS)
+        wire.receive(RESTART_MS, RESTART_MS)
     wire.set_baud(baud)
     if is_there(wire, dialect):
         return Outcome(step, DONE, step.value)

@@ -45,7 +45,7 @@ def ask(wire: Wire, command: str, ending: bytes, wait_ms: int) -> str:
     Some clones say a command again before they answer it: that is no part of the answer.
     """
     wire.send(command.encode("ascii") + ending)
-    text = wire.heard(wait_ms).decode("ascii", "replace").strip()
+    text = wire.receive(wait_ms).decode("ascii", "replace").strip()
     return text.removeprefix(command).lstrip()
 
 
@@ -59,14 +59,14 @@ def find_module(
 
     `wakes`: where none answers a text of 100 bytes is sent, which wakes an HM-10 that sleeps.
     """
-    wire.heard(SLOW_ANSWER_MS, SLOW_ANSWER_MS)  # what was sent before is no part of a command
+    wire.receive(SLOW_ANSWER_MS, SLOW_ANSWER_MS)  # what was sent before is no part of a command
     for is_awake in (False, True) if wakes else (False,):
         for baud in bauds:
             look(baud)
             wire.set_baud(baud)
             if is_awake:
                 wire.send(b"w" * WAKE_BYTES)
-                wire.heard(ANSWER_MS)
+                wire.receive(ANSWER_MS)
             ending = _listens(wire)
             if ending is not None:
                 dialect, version = _kind(wire, ending)

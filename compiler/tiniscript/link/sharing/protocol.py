@@ -86,7 +86,7 @@ class MessageReader:
         return [message_of(line) for line in lines]
 
 
-def written(message: Mapping[str, object]) -> bytes:
+def encode_message(message: Mapping[str, object]) -> bytes:
     return json.dumps(message, separators=(",", ":")).encode() + b"\n"
 
 
@@ -121,7 +121,7 @@ def data(message: JsonMessage, name: str) -> bytes:
         raise BadMessage from None
 
 
-def plain(values: Mapping[str, int | bytes]) -> JsonMessage:
+def to_json_values(values: Mapping[str, int | bytes]) -> JsonMessage:
     """Return the fields of a reply or an event in a form for JSON: bytes become hex."""
     return {
         name: value.hex() if isinstance(value, bytes) else value for name, value in values.items()
@@ -145,7 +145,7 @@ def reply(message: JsonMessage, kind: type[T]) -> Reply[T]:
     if status != OK:
         return Reply(status, detail)
     try:
-        return Reply(OK, detail, filled(kind, found))
+        return Reply(OK, detail, make_payload(kind, found))
     except Malformed:
         raise BadMessage from None
 
@@ -158,14 +158,14 @@ def event(message: JsonMessage) -> tuple[int, Event]:
         raise BadMessage from None
 
 
-def of_event(event: Event) -> dict[str, int | bytes]:
+def event_fields(event: Event) -> dict[str, int | bytes]:
     """Return the fields of an event, without its name."""
     fields = event._asdict()
     del fields["name"]
     return fields
 
 
-def filled(kind: type[T], values: Mapping[str, int | bytes]) -> T:
+def make_payload(kind: type[T], values: Mapping[str, int | bytes]) -> T:
     """Return a payload with these values. Raises Malformed if it has other fields."""
     if {name: type(value) for name, value in values.items()} != _types(cast(Hashable, kind)):
         raise Malformed
@@ -177,7 +177,7 @@ def event_of(name: str, values: Mapping[str, int | bytes]) -> Event:
     """Return an event. Raises Malformed if no event has this name and these fields."""
     if name not in EVENTS:
         raise Malformed
-    return filled(EVENTS[name], values)
+    return make_payload(EVENTS[name], values)
 
 
 @cache

@@ -51,7 +51,7 @@ def find_registration(port: str) -> Registration | None:
     return registration
 
 
-def all_found() -> list[Registration]:
+def find_all() -> list[Registration]:
     """Return the registrations of all servers, each once."""
     tidy()
     with suppress(OSError):
@@ -105,7 +105,7 @@ def tidy() -> None:
             if name.startswith(f"{_computer()}-") and name.endswith(".json"):
                 _remove(folder / name, _is_dead)
             elif name.startswith(f"{_computer()}-") and name.endswith(".lock"):
-                lock = _locked(folder / name)
+                lock = _try_lock(folder / name)
                 if lock is not None:
                     lock.close()
 
@@ -132,14 +132,14 @@ def forget(port: str) -> None:
         _path(port).unlink(missing_ok=True)
 
 
-def claimed(port: str) -> IO[bytes] | None:
+def claim(port: str) -> IO[bytes] | None:
     """Return a file that is locked for this process, or None where another process has the lock.
 
     Systems lock serial ports, but not addresses: two processes could use the same one. The lock
     ends with the file, or with the process. Raises OSError where nothing can be locked.
     """
     _make_folder()
-    return _locked(lock_of(port))
+    return _try_lock(lock_of(port))
 
 
 def lock_of(port: str) -> Path:
@@ -177,7 +177,7 @@ class _Lock(FileIO):
                 self.path.unlink()
 
 
-def _locked(path: Path) -> _Lock | None:
+def _try_lock(path: Path) -> _Lock | None:
     """Return a locked file, or None where another process has locked it.
 
     The previous owner may have removed the file between our open and our lock: then the lock
@@ -197,7 +197,7 @@ def _locked(path: Path) -> _Lock | None:
 def _lock(file: FileIO) -> bool:
     """Lock a file for this process; return False where another process has locked it."""
     try:
-        return files.is_locked(file.fileno())
+        return files.try_lock(file.fileno())
     except OSError:
         file.close()
         raise

@@ -64,7 +64,7 @@ def _fields(given: Mapping[str, object]) -> JsonMessage:
     return fields
 
 
-def asked_for(
+def request_maker(
     message: JsonMessage, limit_ms: int, speaker: int = 0
 ) -> Callable[[Requester], PendingRequest[Any]]:
     """Return the function that makes a message's request to a session. Raises BadMessage.
@@ -76,12 +76,12 @@ def asked_for(
     if name == "press":
         given += (speaker,)
 
-    def limited(session: Requester) -> PendingRequest[Any]:
+    def with_limit(session: Requester) -> PendingRequest[Any]:
         request: PendingRequest[Any] = getattr(session, name)(*given)
         request.limit_ms = limit_ms
         return request
 
-    return limited
+    return with_limit
 
 
 def is_detached(message: JsonMessage) -> bool:

@@ -31,7 +31,7 @@ from tiniscript.link.requests import OK, Reply
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.sharing.registry import Registration
-from tiniscript.link.sharing.requests import asked_for, is_detached
+from tiniscript.link.sharing.requests import is_detached, request_maker
 
 GREETING_S = 2.0  # timeout for a new client's greeting
 CLIENTS = 64  # at a time, and as many connections without a greeting
@@ -154,7 +154,7 @@ class Server:
 
     def _run(self) -> None:
         try:
-            while not self._is_closing and self._line.gone is None:
+            while not self._is_closing and self._line.end_reason is None:
                 self._attend()
             self._pass_on_outcomes()  # a run may have begun in this moment
         except Exception as bug:
@@ -267,11 +267,11 @@ class Server:
         if message["do"] == "press" and not client.speaker:
             self._speakers += 1
             client.speaker = self._speakers
-        make = asked_for(message, limit_ms, client.speaker)
+        make = request_maker(message, limit_ms, client.speaker)
         if self._is_latched() and message["do"] in _STARTING:
             self._tell_outcome(client, number, Reply(CANCELLED))
             return
-        client.requests[number] = ServedRequest(self._line.do(make), is_detached(message))
+        client.requests[number] = ServedRequest(self._line.begin(make), is_detached(message))
 
     def _pass_on_outcomes(self) -> None:
         for client in list(self._clients):
@@ -313,7 +313,7 @@ class Server:
             "id": number,
             "status": outcome.status,
             "detail": outcome.detail,
-            "values": protocol.plain(values),
+            "values": protocol.to_json_values(values),
             "heard": self._line.heard,
             "came": self._line.came.hex(),
             "is_echoed": self._line.is_echoed,
@@ -339,7 +339,7 @@ class Server:
         if client.missed:
             missed, client.missed = client.missed, 0
             self._tell_event(client, time_ms, MissedEvent(missed))
-        values = protocol.plain(protocol.of_event(event))
+        values = protocol.to_json_values(protocol.event_fields(event))
         message: JsonMessage = {"event": event.name, "ms": time_ms, "values": values}
         self._send(client, message)
 
@@ -367,7 +367,7 @@ class Server:
             self._line.withdraw(request.pending)
             self._left_requests.append(request)
         if client.speaker:
-            self._line.do(lambda session: session.press(speaker=client.speaker))
+            self._line.begin(lambda session: session.press(speaker=client.speaker))
         if self._owner is not None and self._owner[0] is client:
             self._end_run()
         self._tell_own_command(client, LeftEvent)
@@ -381,7 +381,7 @@ class Server:
     # -- what clients are told --------------------------------------------------------------------
 
     def _send(self, client: ConnectedClient, message: JsonMessage) -> None:
-        client.out += protocol.written(message)
+        client.out += protocol.encode_message(message)
         if len(client.out) > TOO_FULL_BYTES:
             self._drop(client)
         else:
@@ -402,7 +402,7 @@ class Server:
 
     def _part(self) -> None:
         """Tell all clients that the connection has ended, and why."""
-        gone = self._line.gone
+        gone = self._line.end_reason
         over: JsonMessage = {"over": "ended" if gone is None else "gone", "why": gone or ""}
         for client in list(self._clients):
             if client.verb:

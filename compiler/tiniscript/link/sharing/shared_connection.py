@@ -17,7 +17,7 @@ from tiniscript.base.version import __version__
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
 from tiniscript.link.outcomes import LOOK_S, ConnectionLost, Event
 from tiniscript.link.payloads import HelloReply
-from tiniscript.link.requests import OK, DeviceInfo, Reply, described
+from tiniscript.link.requests import OK, DeviceInfo, Reply, device_info_of
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.sharing.registry import Registration
@@ -72,7 +72,7 @@ class SharedConnection(LinkConnection):
     def has_ended(self) -> bool:
         return self._over is not None
 
-    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+    def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         request = make(self._requests)
         assert isinstance(request, ClientRequest)
         self._count += 1
@@ -110,7 +110,7 @@ class SharedConnection(LinkConnection):
     def _send(self, message: JsonMessage) -> None:
         try:
             self._peer.settimeout(SEND_S)
-            self._peer.sendall(protocol.written(message))
+            self._peer.sendall(protocol.encode_message(message))
         except OSError as why:
             # messages that arrived earlier may give a better reason
             self._over = self._over or ConnectionLost(str(why), is_server=True)
@@ -167,13 +167,13 @@ class SharedConnection(LinkConnection):
     def _learn(self, request: ClientRequest[Any], values: object) -> None:
         """Remember who the robot is."""
         if isinstance(values, HelloReply):
-            self._robot = described(values)
+            self._robot = device_info_of(values)
         elif request.message["do"] == "name" and self.robot is not None:
             name = bytes.fromhex(str(request.message["name"]))
-            self._robot = described(self.robot.values._replace(name=name))
+            self._robot = device_info_of(self.robot.values._replace(name=name))
 
 
-def joined(port: str, verb: str) -> SharedConnection | None:
+def join(port: str, verb: str) -> SharedConnection | None:
     """Return the connection through the command that holds a port; None if no command does.
 
     Raises OtherVersion where the server is another version of tsc; `stop` works there, too.
@@ -199,7 +199,7 @@ def _connect_to(registration: Registration, verb: str) -> SharedConnection | Non
         peer = socket.create_connection((protocol.HOST, registration.number), ANSWER_S)
         peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         peer.sendall(
-            protocol.written({"tsc": __version__, "token": registration.token, "verb": verb})
+            protocol.encode_message({"tsc": __version__, "token": registration.token, "verb": verb})
         )
         rest = protocol.MessageReader(protocol.LINE_BYTES)
         result = _read_greeting(peer, rest)

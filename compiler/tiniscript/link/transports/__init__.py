@@ -27,10 +27,10 @@ class Port(Protocol):
 class Transport(Protocol):
     """A file of this folder. Both functions raise PortError."""
 
-    def resolved(self, port: str) -> str:
+    def resolve(self, port: str) -> str:
         """Return the address of the robot that a name means: a port, too."""
         ...
 
-    def opened(self, port: str, baud: int, limit_s: float) -> Port:
+    def open_port(self, port: str, baud: int, limit_s: float) -> Port:
         """Open a port for exclusive use. `limit_s` is for those without limits of their own."""
         ...

@@ -22,7 +22,7 @@ from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import BLE, canonical, name_in
 from tiniscript.link.transports import WRITE_S
 from tiniscript.link.transports import bluetooth_search as search
-from tiniscript.link.transports.event_loop import EventLoop, shared
+from tiniscript.link.transports.event_loop import EventLoop, shared_loop
 from tiniscript.link.transports.pushed import ENDED, PushedTransport
 
 CONNECT_S = 15.0
@@ -64,35 +64,35 @@ MODULES = (
 _found: dict[str, BLEDevice] = {}  # by address: devices that a search has found
 
 
-def resolved(port: str) -> str:
+def resolve(port: str) -> str:
     """Return the port of the device that a name means: `ble://` and its address.
 
     Raises PortError, at the latest after search.SEARCH_S.
     """
-    loop = shared()
+    loop = shared_loop()
     device = _run(loop, search.find_device(name_in(port)), search.SEARCH_S + search.LEAVE_S * 2)
     address = canonical(device.address)
     _found[address] = device
     return BLE + address
 
 
-def listed() -> list[search.SeenDevice]:
+def list_robots() -> list[search.SeenDevice]:
     """Return the robots in reach. Raises PortError."""
     limit_s = search.LISTED_S + search.LEAVE_S * 2
-    seen_devices = _run(shared(), search.robots(), limit_s)
+    seen_devices = _run(shared_loop(), search.robots(), limit_s)
     _found.update({canonical(item.address): item.device for item in seen_devices})
     return seen_devices
 
 
-def opened(port: str, baud: int, limit_s: float) -> BluetoothPort:
+def open_port(port: str, baud: int, limit_s: float) -> BluetoothPort:
     """Connect to a device. Raises PortError, at the latest after a search and QUEUE_S.
 
     `baud` is the speed of the UART behind an HM-10. Radios take longer than `limit_s`.
     """
     address = name_in(port)
     if address not in _found:
-        address = name_in(resolved(port))
-    bluetooth_port = BluetoothPort(shared(), baud)
+        address = name_in(resolve(port))
+    bluetooth_port = BluetoothPort(shared_loop(), baud)
     bluetooth_port.connect(_found.pop(address))
     return bluetooth_port
 

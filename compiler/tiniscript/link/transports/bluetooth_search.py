@@ -30,7 +30,7 @@ SEARCH_S = 10.0  # for one robot
 LINGER_S = 1.5  # after a name was seen: an HM-10 says its own once in 1.3 s, and two may have one
 LISTED_S = 4.0  # for all robots
 LEAVE_S = 3.0  # timeout of the end of a scan
-NEARBY = 8  # names in a sentence
+MAX_NAMES_SHOWN = 8  # names in a sentence
 DEVICES = 1000  # that a scan keeps
 
 _Denied = BleakBluetoothNotAvailableReason
@@ -141,7 +141,7 @@ async def find_device(name: str) -> BLEDevice:
                 await asyncio.wait_for(news.wait(), max(0.0, end_s - loop.time()))
         robots = sorted({seen.name or seen.address for seen in scan.seen.values() if seen.is_robot})
     if not matches:
-        raise PortError(errors.NOT_FOUND, ", ".join(robots[:NEARBY]))
+        raise PortError(errors.NOT_FOUND, ", ".join(robots[:MAX_NAMES_SHOWN]))
     if len(matches) > 1:
         raise PortError(errors.SEVERAL, ", ".join(f"ble://{match}" for match in sorted(matches)))
     return next(iter(matches.values())).device

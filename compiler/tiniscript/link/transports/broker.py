@@ -81,19 +81,19 @@ def sign_in(host: str, port: int, access: Access) -> None:
     _accesses[host, port] = access
 
 
-def resolved(port: str) -> str:
+def resolve(port: str) -> str:
     return port
 
 
-def opened(port: str, baud: int, limit_s: float) -> BrokerPort:
+def open_port(port: str, baud: int, limit_s: float) -> BrokerPort:
     """Return the port of a robot. Raises PortError, after CONNECT_S at the latest."""
     match = _PORT.fullmatch(port)
     if match is None or int(match[2]) >= 1 << 16:
         raise PortError(errors.NO_PORT, port)
-    return connected(match[1], int(match[2])).robot(match[3].lower(), match[4].lower())
+    return connect(match[1], int(match[2])).robot(match[3].lower(), match[4].lower())
 
 
-def connected(host: str, port: int) -> Broker:
+def connect(host: str, port: int) -> Broker:
     """Return the connection of this process to a broker. Raises PortError."""
     with _lock:
         broker = _brokers.get((host, port))
@@ -103,7 +103,7 @@ def connected(host: str, port: int) -> Broker:
         return broker
 
 
-def _trusting(file: str | None) -> ssl.SSLContext:
+def _tls_context(file: str | None) -> ssl.SSLContext:
     """Return whom TLS trusts: what a file has, in PEM or DER, or whom this computer does.
 
     A broker's own certificate is enough, whoever has signed it. Raises OSError.
@@ -214,7 +214,7 @@ class Broker:
         return sorted(result, key=lambda each: (each.name.casefold(), each.id))
 
     @property
-    def skipped(self) -> dict[str, int]:
+    def skipped_topics(self) -> dict[str, int]:
         """Return the topics of messages that were too large, and their bytes."""
         return dict(self._client.skipped)
 
@@ -262,7 +262,7 @@ class Broker:
             self._client.username_pw_set(access.user, access.password)
         try:
             if access.is_tls:
-                self._client.tls_set_context(_trusting(access.trusted))
+                self._client.tls_set_context(_tls_context(access.trusted))
             self._client.connect(host, port, KEEP_ALIVE_S)
         except ssl.SSLError as why:
             raise PortError(errors.UNTRUSTED, str(why.reason or why)) from None

@@ -77,7 +77,7 @@ _shared: list[EventLoop] = []
 _lock = Lock()
 
 
-def shared() -> EventLoop:
+def shared_loop() -> EventLoop:
     """Return the loop of this process."""
     with _lock:
         if not _shared:

@@ -27,32 +27,32 @@ LONGEST = 63  # bytes of a name
 ROBOTS = 1000  # that a list keeps
 
 
-class Announced(NamedTuple):
+class AnnouncedRobot(NamedTuple):
     """A robot's name, and its address as a port."""
 
     name: str
     port: str
 
 
-def resolved(port: str) -> str:
+def resolve(port: str) -> str:
     """Return the address, `socket://…`, of the robot that announces a name. Raises PortError."""
     name = name_in(port).removesuffix(".local")
     if not 0 < len(name.encode()) <= LONGEST:
         raise PortError(errors.NOT_ANNOUNCED)
     with _network() as network:
-        info = asked(network, f"{name}.{SERVICE}", int(SEARCH_S * 1000))
+        info = query_service(network, f"{name}.{SERVICE}", int(SEARCH_S * 1000))
     if info is None:
         raise PortError(errors.NOT_ANNOUNCED)
     return _address(info)
 
 
-def opened(port: str, baud: int, limit_s: float) -> Port:
+def open_port(port: str, baud: int, limit_s: float) -> Port:
     """Open the address of a name, which is searched first. Raises PortError."""
-    result: Port = serial.opened(resolved(port), baud, limit_s)
+    result: Port = serial.open_port(resolve(port), baud, limit_s)
     return result
 
 
-def listed() -> list[Announced]:
+def list_robots() -> list[AnnouncedRobot]:
     """Return the robots that announce themselves. Raises PortError."""
     names: set[str] = set()
 
@@ -75,17 +75,17 @@ def listed() -> list[Announced]:
         until_s = monotonic() + ADDRESSES_S
         for name in sorted(names):
             left_ms = int((until_s - monotonic()) * 1000)
-            info = asked(network, name, max(1, min(left_ms, ROBOT_MS)))
+            info = query_service(network, name, max(1, min(left_ms, ROBOT_MS)))
             if info is None:
                 continue
             try:
-                result.append(Announced(name.removesuffix(f".{SERVICE}"), _address(info)))
+                result.append(AnnouncedRobot(name.removesuffix(f".{SERVICE}"), _address(info)))
             except PortError:  # no robot has such an address
                 continue
     return result
 
 
-def asked(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
+def query_service(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
     """Return what is announced of a name, or None.
 
     The answer goes to all: of several programs of a computer, one alone would get its own.

@@ -70,16 +70,16 @@ class Listed(Protocol):
     hwid: str | None
 
 
-def listed() -> list[Listed]:
+def list_serial_ports() -> list[Listed]:
     ports: list[Listed] = list_ports.comports()
     return ports
 
 
-def resolved(port: str) -> str:
+def resolve(port: str) -> str:
     return port
 
 
-def opened(port: str, baud: int, limit_s: float, is_exclusive: bool = True) -> serial.SerialBase:
+def open_port(port: str, baud: int, limit_s: float, is_exclusive: bool = True) -> serial.SerialBase:
     """Open a port, at the latest after `limit_s`. Raises PortError.
 
     Some drivers block in `open` for ever, so a daemon thread opens the port.

@@ -121,7 +121,7 @@ class _Channel:
 
 def layout_of(plan: Plan) -> Layout:
     """Return the places of all that `plan` has."""
-    return _Layout(plan).done()
+    return _Layout(plan).compute()
 
 
 class _Layout:
@@ -178,7 +178,7 @@ class _Layout:
         sides = [self.pin_side[end.wire.pin] for end in part.ends if end.wire]
         return RIGHT if sides and 2 * sum(sides) >= len(sides) else LEFT
 
-    def _wanted(self, part: Part) -> float:
+    def _wanted_y(self, part: Part) -> float:
         """Return the preferred height of a part's first terminal: beside its pins."""
         offsets = [
             self.pin_y[end.wire.pin] - row
@@ -197,14 +197,14 @@ class _Layout:
         y = MARGIN + STEP
         for k, part in enumerate(ordered):
             latest = bottom - sum(_room(part) for part in ordered[k:])
-            expected = min(self._wanted(part), latest)
+            expected = min(self._wanted_y(part), latest)
             y = max(y, _snap(int(expected)))
             self.tops[id(part)] = y
             y += _room(part)
 
     # -- the wires
 
-    def done(self) -> Layout:
+    def compute(self) -> Layout:
         channels = (_Channel(), _Channel())
         around: list[int] = []  # wires from a pin of one side to a part of the other
         ends: dict[int, tuple[int, int]] = {}  # side and height of each wire's terminal

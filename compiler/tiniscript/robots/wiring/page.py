@@ -110,7 +110,7 @@ class _Page:
             Block("heading", say("mind")),
             Block("list", rows=_column(self._warnings())),
             Block("heading", say("bluetooth" if self.plan.has_radio else "usb")),
-            Block("list", rows=_column(self._link())),
+            Block("list", rows=_column(self._connection_rows())),
             Block("heading", say("check")),
             Block("checks", rows=_column(self._checks())),
             Block("paragraph", say("made_by", robot=self.plan.robot)),
@@ -183,7 +183,7 @@ class _Page:
                     result.append(sentence)
         return result
 
-    def _link(self) -> list[str]:
+    def _connection_rows(self) -> list[str]:
         if not self.plan.has_radio:
             return [self.say("usb_link", baud=self.plan.baud), self.say("usb_reset")]
         speed = "bluetooth_speed" if self.plan.baud == 9600 else "bluetooth_other_speed"

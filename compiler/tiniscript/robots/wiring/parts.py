@@ -29,10 +29,10 @@ def shape_of(used_by: str, wiring: Wiring, device: Device | None = None,
     """Return what a wiring's part looks like. Raises LookupError for an unknown driver."""
     sees = place.sees if place else ""
     shape = driver_of(used_by, wiring).shape(wiring, device, sees, pin_volts)
-    return shape if pin_volts == FIVE_VOLTS else _at_3v3(shape)
+    return shape if pin_volts == FIVE_VOLTS else _adapt_to_3v3(shape)
 
 
-def _at_3v3(shape: Shape) -> Shape:
+def _adapt_to_3v3(shape: Shape) -> Shape:
     """Return a part as it is joined to a board whose pins have 3.3 V.
 
     It gets 3.3 V, so that nothing else comes back; what needs 5 V gets them, and a divider where
@@ -50,11 +50,11 @@ def _at_3v3(shape: Shape) -> Shape:
             terminal._replace(rail=BOARD_3V3) if terminal.rail == BOARD_5V else terminal
             for terminal in shape.terminals
         )
-    notes = tuple(of_3v3(note) for note in shape.notes)
-    return shape._replace(need=of_3v3(shape.need), terminals=tuple(ends), notes=notes)
+    notes = tuple(key_for_3v3(note) for note in shape.notes)
+    return shape._replace(need=key_for_3v3(shape.need), terminals=tuple(ends), notes=notes)
 
 
-def of_3v3(key: str) -> str:
+def key_for_3v3(key: str) -> str:
     """Return the key of what is said of a part on such a board, where that differs."""
     return f"{key}_3v3" if has_text(f"{key}_3v3") else key
 

@@ -138,18 +138,18 @@ def plan_of(robot: Robot, language: str) -> Plan:
     chip = CHIPS[board.chip]
     counter = _Counter(chip, language)
 
-    def named(key: str) -> str:
+    def label_of(key: str) -> str:
         return text(key, language)
 
     matches = []
     motors = parts.shape_of("motors", board.motors, pin_volts=chip.pin_volts)
-    title, label = motors.model, named("part_motors")
+    title, label = motors.model, label_of("part_motors")
     if not motors.model:
-        title, label = named("part_servos"), ""
+        title, label = label_of("part_servos"), ""
     matches.append(counter.part(title, label, motors, board.motors.pins))
     if board.discs:
         discs = parts.shape_of("discs", board.discs, pin_volts=chip.pin_volts)
-        matches.append(counter.part(discs.model, named("part_discs"), discs, board.discs.pins))
+        matches.append(counter.part(discs.model, label_of("part_discs"), discs, board.discs.pins))
     groups = (
         ("sensors", kit.sensors, board.sensors),
         ("actuators", kit.actuators, board.actuators),
@@ -165,13 +165,17 @@ def plan_of(robot: Robot, language: str) -> Plan:
             label = robot.labels[language][device.name]
             label = "" if label == device.name else label
             matches.append(counter.part(device.name, label, shape, wiring.pins, is_device=True))
-    matches.append(counter.part(named("part_button"), "SB", switch(), {"pin": board.start_button}))
-    matches.append(counter.part(named("part_buzzer"), "BEEP", parts.BUZZER, {"pin": board.buzzer}))
+    matches.append(
+        counter.part(label_of("part_button"), "SB", switch(), {"pin": board.start_button})
+    )
+    matches.append(
+        counter.part(label_of("part_buzzer"), "BEEP", parts.BUZZER, {"pin": board.buzzer})
+    )
     has_radio = chip.pin_volts == FIVE_VOLTS
     has_lamp = has_radio and board.status_led == LAMP_PIN
     if board.status_led is not None and not has_lamp:
         pin = {"pin": board.status_led}
-        matches.append(counter.part(named("part_lamp"), "", lamp(is_on_low=False), pin))
+        matches.append(counter.part(label_of("part_lamp"), "", lamp(is_on_low=False), pin))
     radio = {"rx": RECEIVE_PIN, "tx": TRANSMIT_PIN}
     if board.bluetooth_state is not None:
         radio["state"] = board.bluetooth_state
@@ -184,7 +188,7 @@ def plan_of(robot: Robot, language: str) -> Plan:
         (SERVO_SUPPLY, "part_servo_supply", parts.SUPPLY_OF_SERVOS),
     ):
         if rail in rails:
-            matches.append(counter.part(named(key), named(f"{key}_volts"), supply, {}))
+            matches.append(counter.part(label_of(key), label_of(f"{key}_volts"), supply, {}))
     return Plan(
         robot.labels[language]["robot"], language, chip, board.baud, tuple(matches), has_lamp,
         board.bluetooth_state is not None, body,

@@ -6,13 +6,13 @@ from tiniscript.base import languages
 
 
 def has_text(key: str) -> bool:
-    return languages.found("wiring", key, languages.SOURCE) is not None
+    return languages.find_text("wiring", key, languages.SOURCE) is not None
 
 
 def text(key: str, language: str, default: str = "") -> str:
     """Return a text; `default` where the key has none and a name stands for itself."""
     return (
-        languages.found("wiring", key, language)
+        languages.find_text("wiring", key, language)
         or default
         or languages.text("wiring", key, language)
     )

@@ -65,7 +65,7 @@ def check_show(show: ir.Show, around: Around, look: Look) -> None:
 def report_asked_once(look: Look) -> None:
     """A program that reads no remote control loads nothing for it."""
     remote = {*range(len(look.kit.sensors), len(look.kit.readings))}
-    if remote & ir.named("SENSOR", look.statements):
+    if remote & ir.referenced("SENSOR", look.statements):
         from tiniscript.semantics.lint import once
 
         once.report_asked_once(look, remote)
@@ -118,7 +118,7 @@ class _Conditions:
         values = {"name": name, "fix": "", "example": f"UNTIL(DISTANCE {sign} 20)"}
         if held:
             values["sensor"] = held[name]
-            asked = self._asking(condition, held, move.span, "UNTIL", move.direction)
+            asked = self._condition_text(condition, held, move.span, "UNTIL", move.direction)
             values["fix"] = self._with_condition(move, asked) if asked else ""
         self._look.report(codes.FROZEN_UNTIL, move.span, **values)
 
@@ -155,7 +155,7 @@ class _Conditions:
             return
         if (
             len(condition) == 1
-            or ir.loops_end(loop.body)
+            or ir.breaks_out(loop.body)
             or self._look.variables.set_in(loop.body) & set(variables)
         ):
             return
@@ -167,7 +167,7 @@ class _Conditions:
         values = {"name": name, "fix": ""}
         if held:
             values["sensor"] = held[name]
-            asked = self._asking(condition, held, loop.span, "WHILE")
+            asked = self._condition_text(condition, held, loop.span, "WHILE")
             values["fix"] = f"WHILE({asked})" if asked else ""
         elif [term.op for term in condition[:-1]] == ["VARIABLE", "NUMBER"]:
             is_down = condition[-1].op in ("GT", "GE")
@@ -182,7 +182,7 @@ class _Conditions:
             return
         name = self._program.variables[variables[0]]
         word = "IF" if self._source[arm.span][:1].upper() == "I" else "ELSEIF"
-        asked = self._asking(arm.condition, held, arm.span, word)
+        asked = self._condition_text(arm.condition, held, arm.span, word)
         fix = f"{word}({asked})" if asked else ""
         self._look.report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
 
@@ -220,7 +220,7 @@ class _Conditions:
         term = ir.Term("VARIABLE", variable)
         is_only_shown = all(
             isinstance(item, ir.Show)
-            for item in ir.every(self._program)
+            for item in ir.all_statements(self._program)
             if any(term in expression for expression in ir.expressions(item))
         )
         shown = {
@@ -292,7 +292,7 @@ class _Conditions:
     def _comparison(self, condition: ir.Expression) -> Comparison | None:
         return comparison(condition, self._kit)
 
-    def _asking(
+    def _condition_text(
         self, condition: ir.Expression, held: Mapping[str, str], span: Span, word: str,
         direction: str = "",
     ) -> str:  # fmt: skip
@@ -311,7 +311,7 @@ class _Conditions:
         text = self._look.condition(span, word)
         if not comes and (comes is not None or direction):
             return ""
-        return re.sub(r"[A-Za-z_]\w*", lambda it: held.get(it[0].upper(), it[0]), text)
+        return re.sub(r"[A-Za-z_]\w*", lambda match: held.get(match[0].upper(), match[0]), text)
 
 
 def _runs_once(loop: ir.Loop | ir.While) -> bool:

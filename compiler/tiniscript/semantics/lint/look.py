@@ -40,7 +40,7 @@ class Look:
 
     @cached_property
     def statements(self) -> list[ir.Statement | ir.Task]:
-        return [*ir.every(self.program), *self.program.tasks]
+        return [*ir.all_statements(self.program), *self.program.tasks]
 
     @cached_property
     def uses_motors(self) -> bool:
@@ -77,7 +77,7 @@ class Variables:
         self._program = program
         self._kit = kit
         self.set_to: dict[int, list[ir.Expression]] = {}
-        for statement in ir.every(program):
+        for statement in ir.all_statements(program):
             if isinstance(statement, ir.Assign):
                 self.set_to.setdefault(statement.variable, []).append(statement.value)
         # By a loop's start, the variables that get a value in it; None where it takes no time.

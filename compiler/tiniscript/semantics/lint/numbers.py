@@ -75,7 +75,7 @@ def _check_time(move: Move, look: Look) -> list[Diagnostic]:
     text, is_ended = look.source[move.span], move.until is not None
     zero = None if is_ended else _ZERO.match(text) or _ZERO_OF_TURN.match(text)
     if time is None:
-        return _check_power(move) if is_ended else _measured(move, kit, text)
+        return _check_power(move) if is_ended else _report_way_as_time(move, kit, text)
     if time <= 0 and not is_ended:
         return [Diagnostic(codes.ZERO_TIME_MOVE, move.span, {"word": move.direction})]
     if zero is not None:  # `L(039, 60)`
@@ -110,7 +110,7 @@ def _check_way(move: Move, kit: Kit) -> list[Diagnostic]:
     return _check_power(move)
 
 
-def _measured(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
+def _report_way_as_time(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
     """`F(DISTANCE, 60)`, `F(TIME, 60)`: centimetres, or a clock, in the place of seconds."""
     time = move.time or ()
     is_clock = len(time) == 1 and time[0].op == "TIME"

@@ -25,24 +25,24 @@ def report_asked_once(look: Look, remote: AbstractSet[int]) -> None:
     program = look.program
     for body in (program.body, *(task.body for task in program.tasks if task.look is None)):
         is_early = True
-        for statement in _once(body):
-            read = next((it for it in _read(statement) if it[0] in remote), None)
+        for statement in _statements_done_once(body):
+            read = next((item for item in _read(statement) if item[0] in remote), None)
             if read is not None:
-                look.found.append(_told(*read, statement, body, is_early, look))
+                look.found.append(_diagnostic(*read, statement, body, is_early, look))
                 return
             done = ir.with_calls((statement,), program.procedures)
-            if not isinstance(statement, ir.If) and remote & ir.named("SENSOR", done):
+            if not isinstance(statement, ir.If) and remote & ir.referenced("SENSOR", done):
                 break  # it has been waited for
             is_early = is_early and not isinstance(statement, _LASTING)
 
 
-def _once(body: ir.Body) -> Iterator[ir.Statement]:
+def _statements_done_once(body: ir.Body) -> Iterator[ir.Statement]:
     """Yield the statements that no loop repeats, in their order."""
     for statement in body:
         yield statement
         if isinstance(statement, ir.If):
             for inner in ir.bodies(statement):
-                yield from _once(inner)
+                yield from _statements_done_once(inner)
 
 
 def _read(statement: ir.Statement) -> Iterator[tuple[int, Span]]:
@@ -56,7 +56,7 @@ def _read(statement: ir.Statement) -> Iterator[tuple[int, Span]]:
         yield from ((term.value, span) for term in value if term.op == "SENSOR")
 
 
-def _told(
+def _diagnostic(
     sensor: int, span: Span, statement: ir.Statement, body: ir.Body, is_early: bool, look: Look
 ) -> Diagnostic:
     name = look.kit.readings[sensor].name
@@ -66,13 +66,15 @@ def _told(
     text = look.source[span]
     place = re.search(rf"(?i)\b{name}\b", text)
     named = Span(span.start + place.start(), span.start + place.end()) if place else span
-    return Diagnostic(codes.ASKED_ONCE, named, values, None, _repeated(span, body, look))
+    return Diagnostic(codes.ASKED_ONCE, named, values, None, _loop_repair(span, body, look))
 
 
-def _repeated(span: Span, body: ir.Body, look: Look) -> Repair | None:
+def _loop_repair(span: Span, body: ir.Body, look: Look) -> Repair | None:
     """Put a loop around what is read once and all that follows, where the rest takes time."""
     rest = [each for each in body if each.span.end > span.start]
-    if not any(isinstance(it, _SEEN) for it in ir.with_calls((*rest,), look.program.procedures)):
+    if not any(
+        isinstance(item, _SEEN) for item in ir.with_calls((*rest,), look.program.procedures)
+    ):
         return None
     first, end = rest[0], rest[-1].span.end
     start = first.arms[0].span.start if isinstance(first, ir.If) else first.span.start

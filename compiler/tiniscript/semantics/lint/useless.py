@@ -36,7 +36,7 @@ LONGEST = 200  # characters of a note that is looked at
 def report_never_reached(body: ir.Body, around: Around, look: Look) -> None:
     """What stands after a loop without an end, or after BREAK."""
     for before, after in pairwise(body):
-        if not ir.goes_on((before,)):
+        if not ir.falls_through((before,)):
             values = {"found": look.source[after.span].split("\n")[0]}
             if isinstance(before, ir.Loop):
                 values["line"] = str(look.source.position(before.span.start)[0])
@@ -58,7 +58,11 @@ def report_instructions_in_notes(look: Look) -> None:
     if all(token.kind in AT_END for token in tokens):
         _report_all_notes(short, look)
         return
-    rows = [token for token in short if re.fullmatch(_CALLS, token.text) or swallowed(token.text)]
+    rows = [
+        token
+        for token in short
+        if re.fullmatch(_CALLS, token.text) or swallowed_instructions(token.text)
+    ]
     is_ping = [token.text for token in tokens[:2]] == ["PING", "|"]
     depth = k = 0
     for note in rows:
@@ -69,7 +73,7 @@ def report_instructions_in_notes(look: Look) -> None:
         if depth or not source.text[begin : note.start].strip(" \t;"):
             continue
         if _ends_instruction(tokens, k) and not is_ping:
-            rest = "; ".join(swallowed(note.text))
+            rest = "; ".join(swallowed_instructions(note.text))
             text = rest or note.text.strip("/; \t")
             look.report(codes.IN_A_NOTE, note.span, found=text, rest=rest)
 
@@ -83,7 +87,7 @@ def _report_all_notes(notes: Sequence[Token], look: Look) -> None:
             return
 
 
-def swallowed(note: str) -> list[str]:
+def swallowed_instructions(note: str) -> list[str]:
     """Return the instructions after the words of a note: `// voy; W(2) // compro`.
 
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
@@ -119,7 +123,7 @@ def report_busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> No
     if (
         look.program.tasks  # there each turn of a loop takes time
         or not _is_forever(loop)
-        or ir.loops_end(loop.body)
+        or ir.breaks_out(loop.body)
         or any(isinstance(call, _LASTING) for call in ir.with_calls(loop.body, procedures))
     ):
         return
@@ -195,7 +199,7 @@ def _leading_instructions(statements: Sequence[ir.Statement], source: Source) ->
 
 def report_unused_variables(look: Look) -> None:
     program = look.program
-    used = ir.named("VARIABLE", look.statements)
+    used = ir.referenced("VARIABLE", look.statements)
     owners = {k: procedure for procedure in program.procedures for k in procedure.values}
     for statement in look.statements:
         if isinstance(statement, ir.Assign) and statement.variable not in used:
@@ -210,7 +214,7 @@ def report_unused_variables(look: Look) -> None:
 
 def report_unused_readings(look: Look) -> None:
     """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
-    asked = ir.named("SENSOR", look.statements)
+    asked = ir.referenced("SENSOR", look.statements)
     for statement in look.statements:
         if isinstance(statement, ir.Read) and statement.sensor not in asked:
             asked.add(statement.sensor)  # said once
