@@ -83,7 +83,7 @@ def test_a_side_of_the_stick_is_shown_as_its_number_and_as_an_arrow(stick: str, 
         (found,) = check(wrong)
         values = {"fix": STICK[side], "arrow": f"KEY_{side}"}
         assert {name: found.values.get(name) for name in values} == values, wrong
-        assert fixed(wrong, check).text == wrong
+        assert repair_program(wrong, check).text == wrong
 
 
 @pytest.mark.parametrize("side", STICK)

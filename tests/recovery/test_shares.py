@@ -6,7 +6,7 @@ import pytest
 
 from tests.pupils.corpus import check
 from tiniscript.base.source import Source
-from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.diagnostics.rendering import message
 
 PLACES = (
@@ -27,7 +27,7 @@ def test_a_percentage_of_a_sensor_is_shown_as_its_number(
         (found,) = check(wrong)
         tried = message(found, Source(wrong), "en").fix
         assert f"write {share};" in tried and tried.endswith(f"write {asked}"), place
-        assert fixed(wrong, check).text == wrong
+        assert repair_program(wrong, check).text == wrong
 
 
 @pytest.mark.parametrize("right", ["IF(LIGHT_L > 80 % 7)", "IF(LIGHT_L % 2 = 0)"])
