@@ -21,6 +21,7 @@ _FOLLOW: dict[Code, tuple[Code, ...]] = {
 }  # fmt: skip
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
 _OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
+_UNTAUGHT = (codes.UNKNOWN_WORD, codes.UNTAUGHT)
 _MANY = 30  # of which it is looked at: each goes through its row
 
 
@@ -109,7 +110,16 @@ def _ends_of_a_question_after(
             yield diagnostic
 
 
+def _calls_of_a_task(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
+    """What a TASK with a name was to be started by, which is told at the TASK."""
+    started = {it.values.get("started") for it in diagnostics} - {None, ""}
+    for diagnostic in diagnostics if started else ():
+        names = (diagnostic.values.get(key, "").upper() for key in ("name", "found"))
+        if diagnostic.code in _UNTAUGHT and started & {*names}:
+            yield diagnostic
+
+
 _RULES: tuple[Callable[[Sequence[Diagnostic], Source], Iterator[Diagnostic]], ...] = (
     _ends_of_a_misspelt_loop, _ends_of_an_unread_if, _uses_of_a_reserved_word,
-    _uses_of_a_list, _units_of_an_unknown_word, _ends_of_a_question_after,
+    _uses_of_a_list, _units_of_an_unknown_word, _ends_of_a_question_after, _calls_of_a_task,
 )  # fmt: skip

@@ -359,11 +359,17 @@ class _Explainer:
         )
 
     def early(self, block: _Block, last: int) -> search.Change | None:
-        """Return the line before the first header in a block: it may end there as well."""
-        for k in range(block.first + 2, last + 1):
-            words = texts(lexemes(self.changes[k].text))
-            if words and words[0] in BLOCK_ENDS and self.changes[k - 1].text.strip():
-                return self.changes[k - 1]
+        """Return the line before an empty line in a block, or its first header.
+
+        It may end there as well.
+        """
+        above = None
+        for change in self.changes[block.first + 1 : last + 1]:
+            words = texts(tokens_of(change.text))
+            is_apart = not change.text.strip() or (words[:1] and words[0] in BLOCK_ENDS)
+            if above and is_apart:
+                return above
+            above = change if words else above
         return None
 
     def may_end_earlier(self, block: _Block, last: int) -> bool:

@@ -20,6 +20,8 @@ _ENDS = (";", NEWLINE, "|", "end")  # what an instruction ends at, or begins beh
 _DEF_ENDS = ("END_DEF", "ENDDEF")
 _RESULT = "RESULT"
 _LONGEST = 4_000  # characters of a text that is looked at
+_SUMS = {*"+-*/%"}
+_OF_SUMS = {WORD, NUMBER, "(", ")", *_SUMS}
 _YES_NO = ("AND", "OR", "NOT")
 
 
@@ -37,7 +39,7 @@ def given_back(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
     edits: list[Edit] = []
     returned: set[str] = set()
     result = _RESULT if _RESULT not in names_in(text) else next(numbered_names(text, _RESULT))
-    for name, word, value in _returns(tokens):
+    for name, word, value in _returns(tokens, {*calls}):
         used = calls.get(name, [])
         values = {"word": name, "back": text[slice(*value)]}
         values |= {"call": text[slice(*used[0])]} if used else {}
@@ -86,8 +88,11 @@ def _until_end(tokens: Sequence[Token], k: int) -> Iterator[Token]:
         yield token
 
 
-def _returns(tokens: Sequence[Token]) -> Iterator[tuple[str, Token, Span]]:
-    """Yield each RETURN with a value in a DEF: the name of that, the word, and the value."""
+def _returns(tokens: Sequence[Token], used: set[str]) -> Iterator[tuple[str, Token, Span]]:
+    """Yield each RETURN with a value in a DEF: the name of that, the word, and the value.
+
+    So is a sum alone, `N * 2`, in one that is `used` as a value.
+    """
     name, begins = "", True
     for k, token in enumerate(tokens):
         if token.text == "DEF":
@@ -97,6 +102,11 @@ def _returns(tokens: Sequence[Token]) -> Iterator[tuple[str, Token, Span]]:
         elif begins and name and token.kind is WORD and said_of(token.text, "leaves"):
             value = [*_until_end(tokens, k + 1)]
             if value:
+                yield name, token, Span(value[0].start, value[-1].end)
+        elif begins and name in used and token.kind in (WORD, NUMBER, "("):
+            value = [*_until_end(tokens, k)]
+            kinds = {each.kind for each in value}
+            if len(value) > 2 and value[1].kind != "(" and kinds <= _OF_SUMS and kinds & _SUMS:
                 yield name, token, Span(value[0].start, value[-1].end)
         begins = token.kind in _ENDS
 

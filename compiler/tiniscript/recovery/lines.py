@@ -128,11 +128,25 @@ def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[
         part = outline(tokens[start:k], names.read_as)
         if isinstance(part, Failure):
             return Failure(part.start + start, part.at + start)
+        if joined := _joined_names(tokens[start:k]):
+            return Failure(start, joined + start)
         items += [item._replace(start=item.start + start, end=item.end + start) for item in part]
         if k < len(tokens):
             items.append(Item("end" if is_end else text, ANY_END if is_end else text, k, k + 1))
         start = k + 1
     return items
+
+
+def _joined_names(tokens: Sequence[tuple[str, str]]) -> int:
+    """Return where a word joins the names of a DEF, 0 for nowhere: `DEF SIDE(X and Y)`."""
+    inside = is_def = False
+    for k, (kind, text) in enumerate(tokens[1:-1], 1):
+        is_def = (is_def or tokens[k - 1][1] == "DEF") and text != ";"
+        inside = is_def and (inside or text == "(") and text != ")"
+        around = {tokens[k - 1][0], tokens[k + 1][0]}
+        if inside and kind == WORD and around == {WORD} and said_of(text, "then"):
+            return k
+    return 0
 
 
 def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list[Reading]:

@@ -702,6 +702,12 @@ n=@defw a=@num|@val
     LADO 1⟨¦ 2¦, 2, 3¦ 2 3 4⟩ =>
     DEF LADO(X⟨¦, Y¦, Y, Z¦, Y, Z, V⟩)⏎SHOW(X⟨¦ + Y¦ + Y + Z¦ + Y + Z + V⟩)⏎END_DEF⏎
     LADO(1⟨¦, 2¦, 2, 3¦, 2, 3, 4⟩)
+DEF n=@word ( v=@word then|&|AND u=@word )
+    | DEF $n ( $v , $u ) | 1 | TS017 | applied
+    | DEF LADO(X y Z)⏎F(X, Z)⏎END_DEF⏎LADO(1, 60) => DEF LADO(X, Z)⏎F(X, Z)⏎END_DEF⏎LADO(1, 60)
+n=@defw ( a=@num|@val then|&|AND b=@num|@val )
+    | $n ( $a , $b ) | 1 | TS017 | applied
+    | DEF LADO(X, Z)⏎F(X, Z)⏎END_DEF⏎LADO(1 y 60) => DEF LADO(X, Z)⏎F(X, Z)⏎END_DEF⏎LADO(1, 60)
 ^ DEF ( n=@word )
     | DEF $n | 1 | TS039 | offered
     | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO

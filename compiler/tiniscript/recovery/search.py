@@ -32,7 +32,7 @@ from tiniscript.recovery.meanings import (
     words_of,
 )
 from tiniscript.recovery.moved import Moved, ordered
-from tiniscript.recovery.writing import PLAIN_SIGNS, as_written, laid_out, without_note
+from tiniscript.recovery.writing import PLAIN_SIGNS, as_written, laid_out, with_signs, without_note
 from tiniscript.syntax.outline import Failure
 
 UNREAD = 5  # lines that nobody can read, after which others are read quickly
@@ -152,6 +152,10 @@ class Recovery:
         """
         names = Names([lexemes(text.body) for text in self.lines], self.kit)
         for line in self.lines:
+            if (dictated := with_signs(line.body)) != line.body:
+                before, after = lexemes(line.body), lexemes(dictated)
+                line.steps.append(Step(codes.OTHER_SIGN, before, after))
+                line.body = dictated
             body = line.body.translate(PLAIN_SIGNS)
             if body == line.body and is_right(lexemes(body), names):
                 continue

@@ -90,6 +90,9 @@ SUGGESTIONS = """
 ^ @none @any* <asks> (? '='|@word* s=unsensed @any* )? <body> $
     | TS103 | found={s}; unsensed={s}; sensors={sensors}; near=; words=
     | IF(COLOR = RED)⏎S⏎ENDIF => unsensed=RED
+^ @none @any* h=WHEN (? @word* every|each n=@number u=@in_s )? <body> $
+    | TS135 | seconds={n}; every=TASK;LOOP(FOREVER);W({n});...;END_LOOP;END_TASK
+    | WHEN(cada 5 segundos)⏎S⏎END_WHEN => seconds=5
 ^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $
     | TS135 | word={head}; *=question
     | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
@@ -258,6 +261,7 @@ SUGGESTIONS = """
 ^ @strange @loose ++|--|+|-
     | TS050 offered here | found={sign}; fix={first} = {first} {step} {number}
     | x++ => found=++
+^ @strange | = | surplus={until_end} | UNTIL(DISTANCE < 15)⏎F(50)⏎END_UNTIL => surplus=END_UNTIL
 ^ @strange | = | near={likely} | BESO(1, 880) => near=BEEP
 # … a sentence that says a block, an order or several: branch, two, code
 ^ @strange
@@ -314,6 +318,9 @@ SUGGESTIONS = """
     | TS074 offered here | fix={several}; example={made_up?}
     | F 2 segundos y luego S => fix=F(2, 80);S
 ^ TS015 | TS135 | word={bare_asking}; *=in_words | IF BRIGHT THEN STOP => word=IF
+^ TS015
+    | = | *=bound
+    | F(2, MAX); B(2, MIN) => greatest=F(2, 100)
 ^ TS015 | = | word={word}; *=one_number | F 50 => way=F(50 CM, 80)
 ^ TS015 | = | example={bare_example?}; usage={bare_usage?} | SHOW => example=SHOW(DISTANCE)
 # a side of what a robot sees, or a lamp, in a letter that turns the robot: other
@@ -350,7 +357,15 @@ SUGGESTIONS = """
 ^ TS013
     | TS085 behind | before={before}; words={words_behind}; order={words_behind}
     | F (2) (80) => before=F (2)
+^ TS087
+    | = | started={started}; waiting=TASK;W(FOREVER) UNTIL({started} = 1); set={started} = 1;
+    zero={started} = 0
+    | TASK SIREN⏎BEEP(1, 440)⏎END_TASK⏎F(1, 60)⏎SIREN⏎F(3, 60) => set=SIREN = 1
 # a beginning in another place, or in other words: branch, kind
+^ TS013
+    | TS033 | found={begun_behind}; here={begun_behind}; button={button_behind?}; pause=W(2);
+    twice=; instead=
+    | F(2, 80)|SB => button=SB
 ^ TS034 | = | ?={saying_button}; right=SB| | Boton|F(2,80) => right=SB|
 ^ @twice
     | TS102 offered here | fix={arm}; found={said}; right={arm}; usage={arm}
@@ -375,6 +390,9 @@ SUGGESTIONS = """
 ^ TS024 | = | *=unended | DEF A - => word=DEF
 ^ TS025 | = | part={part} | SI|WHEN(DISTANCE < 15)⏎B(1, 60)⏎ELSE⏎F(1, 60)⏎END_WHEN => part=ELSE
 ^ TS120 | TS120 | *=button | SHOW(boton) => asked=boton
+^ TS029
+    | = | used={until_block}; endless={until_endless}
+    | UNTIL(DISTANCE < 15)⏎F(50)⏎END_UNTIL => endless=F(FOREVER, 50) UNTIL(DISTANCE < 15)
 ^ TS029 | = | example={asked_behind?} | until distance < 10 forward => word=UNTIL
 ^ TS032
     | = | fix={forever_first}

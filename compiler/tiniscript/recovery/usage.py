@@ -12,6 +12,7 @@ from functools import cached_property
 from itertools import accumulate, dropwhile, pairwise, takewhile
 from typing import NamedTuple
 
+from tiniscript.base.fixed_point import as_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.spelling import nearest
@@ -71,6 +72,12 @@ _DOTS = re.compile(
     r"|DEF[ \t]+(?P<name>\w+)(?:[ \t]*\([^()\n]*\))?)[\s;]*"
     r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
 )
+_UNTIL_BLOCK = re.compile(
+    r"(?i)(?P<here>UNTIL)\s*(?P<asked>\([^()\n;]+\))[\s;]*(?P<word>[FBLR])\s*\(\s*"
+    rf"(?P<power>[0-9]+)\s*\)[\s;]*(?:{words_of('end')}[ _]?UNTIL\b)?"
+)
+_UNTIL_END = re.compile(rf"{words_of('end')}_?{words_of('until')}")
+_SLOW = 20  # an example of a low power
 _MANY_BELOW = 6  # instructions that an example takes into a block
 _ENDS = re.compile(rf"\b{words_of('end')}")
 _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
@@ -483,6 +490,25 @@ class Usage:
             return {"fix": way, "usage": ""}
         return {"number": number.text, "way": way, "power": f"{word}(2, {number.text})"}
 
+    def bound(self) -> dict[str, str]:
+        """`F(2, MAX)`: the range of a value that stands for its end, and a call with numbers."""
+        call = _CALL.fullmatch(self.source[self.piece])
+        word = WORDS.get(plain(call[1])) if call else None
+        values = (
+            [it.strip() for it in call[0][call.end(1) :].strip(" ()").split(",")] if call else []
+        )
+        end = self.found.values["word"]
+        if word is None or len(values) != len(word.arguments) or end not in ("MAX", "MIN"):
+            return {}
+        of = [k for k, value in enumerate(values) if plain(value) == end]
+        if not of or any(word.arguments[k].unit != POWER.unit for k in of):
+            return {}
+        number = as_text(POWER.high) if end == "MAX" else str(_SLOW)
+        given = ", ".join(number if k in of else value for k, value in enumerate(values))
+        low = as_text(word.arguments[of[0]].low)
+        said = {"low": low, "high": as_text(word.arguments[of[0]].high)}
+        return said | {"greatest" if end == "MAX" else "slow": f"{word.text}({given})"}
+
     def reading(self, word: str) -> str:
         """The sensor on the side of an L or R that stands for a value, and is no name."""
         is_other = self.behind_it.lstrip(" ").startswith("(") or word in set_in(self.text)
@@ -879,6 +905,39 @@ def _until_with_move(gaps: Gaps) -> str:
     return f"F(2, 80) UNTIL{match[1]}" if match else ""
 
 
+def _until_block(gaps: Gaps) -> str:
+    """An UNTIL that is written as a block around one move, which has but its power."""
+    match = _usage_at(gaps).matched(_UNTIL_BLOCK)
+    return re.sub(r"\s*[;\n][\s;]*", "; ", match[0].strip("; \r\n")) if match else ""
+
+
+def _until_endless(gaps: Gaps) -> str:
+    match = _usage_at(gaps).matched(_UNTIL_BLOCK)
+    move = f"{match['word'].upper()}(FOREVER, {match['power']})" if match else ""
+    return f"{move} UNTIL{match['asked']}" if match else ""
+
+
+def _until_end(gaps: Gaps) -> str:
+    usage = _usage_at(gaps)
+    return usage.signs[0] if len(usage.row) == 1 and _UNTIL_END.fullmatch(usage.signs[0]) else ""
+
+
+def _started(gaps: Gaps) -> str:
+    """The name of a TASK that stands alone elsewhere, as if it started there."""
+    usage = _usage_at(gaps)
+    name = usage.source[usage.found.span].upper()
+    lone = rf"(?im)(?:^|[;|])[ \t]*{re.escape(name)}[ \t]*(?:\([ \t]*\))?[ \t]*(?=;|//|\r?$)"
+    return name if name.isidentifier() and re.search(lone, usage.text) else ""
+
+
+def _begun_behind(gaps: Gaps) -> str:
+    """The beginning of a program that stands at its end: `F(2, 80)|SB`."""
+    match = re.compile(r"(?i)\|\s*(S[IB])\s*\Z").match(
+        _usage_at(gaps).text, _usage_at(gaps).found.span.start
+    )
+    return match[0].upper().strip() if match else ""
+
+
 def _arm(gaps: Gaps) -> str:
     """`si no`, alone."""
     usage = _usage_at(gaps)
@@ -1036,7 +1095,8 @@ _PLACES: dict[str, Callable[[Usage], Span]] = {
 }  # fmt: skip
 # Values that come together, of a place and the word that is told of.
 _SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
-    "amount": lambda it, _: it.amount, "button": lambda it, _: it.button(),
+    "amount": lambda it, _: it.amount, "bound": lambda it, _: it.bound(),
+    "button": lambda it, _: it.button(),
     "dots": lambda it, _: it.dots(), "unended": lambda it, _: it.unended(),
     "instead": lambda it, _: hints_for_foreign(it.signs[0]), "in_words": Usage.in_words,
     "in_brackets": Usage.in_brackets, "one_number": Usage.one_number,
@@ -1095,6 +1155,9 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "value_usage": _gap_of(lambda it: it.no_value and it.no_value.word.usage),
     "foreign": _other_robots_word, "in_words": _in_words, "in_dark": _worded_header,
     "amount": _gap_of(lambda it: it.amount.get("amount")),
+    "until_block": _until_block, "until_endless": _until_endless, "until_end": _until_end,
+    "started": _started, "button_behind": lambda gaps: "SB" * _begun_behind(gaps).endswith("SB"),
+    "begun_behind": _begun_behind,
     "endless_move": _endless_move, "forever_first": _swapped_forever,
     "asked_behind": _until_with_move,
     "arm": _arm, "begun_again": _second_start, "question_begun": _question_begun,

@@ -6,10 +6,13 @@ import re
 from collections.abc import Sequence
 
 from tiniscript.base.source import Source, Span
-from tiniscript.recovery.meanings import Lexeme, lexemes, made, plain
+from tiniscript.recovery.meanings import Lexeme, lexemes, made, plain, said_of, words_of
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
+# What the lexicon calls the signs that somebody says.
+SPOKEN = {"open": "(", "close": ")", "comma": ",", "semicolon": ";", "bar": "|"}
+_SPOKEN = re.compile(rf"\b{words_of('sign').replace('_', ' ')}\b")
 LONGEST_BLOCK = 160  # characters of one that a message shows
 PLAIN_SIGNS = str.maketrans("“”„‘’", '"""\'\'')
 PLAIN_SIGNS |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
@@ -81,3 +84,23 @@ def instruction_at(span: Span, source: Source) -> Span:
     own = next(it for it in _PIECE.finditer(body) if it.end() >= min(column - 1, len(body)))
     begin = span.start - column + 1 + own.end() - len(own[0].lstrip())
     return Span(begin, begin + len(own[0].strip()))
+
+
+def with_signs(line: str) -> str:
+    """Return a line that was dictated with its signs: `F open bracket 2 comma 80 close bracket`.
+
+    One whose brackets nobody opens and closes in words says something else by them.
+    """
+    text = plain(line)
+    if len(text) != len(line):
+        return line
+    found = [*_SPOKEN.finditer(text)]
+    said = [said_of(match[0].replace(" ", "_"), "sign")[0] for match in found]
+    is_begun = said[:1] == ["bar"] and text[: found[0].start()].strip() in ("SI", "SB")
+    if said.count("open") != said.count("close") or not ("open" in said or is_begun):
+        return line
+    for match, name in zip(found[::-1], said[::-1], strict=True):
+        before, after = line[: match.start()].rstrip(), line[match.end() :].lstrip()
+        sign = SPOKEN[name]
+        line = f"{before}{sign}{' ' * (sign in ',;' and bool(after))}{after}"
+    return line

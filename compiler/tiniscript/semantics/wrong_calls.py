@@ -57,6 +57,18 @@ _MOST_POWER = 100
 _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
+_UNTIL_BEFORE = re.compile(r"(?i)\bUNTIL[ \t]*(\([^()\n;]+\))[\s;]*$")
+_LONGEST_BEFORE = 200
+_FEW = [str(k) for k in range(2, 10)]  # so many may be times, or seconds
+_PLAIN_MOVE = re.compile(r"(?i)([FBLR])[ \t]*\([ \t]*FOREVER[ \t]*,[ \t]*([0-9]+)[ \t]*\)")
+_WAITED = re.compile(
+    r"(?i)[\s;]{0,200}W[ \t]*\([ \t]*([0-9.]+|FOREVER)[ \t]*\)"
+    r"([ \t]*UNTIL[ \t]*\([^()\n;]+\))?[ \t]*[;\n][\s;]*(?:STOP|S)(?=[ \t]*(?:;|//|\r?\n|$))"
+)
+_BEGUN = re.compile(r"(?i)(?:^|[;\n])[ \t]*(?:STOP|S)[ \t]*(?=;|//|\r?\n|$)")
+_ASKING = re.compile(r"(?i)\b(?:IF|ELSEIF|WHILE|UNTIL|WHEN|TASK|DEF|END_?TASK|END_?DEF)\b")
+# What the motors do in a move, by its power.
+_MOTORS = {"F": "M({0}, {0})", "B": "M(-{0}, -{0})", "L": "M(-{0}, {0})", "R": "M({0}, -{0})"}
 _NAMED = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
 # By the unit of a sensor, the unit of a move that goes as far, and how many of it one is.
 _WAY_OF = {"cm": ("CM", Fraction(1)), "mm": ("CM", Fraction(1, 10)), "m": ("CM", Fraction(100)),
@@ -129,7 +141,8 @@ class WrongCalls:
         """FOREVER at `span` in a move without UNTIL."""
         source = self.scope.source
         fix = f"{source[call]} UNTIL({next_condition(source, call)})"
-        self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, word=word.text, fix=fix)
+        said = {"fix": fix, **_driven_on(source, call)}
+        self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, None, word=word.text, **said)
 
     def report_count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
         source = self.scope.source
@@ -137,7 +150,7 @@ class WrongCalls:
         values = {
             "usage": word.usage,
             "example": "" if texts else word.example,
-            **_count_values(texts, word, _UNTIL.search(source[span])),
+            **_count_values(texts, word, _until_of(source, span)),
             **self._as_way(texts, word),
             "wanted": str(len(word.arguments)),
             "found": str(len(arguments)),
@@ -225,7 +238,9 @@ class WrongCalls:
         text, end = self.scope.source.text, node.span.end
         again = re.compile(rf"(?i)(?:^|[;|\n])[ \t]*{node.name}[ \t]*=").search(text, end)
         last = again.start() if again else len(text)
-        pattern = re.compile(rf"(?i)\b([FBLR])[ \t]*\([ \t]*({node.name})[ \t]*,[^()\n]*\)")
+        pattern = re.compile(
+            rf"(?i)\b([FBLR])[ \t]*\([ \t]*({node.name}(?:[ \t]+(?:CM|DEG))?)[ \t]*,[^()\n]*\)"
+        )
         uses = [*pattern.finditer(text, end, last)]
         unit, factor = _WAY_OF.get(sensor.unit.lower(), ("", Fraction()))
         if not uses or not unit:
@@ -240,6 +255,8 @@ class WrongCalls:
                 said |= {"used": use[0], "other": _with_first(use, f"{value} {UNIT_OF[other]}")}
             return Diagnostic(codes.SENSOR_SET, node.name_span, said)
         way = f"{as_text(int(Fraction(value) * factor * 1000))} {unit}"
+        if len({use[0] for use in uses}) > 1:
+            said["ways"] = "; ".join(dict.fromkeys(_with_first(use, way) for use in uses))
         edits = [Edit(_with_separator(self.scope.source, node.span), "")]
         edits += [Edit(Span(*use.span(2)), way) for use in uses]
         said["way"] = _with_first(uses[0], way)
@@ -331,6 +348,36 @@ def next_condition(source: Source, span: Span) -> str:
     return " ".join(own.groups()) if own else "DISTANCE < 10"
 
 
+def _driven_on(source: Source, call: Span) -> dict[str, str]:
+    """Return what `F(FOREVER, 60);W(3);S` is, a move that ends there, and else that of its motors.
+
+    Who has an S somewhere behind it thinks that the robot drives on while it does what is between.
+    """
+    move = _PLAIN_MOVE.fullmatch(source[call])
+    if move is None:
+        return {}
+    word, power = move[1].upper(), move[2]
+    waited = _WAITED.match(source.text, call.end)
+    if waited and (waited[2] or waited[1].upper() != "FOREVER"):
+        used = " ".join(source[Span(call.start, waited.end())].replace("\n", "; ").split())
+        used = re.sub(r"\s*(?:;\s*)+", "; ", used)
+        return {
+            "used": used,
+            "fix": "",
+            "whole": f"{word}({waited[1].upper()}, {power}){waited[2] or ''}",
+        }
+    stop = _BEGUN.search(source.text, call.end)
+    if stop and not _ASKING.search(source.text, call.end, stop.start()):
+        return {"used": move[0], "running": _MOTORS[word].format(power)}
+    return {}
+
+
+def _until_of(source: Source, span: Span) -> re.Match[str] | None:
+    """Return the UNTIL behind an instruction, or alone before it, as if it began a block."""
+    before = source.text[max(0, span.start - _LONGEST_BEFORE) : span.start]
+    return _UNTIL.search(source[span]) or _UNTIL_BEFORE.search(before)
+
+
 _LOW_TONE = 150  # hertz: a note that is no round number, as powers are
 _ROUND = 50
 
@@ -383,10 +430,14 @@ def _count_values(texts: Sequence[str], word: Word, until: re.Match[str] | None)
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
     result = {"power": "", "spare": "", "kept": ""}
+    if word.role.name == "beep" and len(texts) == 1 and texts[0] in _FEW:
+        result["number"] = texts[0]
+        result["often"] = f"LOOP({texts[0]});{word.example};W(0.5);END_LOOP"
+        result["long"] = _call(word, [texts[0], word.arguments[1].sample])
     if word.role.is_move and len(texts) == 1 and _LONG_TIME_S <= numbers[0] <= _MOST_POWER:
         result["power"] = _call(word, [TIME.sample, texts[0]])
         if until is not None:
-            result["endless"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
+            result["endless"] = f"{word.text}(FOREVER, {texts[0]}) {until[0].strip().rstrip(';')}"
         result["number"] = texts[0]
     elif len(texts) > len(word.arguments) and min(numbers) >= 0:
         is_sound = word.role.name == "beep" and numbers[1] > _LOWEST_HERTZ

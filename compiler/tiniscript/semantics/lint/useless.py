@@ -23,10 +23,16 @@ from tiniscript.syntax.lexer import NEWLINE, Token
 _LASTING = (ir.Move, ir.Beep, ir.Motors)
 _NOTE_AFTER = r"[ \t;]{0,99}//"
 MANY = 12  # instructions that an example has
-_CALL = r"(?:[FBLRM]|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*[0-9.]+\s*\)"
+_CALL = (
+    r"(?:[FBLR]\(\s*(?:-?[0-9.]+(?:\s*(?:CM|DEG))?|FOREVER)\s*,\s*-?[0-9.]+\s*\)"
+    r"|(?:M|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*(?:[0-9.]+|FOREVER)\s*\))"
+    r"(?:\s*UNTIL\s*\([^();]+\))?"
+)
 # Few programs have notes: these are not compiled before there are some.
 _CALLS = rf"(?i)/+\s*(?:{_CALL})(?:[;\s]*(?:{_CALL}|STOP|S))*[;\s]*"
 _CALL_IN_IT = rf"(?i)(?:{_CALL})|STOP|S"
+# What may stand between such calls.
+_BESIDE = r"(?i)(?:LOOP|IF|ELSEIF|WHILE|WHEN|SHOW)\s*\([^();]+\)|ELSE|TASK|END_?[A-Z]+"
 LONGEST = 200  # characters of a note that is looked at
 
 
@@ -40,6 +46,8 @@ def report_never_reached(body: ir.Body, around: Around, look: Look) -> None:
             values = {"found": look.source[after.span].split("\n")[0]}
             if isinstance(before, ir.Loop):
                 values["line"] = str(look.source.position(before.span.start)[0])
+                if isinstance(after, ir.Loop) and after.times is None and body is look.program.body:
+                    values["together"] = "TASK"
             elif isinstance(before, ir.Break):
                 values["ends"] = "BREAK"
             look.report(codes.NEVER_REACHED, after.span, **values)
@@ -93,9 +101,9 @@ def swallowed_instructions(note: str) -> list[str]:
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
     first, *others = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
-    matches = [other for other in others if re.fullmatch(_CALL_IN_IT, other)]
+    matches = [it for it in others if re.fullmatch(rf"{_CALL_IN_IT}|{_BESIDE[4:]}", it)]
     is_row = all(item in matches or not set("()") & set(item) for item in (first, *others))
-    is_row = is_row and bool(matches) and matches != ["S"] * len(matches)
+    is_row = is_row and any(re.fullmatch(_CALL, it, re.IGNORECASE) for it in matches)
     return matches if is_row and first else []
 
 
