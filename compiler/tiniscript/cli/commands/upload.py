@@ -135,6 +135,8 @@ def _upload(
             saving.wait()  # short, as the motors stand now
         except CommandError as failure:
             print(failure.sentence(language), file=sys.stderr)
+        except KeyboardInterrupt:
+            pass  # a second one ends this wait: the stop has been told
         return code
     except OSError:  # tsc's output has no reader any more
         if connection.stop_unseen():
