@@ -118,9 +118,21 @@ def _without_lines(code: CodeType) -> CodeType:
     return code.replace(co_linetable=lines, co_consts=constants)
 
 
+def _without_types(source: bytes) -> ast.Module:
+    """Return a module whose functions do not say their types; fields of a class need theirs."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.arg):
+            node.annotation = None
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            node.returns = None
+    return tree
+
+
 def pyc(source: bytes, name: str) -> bytes:
-    """Return the bytecode of a module, without docstrings and asserts."""
-    code = _without_lines(compile(source, name, "exec", dont_inherit=True, optimize=2))
+    """Return the bytecode of a module, without docstrings, asserts and types of functions."""
+    tree = _without_types(source)
+    code = _without_lines(compile(tree, name, "exec", dont_inherit=True, optimize=2))
     digest = importlib.util.source_hash(source)
     result = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
     return bytes(result)
