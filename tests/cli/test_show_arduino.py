@@ -69,8 +69,6 @@ def test_a_reading_is_in_a_sketch_or_is_said_to_have_none(tsc: Tsc, k: int) -> N
 
 def test_a_way_that_is_calculated_is_said_to_have_no_sketch(tsc: Tsc) -> None:
     for move in ("F(X CM, 60)", "B(30 CM, X)", "R(X DEG, 60)"):
-        tsc("show", "--arduino", "-e", f"X = DISTANCE;{move}").gives(
-            2, "distances in CM, angles in DEG"
-        )
+        tsc("show", "--arduino", "-e", f"X = DISTANCE;{move}").gives(2, "a move in CM or DEG")
     for move in ("F(30 CM, 60)", "R(90 DEG, 60)"):
         tsc("show", "--arduino", "-e", move).gives(0, "", out="void loop()")

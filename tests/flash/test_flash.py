@@ -136,9 +136,9 @@ def test_a_new_board_becomes_a_robot(
     with new_board(bootloader(board)) as uno:
         done = tsc(package, "--port", uno.pty, "--robot", robot, "--chip", option).gives(0)
         first, second = done.out.splitlines()[:2]
-        name, _, rest = first.partition(" on the ")
-        size = int(rest.split()[1].replace(",", ""))
-        assert (name, rest.split()[0]) == (robot, f"{board}:") and size > bytes_least
+        said = f"The firmware for {robot} was written to the {board} and verified: "
+        assert first.startswith(said)
+        assert int(first.removeprefix(said).split()[0].replace(",", "")) > bytes_least
         assert second.startswith(f"{robot} on {uno.pty}, id ")
 
 

@@ -87,7 +87,7 @@ def test_a_sketch_has_the_time_where_it_is_known(tmp_path: Path, way: str, ms: s
     path = tmp_path / "way.ts"
     path.write_text(f"X = 5; F({way}, 60); SHOW(X)", encoding="utf-8")
     done = inside("show", "--arduino", path).gives(0 if ms else 2)
-    assert f"forward({ms}, 60);" in done.out if ms else "distances in CM" in done.err
+    assert f"forward({ms}, 60);" in done.out if ms else "a move in CM or DEG" in done.err
 
 
 @pytest.mark.parametrize("key", ["speed", "turn"])
