@@ -80,14 +80,21 @@ def happens(rng: random.Random, wire: Wire) -> None:
             wire.session.poll(wire.robot.now_ms)
             wire.robot.wait(10)
     elif how == "a reset":
-        # Its epoch is the seed's last byte: after one reset of 256 the same as before, and then a
-        # lost stop cannot be told from one that has come since, so what is asked for is STALE.
-        epoch = wire.session._epoch + 128 & 0xFF
-        seed = (rng.getrandbits(24) | 1) << 8 | epoch
-        fresh = HostFirmware(TINIBOT, wire.robot.memory(), seed=seed)
-        fresh.now_ms = wire.robot.now_ms
-        fresh.wait(200)
-        wire.robot = fresh
+        restart(rng, wire)
+
+
+def restart(rng: random.Random, wire: Wire) -> None:
+    """Reset the robot. Its epoch is the seed's last byte, another one than before.
+
+    After one reset of 256 it is the same: then a lost stop cannot be told from one that has come
+    since, so what is asked for is STALE.
+    """
+    epoch = wire.session._epoch + 128 & 0xFF
+    seed = (rng.getrandbits(24) | 1) << 8 | epoch
+    fresh = HostFirmware(TINIBOT, wire.robot.memory(), seed=seed)
+    fresh.now_ms = wire.robot.now_ms
+    fresh.wait(200)
+    wire.robot = fresh
 
 
 def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
@@ -136,6 +143,40 @@ def check(seed: int) -> str:
     late = [a - b for a, b in zip(did.took_ms, want.took_ms, strict=True)]
     assert all(abs(each) < LATER_MS for each in late), f"seed {seed} {late}"
     return "it runs" if "DoneEvent" in str(want) else "it stands"
+
+
+def met(rng: random.Random) -> Wire:
+    wire = Wire(rng)
+    wire.session.hello()
+    wire.turns(300)
+    return wire
+
+
+@pytest.mark.parametrize("is_stopped", [False, True])
+@pytest.mark.parametrize("dead_ms", range(0, 1500, 300))
+def test_who_has_restarted_does_what_is_asked_when_the_line_is_there_again(
+    dead_ms: int, is_stopped: bool
+) -> None:
+    """Though the question who it is was lost, or dropped by a stop."""
+    rng = random.Random(dead_ms)
+    wire = met(rng)
+    restart(rng, wire)
+    wire.turn(STOPS["zeros"](wire.robot, wire.session))
+    for _ in range(dead_ms // 10):
+        wire.session.poll(wire.robot.now_ms)
+        wire.robot.wait(10)
+    if is_stopped:
+        wire.session.stop(wire.robot.now_ms)
+    wire.robot.talk(wire.session, QUIET_MS)
+    assert wire.robot.until(wire.session, wire.session.identify()) == OK
+
+
+@pytest.mark.parametrize("how", STOPS)
+def test_what_is_asked_behind_a_stop_that_an_answer_has_shown_is_done(how: str) -> None:
+    wire = met(random.Random(1))
+    STOPS[how](wire.robot, wire.session)  # nobody hears of it
+    wire.robot.until(wire.session, wire.session.fetch())
+    assert wire.robot.until(wire.session, wire.session.identify()) == OK
 
 
 @pytest.mark.sampled("part")
