@@ -192,7 +192,7 @@ class _Checker(Scope):
             return
         forever = word.role.lasts and arguments[0].expression[0].op == "FOREVER"
         if forever and node.until is None and not self.has_tasks:
-            self.wrong.report_forever(arguments[0].span, word, span)
+            self.wrong.report_forever(arguments[0].span, word, node)
         expected, way = word.arguments, arguments[0].unit if word.role.is_move else None
         if way is not None:
             self.way(node, way)

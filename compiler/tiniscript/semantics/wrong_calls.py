@@ -29,6 +29,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
+from tiniscript.semantics.driven_on import driven_on
 from tiniscript.semantics.left_out import left_out
 from tiniscript.semantics.named_values import yes_no_of
 from tiniscript.semantics.symbols import ENOUGH, Name, Scope
@@ -60,15 +61,6 @@ _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
 _UNTIL_BEFORE = re.compile(r"(?i)\bUNTIL[ \t]*(\([^()\n;]+\))[\s;]*$")
 _LONGEST_BEFORE = 200
 _FEW = [str(k) for k in range(2, 10)]  # so many may be times, or seconds
-_PLAIN_MOVE = re.compile(r"(?i)([FBLR])[ \t]*\([ \t]*FOREVER[ \t]*,[ \t]*([0-9]+)[ \t]*\)")
-_WAITED = re.compile(
-    r"(?i)[\s;]{0,200}W[ \t]*\([ \t]*([0-9.]+|FOREVER)[ \t]*\)"
-    r"([ \t]*UNTIL[ \t]*\([^()\n;]+\))?[ \t]*[;\n][\s;]*(?:STOP|S)(?=[ \t]*(?:;|//|\r?\n|$))"
-)
-_BEGUN = re.compile(r"(?i)(?:^|[;\n])[ \t]*(?:STOP|S)[ \t]*(?=;|//|\r?\n|$)")
-_ASKING = re.compile(r"(?i)\b(?:IF|ELSEIF|WHILE|UNTIL|WHEN|TASK|DEF|END_?TASK|END_?DEF)\b")
-# What the motors do in a move, by its power.
-_MOTORS = {"F": "M({0}, {0})", "B": "M(-{0}, -{0})", "L": "M(-{0}, {0})", "R": "M({0}, -{0})"}
 _NAMED = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
 # By the unit of a sensor, the unit of a move that goes as far, and how many of it one is.
 _WAY_OF = {"cm": ("CM", Fraction(1)), "mm": ("CM", Fraction(1, 10)), "m": ("CM", Fraction(100)),
@@ -137,11 +129,11 @@ class WrongCalls:
             Diagnostic(codes.BREAK_OUTSIDE, node.span, values, None, repair)
         )
 
-    def report_forever(self, span: Span, word: Word, call: Span) -> None:
+    def report_forever(self, span: Span, word: Word, node: ast.Command) -> None:
         """FOREVER at `span` in a move without UNTIL."""
         source = self.scope.source
-        fix = f"{source[call]} UNTIL({next_condition(source, call)})"
-        said = {"fix": fix, **_driven_on(source, call)}
+        fix = f"{source[node.span]} UNTIL({next_condition(source, node.span)})"
+        said = {"fix": fix, **driven_on(source, self.scope.parsed, node)}
         self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, None, word=word.text, **said)
 
     def report_count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
@@ -346,30 +338,6 @@ def next_condition(source: Source, span: Span) -> str:
         return match[1].strip()
     own = _ASKED.search(source.text, span.end) or _ASKED.search(source.text, 0, span.start)
     return " ".join(own.groups()) if own else "DISTANCE < 10"
-
-
-def _driven_on(source: Source, call: Span) -> dict[str, str]:
-    """Return what `F(FOREVER, 60);W(3);S` is, a move that ends there, and else that of its motors.
-
-    Who has an S somewhere behind it thinks that the robot drives on while it does what is between.
-    """
-    move = _PLAIN_MOVE.fullmatch(source[call])
-    if move is None:
-        return {}
-    word, power = move[1].upper(), move[2]
-    waited = _WAITED.match(source.text, call.end)
-    if waited and (waited[2] or waited[1].upper() != "FOREVER"):
-        used = " ".join(source[Span(call.start, waited.end())].replace("\n", "; ").split())
-        used = re.sub(r"\s*(?:;\s*)+", "; ", used)
-        return {
-            "used": used,
-            "fix": "",
-            "whole": f"{word}({waited[1].upper()}, {power}){waited[2] or ''}",
-        }
-    stop = _BEGUN.search(source.text, call.end)
-    if stop and not _ASKING.search(source.text, call.end, stop.start()):
-        return {"used": move[0], "running": _MOTORS[word].format(power)}
-    return {}
 
 
 def _until_of(source: Source, span: Span) -> re.Match[str] | None:

@@ -1,0 +1,65 @@
+"""Finds what ends a move that has FOREVER and no UNTIL: a wait and an S, or an S further on.
+
+Whoever writes `F(FOREVER, 60);W(3);S` thinks that the robot drives on during the wait.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+
+from tiniscript.base.source import Source
+from tiniscript.syntax import ast
+
+# What the motors do in a move, by its power.
+_MOTORS = {"F": "M({0}, {0})", "B": "M(-{0}, -{0})", "L": "M(-{0}, {0})", "R": "M({0}, -{0})"}
+Body = Sequence[ast.Instruction]
+
+
+def driven_on(source: Source, program: ast.Program, move: ast.Command) -> dict[str, str]:
+    """Return `whole`, the move that ends there, or what is `running`, its motors; `used` is either
+    in the text. Empty if no S ends it."""
+    power = source[move.arguments[1].span] if move.arguments else ""
+    if not power.isdecimal() or move.word not in _MOTORS:
+        return {}
+    after = _after(program.body, move)
+    first, second = (*after[:2], None, None)[:2]
+    if isinstance(first, ast.Command) and first.word == "W" and _is_stop(second):
+        time = source[first.arguments[0].span] if first.arguments else ""
+        until = f" UNTIL({source[first.until.span]})" if first.until else ""
+        if time and (until or time.upper() != "FOREVER"):
+            used = "; ".join(source[it.span] for it in (move, *after[:2]))
+            return {"used": used, "fix": "", "whole": f"{move.word}({time}, {power}){until}"}
+    for item in after:
+        if _is_stop(item):
+            return {"used": source[move.span], "running": _MOTORS[move.word].format(power)}
+        if not isinstance(item, (ast.Command, ast.Assign, ast.Loop)) or _ends_a_move(item):
+            break
+    return {}
+
+
+def _after(body: Body, node: ast.Command) -> Body:
+    """Return what comes after an instruction in its own block."""
+    start = node.span.start
+    while body:
+        k = bisect_right(body, start, key=lambda it: it.span.start) - 1
+        if k < 0 or body[k].span.start == start:
+            return body[k + 1 :]
+        inside = [inner for inner in _bodies(body[k]) if inner and inner[0].span.start <= start]
+        body = inside[-1] if inside else ()
+    return ()
+
+
+def _bodies(node: ast.Instruction) -> list[Body]:
+    if isinstance(node, ast.If):
+        return [*(arm.body for arm in node.arms), node.otherwise]
+    return [node.body] if isinstance(node, (ast.Loop, ast.While, ast.Def, ast.Task)) else []
+
+
+def _is_stop(node: ast.Instruction | None) -> bool:
+    return isinstance(node, ast.Command) and node.word in ("S", "STOP")
+
+
+def _ends_a_move(node: ast.Instruction) -> bool:
+    """Whether it is a move of its own, or waits for something: then an S may be meant for that."""
+    return isinstance(node, ast.Command) and (node.until is not None or node.word in _MOTORS)

@@ -1,0 +1,57 @@
+"""A move with FOREVER and no UNTIL, which an S behind it was to end."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.diagnostics import codes
+
+# Where in a program it stands; an instruction of TASKs is interrupted by others.
+AROUND = (
+    "{}", "W(1);{}", "{};W(1)", "IF(DISTANCE < 9);{};ENDIF",
+    "IF(DISTANCE < 9);W(1);ELSE;{};ENDIF", "LOOP(2);IF(DISTANCE < 9);W(1);ENDIF;{};END_LOOP",
+    "DEF SIDE;{};END_DEF;SIDE",
+)  # fmt: skip
+WAITS = {
+    "W(3)": "F(3, 60)",
+    "W(ABS(0 - 3))": "F(ABS(0 - 3), 60)",
+    "w(forever) UNTIL(DISTANCE < 9)": "F(forever, 60) UNTIL(DISTANCE < 9)",
+}
+
+
+def told(text: str) -> dict[str, str]:
+    """Return what the diagnostic of FOREVER says of the move."""
+    values = next(
+        diagnostic.values
+        for diagnostic in check(text)
+        if diagnostic.code is codes.FOREVER_NEEDS_UNTIL
+    )
+    return {key: values[key] for key in ("whole", "running") if key in values}
+
+
+@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("beside", [";", "\n", "  // on;S\n", "\n\n// it drives\n"])
+def test_a_wait_and_an_s_end_it_wherever_it_stands(around: str, beside: str) -> None:
+    for wait, whole in WAITS.items():
+        parts = beside.join(("F(FOREVER, 60)", wait, "STOP"))
+        assert told(around.format(parts)) == {"whole": whole}, parts
+
+
+@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize(("move", "motors"), [
+    ("F", "M(60, 60)"), ("B", "M(-60, -60)"), ("L", "M(-60, 60)"), ("R", "M(60, -60)"),
+])  # fmt: skip
+def test_an_s_further_on_ends_its_motors(around: str, move: str, motors: str) -> None:
+    text = f"{move}(FOREVER, 60);BEEP(1, 440);LOOP(2);BEEP(1, 880);END_LOOP;S"
+    assert told(around.format(text)) == {"running": motors}
+
+
+@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("behind", [
+    "", " // on; S", ";W(3)", ";W(3) // S", ";B(1, 50);S", ";IF(DISTANCE < 9);S;ENDIF",
+    ";W(1) UNTIL(DISTANCE < 9);W(1);S",
+])  # fmt: skip
+def test_nothing_else_does(around: str, behind: str) -> None:
+    rest = around.replace("{};", "{}\n")  # a note ends with its line
+    assert told(rest.format(f"F(FOREVER, 60){behind}")) == {}
