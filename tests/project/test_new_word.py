@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -194,15 +195,15 @@ print(json.dumps([block_kinds.data(), labels, text_tables.words_tables("a test")
 """
 
 
+def in_fresh_process(code: str, tmp_path: Path) -> Any:
+    """Return what code prints as JSON: its new word is in no table that is read already."""
+    command = [sys.executable, "-c", code, str(tmp_path / "said")]
+    ran = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
+    return json.loads(ran.stdout)
+
+
 def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) -> None:
-    ran = subprocess.run(
-        [sys.executable, "-c", FRESH, str(tmp_path / "said")],
-        cwd=ROOT,
-        check=True,
-        capture_output=True,
-        text=True,
-    )
-    blocks, labels, tables, (body, printed) = json.loads(ran.stdout)
+    blocks, labels, tables, (body, printed) = in_fresh_process(FRESH, tmp_path)
     assert HORN.text in blocks["kinds"]["plain"]["words"]
     assert WIGGLE.text in blocks["kinds"]["plain_1"]["words"]
     assert blocks["says"]["plain_1"] == "%1 %2"
@@ -250,14 +251,7 @@ def test_what_needs_no_more_than_the_table_has_a_word_with_a_role_of_its_own(
     tmp_path: Path,
 ) -> None:
     """No robot's reader knows it; it has a block, and a place on the poster and in references."""
-    ran = subprocess.run(
-        [sys.executable, "-c", OWN_ROLE, str(tmp_path / "said")],
-        cwd=ROOT,
-        check=True,
-        capture_output=True,
-        text=True,
-    )
-    found = json.loads(ran.stdout)
+    found = in_fresh_process(OWN_ROLE, tmp_path)
     assert all(found["lacked"])
     packed, rows, _ = found["tables"].split("tini_progmem = {")[1:]
     assert "// LAMP" in packed and "// LAMP" not in rows
