@@ -81,12 +81,10 @@ Supply board_supply();
 // The light is on while a press of the button would start a program.
 void board_light(bool is_on);
 
-#ifdef tiniscript_transports
 // The robot's WiFi, or its broker, as the step asks. Setting it may stop the chip for a while: not
 // while motors are on.
 WifiReport board_wifi(WifiStep step);
 Answer board_set_wifi(WifiStep step, const uint8_t* text, uint8_t length);
-#endif
 
 // The sound for the end of a program, and the one for a fault.
 void board_finished();

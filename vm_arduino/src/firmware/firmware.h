@@ -46,8 +46,7 @@ void firmware_on_disconnect();
 // interrupt, and after a reset before memory is set up.
 bool firmware_runs(Place* place);
 
-#ifdef tiniscript_transports
-// The same for each transport, all called from the main loop.
+// Where a robot is reached over several transports, all of these are called from the main loop.
 void firmware_on_rx_byte(Transport transport, uint8_t byte, uint16_t now_ms);
 bool firmware_next_tx_byte(Transport transport, uint8_t* byte);
 
@@ -77,11 +76,10 @@ bool firmware_has_key(Transport transport);
 
 // Nobody is connected over a transport any more: ends an attached run that it has started.
 void firmware_on_part(Transport transport);
-#else
-extern Receiver receiver;
 
-// A byte has arrived; one with a framing error is 0. May be called from the interrupt: a run of
+// Where there is one line: its receiver. A byte has arrived; one with a framing error is 0. May be called from the interrupt: a run of
 // zeros turns the motors off at once.
+extern Receiver receiver;
 void firmware_on_rx_byte(uint8_t byte, uint16_t now_ms);
 
 // The same for a board that has looked for a stop in a byte of 0 itself, as `Receiver::stops` does.
@@ -91,6 +89,5 @@ void firmware_take_rx_byte(uint8_t byte, uint16_t now_ms);
 // interrupt.
 bool firmware_has_tx_byte();
 bool firmware_next_tx_byte(uint8_t* byte);
-#endif
 
 }  // namespace tiniscript

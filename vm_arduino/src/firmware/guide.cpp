@@ -422,6 +422,28 @@ void guide_tick() {
   drive();
 }
 
+// -- what the link and a program ask --------------------------------------------------------------
+
+bool port_noise(uint16_t* edges) {
+  if (board_discs().cm == 0) return false;
+  *edges = guide_noise();
+  return true;
+}
+
+bool robot_measures() { return board_discs().cm != 0; }
+
+void robot_go(int8_t left, int8_t right, int32_t way) {
+  robot_motors(left, right);
+  guide_go(left, right, way);
+}
+
+void robot_go_on(int8_t left, int8_t right) {
+  robot_motors(left, right);
+  guide_go_on();
+}
+
+Going robot_going(int32_t* way) { return guide_going(way); }
+
 }  // namespace tiniscript
 
 #endif

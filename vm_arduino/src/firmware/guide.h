@@ -15,7 +15,6 @@
 
 namespace tiniscript {
 
-#ifdef tiniscript_has_discs
 void guide_begin();  // a program begins
 void guide_go(int8_t left, int8_t right, int32_t way);
 void guide_go_on();  // with that way, after something has ended it
@@ -23,10 +22,5 @@ Going guide_going(int32_t* rest);
 void guide_end(bool is_driven);  // it sets no motor any more; `is_driven`: something else does
 void guide_tick();               // as often as may be
 uint16_t guide_noise();          // of both wheels, the left one in the low byte
-#else
-inline void guide_begin() {}
-inline void guide_end(bool) {}
-inline void guide_tick() {}
-#endif
 
 }  // namespace tiniscript

@@ -72,35 +72,6 @@ bool change_tuning(const Tuning& wanted, bool has_pace) {
                 has_pace ? sizeof(Tuning) : sizeof(Trim));
 }
 
-#ifdef tiniscript_transports
-void firmware_wifi_rests(bool is_so) {
-  uint8_t& features = port_identity().more_features;
-  features = static_cast<uint8_t>(is_so ? features | kMoreWifiRests : features & ~kMoreWifiRests);
-}
-
-bool firmware_radio_name(RadioName* name) {
-  if (!has_booted()) return false;
-  static const char kStart[] = "tini-";
-  static const char kDigits[] = "0123456789abcdef";
-  *name = RadioName();
-  uint8_t at = 0;
-  for (; kStart[at] != 0; at++) name->host[at] = kStart[at];
-  for (uint8_t shift = 16; shift > 0; at++) {
-    shift = static_cast<uint8_t>(shift - 4);
-    name->host[at] = kDigits[identity.id >> shift & 0xf];
-  }
-  for (uint8_t k = 0; k < sizeof name->id - 1; k++) {
-    name->id[k] = kDigits[identity.id >> (28 - 4 * k) & 0xf];
-  }
-  if (device_info.name_length == 0) {
-    copy_bytes(name->host, reinterpret_cast<uint8_t*>(name->name), sizeof name->host);
-  } else {
-    copy_bytes(device_info.name, reinterpret_cast<uint8_t*>(name->name), device_info.name_length);
-  }
-  return true;
-}
-#endif
-
 Identity& port_identity() { return identity; }
 
 const DeviceInfo& port_device_info() { return device_info; }

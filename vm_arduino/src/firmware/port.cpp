@@ -1,10 +1,10 @@
-// Implements `link/port.h`, except for the identity (`identity.cpp`).
+// Implements `link/port.h`, except for the identity (`identity.cpp`), transports and
+// WiFi (`transports.cpp`) and discs (`guide.cpp`).
 
 #include "../link/port.h"
 
 #include "../link/frames.h"
 #include "../vm/image.h"
-#include "guide.h"
 #include "identity.h"
 #include "pace.h"
 #include "persistence.h"
@@ -18,14 +18,6 @@ namespace tiniscript {
 const RobotStatus& port_status() { return robot_status; }
 
 LineErrors port_line_errors() { return board_line_errors(); }
-
-#ifdef tiniscript_has_discs
-bool port_noise(uint16_t* edges) {
-  if (board_discs().cm == 0) return false;
-  *edges = guide_noise();
-  return true;
-}
-#endif
 
 uint16_t port_room() { return kStoredCodeBytes; }
 
@@ -75,19 +67,18 @@ void port_start(bool is_live) {
 }
 
 uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
-#ifdef tiniscript_has_draft
-  if (!link.take_text_memory()) return nullptr;
-  *has_room = true;
-  *room = kTextRoom;
-  return draft;
-#else
+  static_assert(!kTextIsInProgram || sizeof live - kHeaderBytes <= 255, "a reader moves out of it");
+  if (!kTextIsInProgram) {
+    if (!link.take_text_memory()) return nullptr;
+    *has_room = true;
+    *room = kTextRoom;
+    return draft;
+  }
   *has_room = false;
   *room = sizeof live - kHeaderBytes;
-  static_assert(sizeof live - kHeaderBytes <= 255, "a reader moves out of it");
   if (is_image_running(live)) return nullptr;
   link.drop_ahead();
   return live;
-#endif
 }
 
 uint8_t* port_text_room(uint16_t* room) {
@@ -137,17 +128,6 @@ Answer port_image_byte(uint16_t offset, uint8_t* byte) {
       is_in_memory() || (has_booted() && store.fetch(Area::kProgram, offset, byte));
   return is_there ? Answer::kOk : not_now();
 }
-
-#ifdef tiniscript_transports
-WifiReport port_wifi_report(WifiStep step) { return board_wifi(step); }
-
-Answer port_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
-  const bool is_kept =
-      (step >= WifiStep::kJoin && step <= WifiStep::kForget) || step == WifiStep::kUseBroker;
-  if (is_kept && is_driving()) return Answer::kSaving;
-  return board_set_wifi(step, text, length);
-}
-#endif
 
 Answer port_rename(const uint8_t* name, uint8_t length) {
   if (!has_booted()) return not_now();

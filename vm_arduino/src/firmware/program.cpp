@@ -11,9 +11,7 @@ namespace tiniscript {
 
 uint8_t program[kImageBytes + kEndBytes];
 uint8_t live[kLiveImageBytes + kEndBytes];
-#ifdef tiniscript_has_draft
-uint8_t draft[kHeaderBytes + kTextRoom];
-#endif
+uint8_t draft[kHeaderBytes + kTextRoom];  // where text is not in `program`
 
 namespace {
 

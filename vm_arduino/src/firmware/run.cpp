@@ -143,7 +143,7 @@ void begin_run(const uint8_t* image) {
   may_start = false;
   link.let_go();
   if (kReadsKeys) reads_keys = false;
-  guide_begin();
+  if (kHasDiscs) guide_begin();
   robot_status.state = State::kRunning;
   robot_status.run++;
   board_release();
@@ -159,10 +159,10 @@ void tick_run() {
   }
   // No motor starts while a commit byte is being written.
   if (!is_running()) {
-    guide_tick();
+    if (kHasDiscs) guide_tick();
     if (!is_prepared) prepare();
   } else if (!store.is_committing()) {
-    guide_tick();
+    if (kHasDiscs) guide_tick();
     go_on();
   }
 }
@@ -172,7 +172,7 @@ void end_run(State state, bool is_done) {
 #ifdef tiniscript_has_breakpoints
   breakpoints.end();
 #endif
-  guide_end(false);
+  if (kHasDiscs) guide_end(false);
   if (!is_done) board_actuators_off();
   robot_off();
   may_start = false;
@@ -230,16 +230,6 @@ void firmware_on_disconnect() {
   end_run(State::kStopped);
   link.stopped(Cause::kCable);
 }
-
-#ifdef tiniscript_transports
-bool firmware_has_key(Transport transport) { return link.has_key(transport); }
-
-void firmware_on_part(Transport transport) {
-  if (!link.part(transport) || !is_running()) return;
-  end_run(State::kStopped);
-  link.stopped(Cause::kCable);
-}
-#endif
 
 uint16_t port_run_at() { return machine.at(); }
 
@@ -318,28 +308,10 @@ int32_t remote_reading(uint8_t number) {
   return remote_keys->pad[number - kRemoteKeys] * int32_t{1000};
 }
 
-#ifdef tiniscript_has_discs
-
-bool robot_measures() { return board_discs().cm != 0; }
-
-void robot_go(int8_t left, int8_t right, int32_t way) {
-  robot_motors(left, right);
-  guide_go(left, right, way);
-}
-
-void robot_go_on(int8_t left, int8_t right) {
-  robot_motors(left, right);
-  guide_go_on();
-}
-
-Going robot_going(int32_t* way) { return guide_going(way); }
-
-#endif
-
 void robot_motors(int8_t left, int8_t right) {
   const Levels levels = trimmed(port_tuning().trim, left, right);
   has_motors_on = (left | right) != 0;
-  guide_end(has_motors_on);
+  if (kHasDiscs) guide_end(has_motors_on);
   board_motors(levels.left, levels.right);
 }
 

@@ -12,16 +12,15 @@
 
 namespace tiniscript {
 
-#ifdef tiniscript_transports
-typedef Links RobotLink;
-#else
-typedef Link RobotLink;
-#endif
+// One for each transport, or one.
+typedef Choice<kHasTransports, Links, Link>::Type RobotLink;
 
 extern RobotStatus robot_status;  // what the robot does and holds, and its last fault
 extern uint32_t now_ms;           // of this tick
 extern RobotLink link;
 extern Store store;
+
+void begin_link(uint8_t epoch);
 
 inline bool is_running() { return robot_status.state == State::kRunning; }
 

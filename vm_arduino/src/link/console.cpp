@@ -12,7 +12,6 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint16_t kPatienceMs = 60000;  // for the rest of a line with a SETUP word or of a block
 constexpr uint8_t kBytesATurn = 8;
 constexpr Remark kWhole = Remark::kOk;  // in the place of what is told: a whole program has come
 // So many mistakes are answered without a pause of this length between two bytes: then something that
@@ -82,9 +81,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
       left_ms_[kEnds] = kPatienceMs;
     }
     has_mark_ = receiver->has_mark();
-#ifdef tiniscript_reads_keys
-    if (key_line_.is_empty()) before_ms_ = left_ms_[kPatience];
-#endif
+    if (kReadsKeys && key_line_.is_empty()) before_ms_ = left_ms_[kPatience];
     if (is_silent_ && byte != kLineEnd) end_silence();
     begin_silence();
     if (byte == kLineStop) {
@@ -106,15 +103,11 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
       take(byte, is_heard);
       continue;
     }
-#ifdef tiniscript_reads_keys
-    const bool holds = byte == kLineEnd && take_keys();
-    key_line_.begin();
+    const bool holds = kReadsKeys && byte == kLineEnd && take_keys();
+    if (kReadsKeys) key_line_.begin();
     const Act act = holds               ? Act::kHold
                     : byte == kLineEnd ? end_line(is_heard)
                                         : Act::kNone;
-#else
-    const Act act = byte == kLineEnd ? end_line(is_heard) : Act::kNone;
-#endif
     refused_ = Remark::kNone;
     begins_ = 1;
     if (act != Act::kNone) return act;
@@ -172,9 +165,7 @@ void Console::tell(Remark remark, bool is_heard) {
 // after a radio module's message, which has no line end of its own. Of its SETUP word only the length
 // and a letter are looked at: the reader knows the others.
 inline void Console::take(uint8_t byte, bool is_heard) {
-#ifdef tiniscript_reads_keys
-  key_line_.put(byte);
-#endif
+  if (kReadsKeys) key_line_.put(byte);
   tail_ = Remark::kEnter;
   read(byte);
   const uint8_t before = before_;
@@ -199,30 +190,6 @@ inline void Console::take(uint8_t byte, bool is_heard) {
   read(last);
   read(byte);
 }
-
-#ifdef tiniscript_reads_keys
-
-// Whether the line that has ended holds keys. In a block it belongs to the program. It counts as
-// silence, or who holds a key would never be silent.
-inline bool Console::take_keys() {
-  if (is_waiting_ || !key_line_.read(&keys_) || !text_may_drive()) return false;
-  is_open_ = false;
-  left_ms_[kPatience] = before_ms_;
-  is_silent_ = before_ms_ <= kPatienceMs - kSilenceMs;
-  if (is_silent_) {
-    is_ignoring_ = false;
-    if (left_ms_[kWait] == 0) is_discarding_ = false;
-  }
-  return !is_discarding_;
-}
-
-void Console::note_keys(bool reads, bool is_heard) {
-  if (!reads && !has_told_keys_) tell(Remark::kNoKeys, is_heard);
-  has_told_keys_ = !reads;
-  if (!is_heard) is_talking_ = true;
-}
-
-#endif
 
 // Whether the line begins with what a radio module says.
 bool Console::is_chatter() {

@@ -58,11 +58,9 @@ class Console {
   const Reader& reader() const { return reader_; }
   uint8_t* image() const { return image_; }
 
-#ifdef tiniscript_reads_keys
   // The keys to hold. Who presses some is told once that no program `reads` them.
   const RemoteKeys& keys() const { return keys_; }
   void note_keys(bool reads, bool is_heard);
-#endif
 
   // Sets the answer that is due. Writes it as a line of at most kWireBytes and returns its length.
   void say(Remark remark) { remark_ = remark; }
@@ -76,6 +74,9 @@ class Console {
   uint8_t write_value(int32_t value, bool is_yes_no, uint8_t* out);
 
  private:
+  // For the rest of a line with a SETUP word or of a block.
+  static constexpr uint16_t kPatienceMs = 60000;
+
   // Times that run down to 0: what is left of kPatienceMs since the last byte of text, until lines count
   // again after a stop, until nobody knows any more that lines end here.
   enum Time : uint8_t { kPatience, kWait, kEnds, kTimes };
@@ -92,7 +93,10 @@ class Console {
   void refuse();
   bool is_ignored() const;
 
-  // writing
+  // keys: `console_keys.cpp`
+  bool take_keys();
+
+  // writing: `console_writing.cpp`
   bool put_words();
 
   uint8_t* image_;
@@ -120,14 +124,10 @@ class Console {
   bool is_silent_;     // a second has passed
   bool is_due_;
   bool has_mark_;      // a typed stop waits behind
-#ifdef tiniscript_reads_keys
-  bool take_keys();
-
-  KeyLine key_line_;
-  RemoteKeys keys_;
-  uint16_t before_ms_;   // the patience that was left when this line began
-  bool has_told_keys_;
-#endif
+  tini_with_keys KeyLine key_line_;
+  tini_with_keys RemoteKeys keys_;
+  tini_with_keys uint16_t before_ms_;  // the patience that was left when this line began
+  tini_with_keys bool has_told_keys_;
   Reader reader_;
 };
 

@@ -1,11 +1,11 @@
 // Writes the answers of a conversation in text, a line at a time. Each begins as a comment does: so
 // a terminal that echoes starts no conversation.
 
-#include "../text/digits.h"
 #include "../text/kit_words.h"
 #include "../text/unpacked.h"
 #include "../text/words.h"
 #include "../vm/build.h"
+#include "../vm/cpu.h"
 #include "../vm/find_word.h"
 #include "../vm/small.h"
 #include "console.h"

@@ -178,7 +178,7 @@ void Link::on_frame() {
     if (!has_right_start(receiver_->bytes(), end)) {
       damaged_++;
     } else if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // otherwise it is an echo
-      const uint8_t opened = open_seal(end);
+      const uint8_t opened = kMaySeal ? open_seal(end) : end;
       if (opened == 0) {
         damaged_++;  // forged, or sealed before another one
       } else {
@@ -186,7 +186,7 @@ void Link::on_frame() {
         console_.hang_up();
         handle(opened);
         due_ |= kDueReply;
-        close_seal();
+        if (kMaySeal) close_seal();
       }
     }
   }
@@ -248,7 +248,7 @@ tini_noinline void Link::handle(uint8_t end) {
   } else if (is_forbidden(type)) {
     refusal = Answer::kNotOwner;
   } else {
-    refusal = port_may_drive(type);
+    refusal = may_drive(type);
   }
   said_.status = number_of(refusal);
   if (refusal == Answer::kOk) {
@@ -257,7 +257,7 @@ tini_noinline void Link::handle(uint8_t end) {
     }
     said_.status = answer(static_cast<Message>(type), payload, length);
   }
-  if ((is_next && keeps_answer(type)) || (is_hello && said_.status == kIsFine)) {
+  if ((is_next && (!kMaySeal || keeps_answer(type))) || (is_hello && said_.status == kIsFine)) {
     last = said_;
     last_epoch = epoch;
   }
@@ -269,9 +269,8 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
     case Message::kHello:
       return hello(payload);
     case Message::kWifi:
-#ifdef tiniscript_transports
+      if (!kHasTransports) break;
       return set_wifi(payload, length);
-#endif
     case Message::kKeys:
       if (!kHasRemote) break;
       found = hold(*reinterpret_cast<const RemoteKeys*>(payload));
@@ -390,9 +389,9 @@ Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
   return port_tune(*reinterpret_cast<const Tuning*>(payload), has_pace);
 }
 
-#ifdef tiniscript_has_remote
 // The newest word of a remote control counts, until kHoldMs are over.
 Answer Link::hold(const RemoteKeys& remote_keys) {
+  if (!kHasRemote) return Answer::kOk;
   if (remote_keys.keys >= 1 << kRemoteKeys) return Answer::kBadValue;
   const int8_t* way = remote_keys.pad;
   do {
@@ -402,7 +401,6 @@ Answer Link::hold(const RemoteKeys& remote_keys) {
   left_ms_[kHold] = kHoldMs;
   return Answer::kOk;
 }
-#endif
 
 uint8_t Link::hello(const uint8_t* payload) {
   const bool is_new = !is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt);

@@ -59,12 +59,10 @@ class Link {
   // The next byte to send, or false if there is none. May be called from an interrupt.
   bool next_tx_byte(uint8_t* byte);
 
-#ifdef __AVR__
   // Where what `next_tx_byte` uses lies: the interrupt there does it in assembly.
   static constexpr size_t sent_at() { return offsetof(Link, sent_); }
   static constexpr size_t left_at() { return offsetof(Link, left_); }
   static constexpr size_t out_at() { return offsetof(Link, out_); }
-#endif
 
   // Whether a stop has arrived that `tick` has not handled yet: until then the motors must stay
   // off, whatever else was requested. Code that turns motors on checks this with interrupts off.
@@ -98,14 +96,13 @@ class Link {
 
   // What the remote control of this session says, or nullptr: nothing that still counts. It lets all
   // go, and for how long it counts.
-#ifdef tiniscript_has_remote
-  const RemoteKeys* remote() const { return left_ms_[kHold] != 0 ? &remote_ : nullptr; }
-  void let_go() { left_ms_[kHold] = 0; }
+  const RemoteKeys* remote() const {
+    return kHasRemote && left_ms_[kHold] != 0 ? &remote_ : nullptr;
+  }
+  void let_go() {
+    if (kHasRemote) left_ms_[kHold] = 0;
+  }
   uint16_t remote_ms() const { return left_ms_[kHold]; }
-#else
-  static const RemoteKeys* remote() { return nullptr; }
-  static void let_go() {}
-#endif
 
   // Ends the authority of the session.
   void expire();
@@ -113,7 +110,6 @@ class Link {
   // The button confirms a claim, if the session has asked for one. Returns whether it has.
   bool confirm_claim();
 
-#ifdef tiniscript_transports
   // For `Links`: one of several links.
 
   // Has this link make other challenges than those that begin with another number.
@@ -165,12 +161,11 @@ class Link {
 
   bool has_open_text() const { return console_.is_open(); }
   void drop_text() { console_.drop(); }
-#else
+
   // What the firmware asks of `Links`, where it has several.
   static void expire_others() {}
   static constexpr bool is_driving() { return true; }
   static constexpr bool take_text_memory() { return true; }
-#endif
 
  private:
   // What is due to be sent, one bit each: the lowest one first.
@@ -221,11 +216,7 @@ class Link {
   uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
   Answer clear();
   Answer set_trim(const uint8_t* payload, uint8_t length);
-#ifdef tiniscript_has_remote
   Answer hold(const RemoteKeys& remote_keys);
-#else
-  static Answer hold(const RemoteKeys&) { return Answer::kOk; }
-#endif
   uint8_t hello(const uint8_t* payload);
   void renew();
 
@@ -251,74 +242,58 @@ class Link {
   uint8_t authenticate(const uint8_t* payload, uint8_t length);
   Answer allow_text(const uint8_t* payload);
 
-#ifdef tiniscript_transports
-  void note_stop() { was_stopped_ = true; }
+  void note_stop() {
+    if (kHasTransports) was_stopped_ = true;
+  }
 
   // `link_wifi.cpp`
   uint8_t set_wifi(const uint8_t* payload, uint8_t length);
   void tell_wifi();
-#else
-  static void note_stop() {}
-#endif
 
   // seals: `link_seals.cpp`
-#ifdef tiniscript_seals
-  bool may_seal() const;
-  bool has_seal() const { return seal_.is_set(); }
+  bool may_seal() const {
+    return kMaySeal && (port_identity().more_features & kMoreSeals) != 0;
+  }
+  bool has_seal() const { return kMaySeal && seal_.is_set(); }
   // Whether the current request is sealed with it.
-  bool is_sealed() const { return is_sealed_; }
-  void begin_request() { is_sealed_ = is_reply_sealed_ = false; }
+  bool is_sealed() const { return kMaySeal && is_sealed_; }
+  void begin_request() {
+    if (kMaySeal) is_sealed_ = is_reply_sealed_ = false;
+  }
   uint8_t open_seal(uint8_t end);
   void close_seal();
   void begin_seal(const uint8_t* key, uint8_t which);
-  void drop_seal() { seal_.drop(); }
+  void drop_seal() {
+    if (kMaySeal) seal_.drop();
+  }
   bool keeps_answer(uint8_t type) const;
-  void forget_answer() { sealed_last_.number = 0; }
-  Said& last() { return is_sealed_ ? sealed_last_ : last_; }
-  uint8_t& last_epoch() { return is_sealed_ ? sealed_last_epoch_ : last_epoch_; }
-  uint16_t dead_man_ms() const { return left_ms_[is_run_sealed_ ? kSealHeard : kListen]; }
-  void note_run() { is_run_sealed_ = is_sealed_; }
-  uint8_t reply_mark() { return is_reply_sealed_ ? event_mark() : 0; }
-  uint8_t event_mark();
-  void seal_out() { size_ = seal_.close(out_, size_); }
-#else
-  static constexpr bool may_seal() { return false; }
-  static constexpr bool has_seal() { return false; }
-  static constexpr bool is_sealed() { return false; }
-  static void begin_request() {}
-  static uint8_t open_seal(uint8_t end) { return end; }
-  static void close_seal() {}
-  static void begin_seal(const uint8_t*, uint8_t) {}
-  static void drop_seal() {}
-  static constexpr bool keeps_answer(uint8_t) { return true; }
-  static void forget_answer() {}
-  Said& last() { return last_; }
-  uint8_t& last_epoch() { return last_epoch_; }
-  uint16_t dead_man_ms() const { return left_ms_[kListen]; }
-  static void note_run() {}
-  static constexpr uint8_t reply_mark() { return 0; }
-  static constexpr uint8_t event_mark() { return 0; }
-  static void seal_out() {}
-#endif
+  void forget_answer() {
+    if (kMaySeal) sealed_last_.number = 0;
+  }
+  Said& last() { return is_sealed() ? sealed_last_ : last_; }
+  uint8_t& last_epoch() { return is_sealed() ? sealed_last_epoch_ : last_epoch_; }
+  uint16_t dead_man_ms() const {
+    return left_ms_[kMaySeal && is_run_sealed_ ? kSealHeard : kListen];
+  }
+  void note_run() {
+    if (kMaySeal) is_run_sealed_ = is_sealed_;
+  }
+  uint8_t reply_mark() { return kMaySeal && is_reply_sealed_ ? event_mark() : 0; }
+  uint8_t event_mark() { return has_seal() ? seal_mark() : 0; }
+  uint8_t seal_mark();
 
   // text: `link_text.cpp`
   bool talks() const { return console_.is_talking() && !is_listened_to(); }
   void talk();
-#ifdef tiniscript_without_text
-  static void drop_answer() {}
-  static void send_text() {}
-  static void show_text(int32_t, bool) {}
-  static constexpr bool is_typed() { return false; }
-  static void note_typed(bool) {}
-#else
   void drop_answer();
   Remark start_text(const Console& console);
   void send_text();
   void show_text(int32_t value, bool is_yes_no);
   // Whether the image that was taken last was typed: no receipt tells its checksum.
-  bool is_typed() const { return is_typed_; }
-  void note_typed(bool is_so) { is_typed_ = is_so; }
-#endif
+  bool is_typed() const { return kHasText && is_typed_; }
+  void note_typed(bool is_so) {
+    if (kHasText) is_typed_ = is_so;
+  }
 
   // writing: `link_writing.cpp`
   bool is_listened_to() const;
@@ -380,29 +355,21 @@ class Link {
   uint8_t size_;           // bytes written so far
   uint8_t sent_;           // bytes already sent
   volatile uint8_t left_;  // bytes left to send
-#ifndef tiniscript_without_text
-  bool is_typed_;
-#endif
+  tini_with_text bool is_typed_;
   // Large members come last: what lies near to the begin takes less code.
   Console console_;
-#ifdef tiniscript_seals
-  bool is_sealed_;       // the current request
-  bool is_reply_sealed_;
-  bool is_run_sealed_;   // the current or last run was started by a sealed request
-  uint8_t sealed_last_epoch_;
-  Said sealed_last_;     // the last reply to a sealed request
-  Seal seal_;
-#endif
-#ifdef tiniscript_transports
-  bool was_stopped_;
-#endif
+  tini_with_seals bool is_sealed_;  // the current request
+  tini_with_seals bool is_reply_sealed_;
+  tini_with_seals bool is_run_sealed_;  // the current or last run was started by a sealed request
+  tini_with_seals uint8_t sealed_last_epoch_;
+  tini_with_seals Said sealed_last_;  // the last reply to a sealed request
+  tini_with_seals Seal seal_;
+  tini_with_transports bool was_stopped_;
 #ifdef tiniscript_has_breakpoints
   bool has_breakpoints_;  // of this session
   bool owns_halt_;        // it was told of the last halt: that ends with it
 #endif
-#ifdef tiniscript_has_remote
-  RemoteKeys remote_;  // what the remote control has said last
-#endif
+  tini_with_remote RemoteKeys remote_;  // what the remote control has said last
   uint32_t nonce_;  // of the session
   uint8_t challenge_[kChallengeBytes];
   uint8_t out_[kWireBytes];

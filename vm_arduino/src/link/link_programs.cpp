@@ -42,7 +42,7 @@ tini_noinline void Link::make_ahead() {
 bool Link::go_live() {
   const uint8_t* const bytes = receiver_->bytes();
   if (!check_.is_whole() || !is_next(bytes[kSeqAt], bytes[kEpochAt]) || port_is_latched() ||
-      port_may_drive(kLiveByte) != Answer::kOk || port_prepare_upload(true) != Answer::kOk) {
+      may_drive(kLiveByte) != Answer::kOk || port_prepare_upload(true) != Answer::kOk) {
     return false;
   }
   left_ms_[kListen] = kListenMs;

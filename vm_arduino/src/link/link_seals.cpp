@@ -4,17 +4,15 @@
 #include "link.h"
 #include "port.h"
 
-namespace tiniscript {
-
 #ifdef tiniscript_seals
+
+namespace tiniscript {
 
 namespace {
 
 uint8_t number_of(Message message) { return static_cast<uint8_t>(message); }
 
 }  // namespace
-
-bool Link::may_seal() const { return (port_identity().more_features & kMoreSeals) != 0; }
 
 // Returns where the payload ends of the request in a frame that ends at `end`, or 0: a frame whose seal
 // is wrong is not answered. STOP is taken from anybody.
@@ -57,13 +55,12 @@ bool Link::keeps_answer(uint8_t type) const {
 }
 
 // The mark in the type of a frame to the computer. Where the counter is at its end, authority is, too.
-uint8_t Link::event_mark() {
-  if (!seal_.is_set()) return 0;
+uint8_t Link::seal_mark() {
   if (seal_.may_close()) return kSealed;
   expire();
   return 0;
 }
 
-#endif
-
 }  // namespace tiniscript
+
+#endif

@@ -1,25 +1,13 @@
-// The link of a robot that reads text: does what a line asks for, and answers with lines. Any other
-// does only what a typed stop asks for.
+// The link of a robot that reads text: does what a line asks for, and answers with lines.
 
 #include "../vm/bytecode.h"
 #include "../vm/small.h"
 #include "link.h"
 #include "port.h"
 
+#ifndef tiniscript_without_text
+
 namespace tiniscript {
-
-#ifdef tiniscript_without_text
-
-void Link::talk() {
-  uint8_t byte;
-  while (receiver_->take_text(&byte)) {
-    if (byte != kLineStop) continue;
-    receiver_->take_mark();
-    return stop(Cause::kText);
-  }
-}
-
-#else
 
 // Does what a line asks for.
 void Link::talk() {
@@ -29,12 +17,10 @@ void Link::talk() {
   if (act == Console::Act::kStop) stop(Cause::kText);
   if (act == Console::Act::kEnd) port_end();
   if (act == Console::Act::kStart) console->say(start_text(*console));
-#ifdef tiniscript_reads_keys
-  if (act == Console::Act::kHold) {
-    if (port_may_press()) hold(console->keys());
+  if (kReadsKeys && act == Console::Act::kHold) {
+    if (may_press()) hold(console->keys());
     console->note_keys(port_reads_keys(), is_listened_to());
   }
-#endif
   due_ &= static_cast<uint8_t>(~kDueText);
   if (console->has_answer()) due_ |= kDueText;
 }
@@ -48,7 +34,7 @@ void Link::drop_answer() {
 // Starts the program that was read. Returns what to say.
 Remark Link::start_text(const Console& console) {
   if (!text_may_drive()) return Remark::kNotOwner;
-  if (port_may_drive(0) != Answer::kOk) return Remark::kRefused;
+  if (may_drive(0) != Answer::kOk) return Remark::kRefused;
   const Reader* const reader = near(&console.reader());
   const uint8_t start = reader->start();
   if (start == 0 && receiver_->has_mark()) return Remark::kNone;
@@ -95,6 +81,6 @@ void Link::show_text(int32_t value, bool is_yes_no) {
   hand_over();
 }
 
-#endif
-
 }  // namespace tiniscript
+
+#endif

@@ -9,9 +9,6 @@
 
 namespace tiniscript {
 
-// Of a robot without discs.
-__attribute__((weak)) bool port_noise(uint16_t*) { return false; }
-
 namespace {
 
 // The first part of the reply to HELLO.
@@ -83,7 +80,7 @@ void Link::stopped(Cause cause) {
 
 // What was typed before a stop is over. It is reported at a limited rate, to a client as a frame.
 tini_noinline void Link::confirm(Cause cause) {
-  drop_answer();
+  if (kHasText) drop_answer();
   if (cause <= Cause::kMessage) console_.hang_up();  // one that is for computers
   if (cause == Cause::kText) console_.pick_up();
   if (left_ms_[kAgain] != 0) return;
@@ -99,7 +96,7 @@ tini_noinline bool Link::show(int32_t value, bool is_yes_no) {
   if (left_ != 0 || (due_ & first) != 0) return false;
   if (!is_heard) {
     if (left_ms_[kFrameSent] != 0) return false;
-    show_text(value, is_yes_no);
+    if (kHasText) show_text(value, is_yes_no);
     return true;
   }
   if (separate()) return false;
@@ -115,14 +112,14 @@ bool Link::is_listened_to() const { return is_open_ && left_ms_[kListen] != 0; }
 
 // Sends the first message that is due. A client that has sent the stop sequence is listening.
 void Link::send() {
-  if (talks()) return send_text();
+  if (kHasText && talks()) return send_text();
   if (!is_listened_to()) due_ &= static_cast<uint8_t>(~(kDueFault | kDueDone));
 #ifdef tiniscript_has_breakpoints
   if (!is_listened_to() || !port_is_halted()) due_ &= static_cast<uint8_t>(~kDueHalted);
 #endif
   const uint8_t first = static_cast<uint8_t>(due_ & -due_);
   if (first == 0) return;
-  if (first == kDueText) return send_text();
+  if (kHasText && first == kDueText) return send_text();
   if (separate()) return;
   due_ ^= first;
   if (first == kDueReply) {
@@ -210,10 +207,8 @@ void Link::reply() {
       break;
 #endif
     case Message::kWifi:
-#ifdef tiniscript_transports
-      tell_wifi();
+      if (kHasTransports) tell_wifi();
       break;
-#endif
     default:  // OK says it all
       break;
   }
@@ -300,7 +295,7 @@ tini_noinline void Link::put_all(const void* bytes, uint8_t length) {
 }
 
 void Link::close() {
-  if (kHasSeals && (out_[kTypeAt] & kSealed) != 0) seal_out();
+  if (kHasSeals && (out_[kTypeAt] & kSealed) != 0) size_ = seal_.close(out_, size_);
   size_ = encode_frame(out_, size_);
   hand_over_frame();
 }

@@ -15,8 +15,6 @@
 #include "port.h"
 #include "transports.h"
 
-#ifdef tiniscript_transports
-
 namespace tiniscript {
 
 class Links {
@@ -101,5 +99,3 @@ class Links {
 };
 
 }  // namespace tiniscript
-
-#endif  // tiniscript_transports

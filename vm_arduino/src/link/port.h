@@ -103,7 +103,7 @@ const Tuning& port_tuning();
 LineErrors port_line_errors();
 
 // Edges of both discs while no wheel could turn, modulo 256, the left one in the low byte. False: it
-// has no discs, as where no build defines this.
+// has no discs.
 bool port_noise(uint16_t* edges);
 
 // The largest code that fits, after a header of this version.
@@ -224,23 +224,18 @@ inline bool text_may_drive() {
 
 // Whether the session whose request of this type is handled, or whose line of text (0), may drive
 // the robot now; otherwise the reason. A robot with one transport has one session.
-#ifdef tiniscript_transports
 Answer port_may_drive(uint8_t type);
-#else
-inline Answer port_may_drive(uint8_t) { return Answer::kOk; }
-#endif
+inline Answer may_drive(uint8_t type) {
+  return kHasTransports ? port_may_drive(type) : Answer::kOk;
+}
 
 // Whether a line of text may press keys now, which asks for nothing else.
-#ifdef tiniscript_transports
 bool port_may_press();
-#else
-inline bool port_may_press() { return true; }
-#endif
+inline bool may_press() { return !kHasTransports || port_may_press(); }
 
 // Whether the program that runs has read what a remote control says.
 bool port_reads_keys();
 
-#ifdef tiniscript_transports
 // What the robot says of its WiFi, or of its broker. `address` is as four bytes in their order.
 struct WifiReport {
   WifiMode mode;
@@ -255,7 +250,6 @@ WifiReport port_wifi_report(WifiStep step);
 
 // Does a step of setting WiFi. kSaving: it is kept as soon as the motors stand.
 Answer port_set_wifi(WifiStep step, const uint8_t* text, uint8_t length);
-#endif
 
 // Whether a key is one: not zeros alone (`link_owners.cpp`).
 bool is_key(const uint8_t* key);

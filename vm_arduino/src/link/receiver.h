@@ -88,11 +88,9 @@ class Receiver : private PacketPlaces<kWindow> {
   tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) { return zeros_.stops(byte, now_ms); }
   bool keep(uint8_t byte, uint16_t now_ms);
 
-#ifdef __AVR__
   // Where the count of zeros lies: its interrupt does `stops` in assembly.
   static constexpr size_t zeros_at() { return offsetof(Receiver, zeros_) + ZeroRun::zeros_at(); }
   static constexpr size_t last_ms_at() { return offsetof(Receiver, zeros_) + ZeroRun::last_ms_at(); }
-#endif
 
   // Keeps the byte that completes a stop.
   void keep_last_zero() { keep(0, zeros_.last_ms()); }
@@ -235,24 +233,18 @@ class Receiver : private PacketPlaces<kWindow> {
   uint8_t bytes_[kWindow][kPacketBytes];
 };
 
-#ifdef __AVR__
-
-// Where a link has its receiver. An AVR has one link, and a known address takes less flash than a
-// pointer in memory does, and less time.
-class ReceiverOfLink {
+// The receiver of a robot's only link: a known address takes less flash than a pointer in memory does,
+// and less time.
+class OnlyReceiver {
  public:
   void operator=(Receiver*) {}
   Receiver* operator->() const { return *this; }
   operator Receiver*() const {
-    extern Receiver receiver;  // firmware/firmware.cpp
+    extern Receiver receiver;  // firmware/one_line.cpp
     return &receiver;
   }
 };
 
-#else
-
-typedef Receiver* ReceiverOfLink;
-
-#endif
+typedef Choice<kIsAvr, OnlyReceiver, Receiver*>::Type ReceiverOfLink;
 
 }  // namespace tiniscript

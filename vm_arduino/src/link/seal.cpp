@@ -69,7 +69,6 @@ uint8_t Seal::close(uint8_t* bytes, uint8_t end) {
   return static_cast<uint8_t>(end + kTagBytes);
 }
 
-#ifdef tiniscript_transports
 // No other text under this key is so short. A counter is never used twice.
 void Seal::cover(const uint8_t* counter, uint8_t* bytes, uint8_t length) const {
   uint8_t text[sizeof(uint32_t) + 1];
@@ -84,7 +83,6 @@ void Seal::cover(const uint8_t* counter, uint8_t* bytes, uint8_t length) const {
     bytes[k] ^= stream[at];
   }
 }
-#endif
 
 #endif
 

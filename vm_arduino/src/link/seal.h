@@ -44,10 +44,8 @@ class Seal {
   // newer than all before. Then its payload ends kTagBytes before.
   bool open(const uint8_t* bytes, uint8_t end);
 
-#ifdef tiniscript_transports
   // Covers or uncovers bytes of the frame with this counter: nobody else can read them.
   void cover(const uint8_t* counter, uint8_t* bytes, uint8_t length) const;
-#endif
 
   // Seals a frame whose payload ends at `end`: writes 0, counter and MAC. Returns where that ends.
   uint8_t close(uint8_t* bytes, uint8_t end);

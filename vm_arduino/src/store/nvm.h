@@ -21,11 +21,8 @@ bool nvm_is_ready();
 uint8_t nvm_read(uint16_t place);
 
 // Whether the memory has refused no read: only then is what was not found not there.
-#ifdef ARDUINO_ARCH_ESP32
-bool nvm_is_readable();
-#else
-inline bool nvm_is_readable() { return true; }
-#endif
+bool nvm_has_refused();
+inline bool nvm_is_readable() { return !kWritesStopTheChip || !nvm_has_refused(); }
 
 // Begins to write a byte, even an equal one: the byte is erased first.
 void nvm_write(uint16_t place, uint8_t value);

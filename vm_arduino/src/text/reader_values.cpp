@@ -18,16 +18,6 @@ tini_noinline uint8_t binding_of(uint8_t op) {
   return op >= byte_of(Op::kMul) ? kProducts : kSums;
 }
 
-int32_t flash_long(const uint8_t* at) {
-#ifdef __AVR__
-  return static_cast<int32_t>(pgm_read_dword(at));
-#else
-  uint32_t value = 0;
-  for (uint8_t k = 4; k != 0; k--) value = value << 8 | flash_byte(at + k - 1);
-  return static_cast<int32_t>(value);
-#endif
-}
-
 }  // namespace
 
 // An argument, or the value of an assignment.

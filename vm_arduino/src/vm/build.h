@@ -116,31 +116,59 @@ constexpr bool kHasDiscs = true;
 constexpr bool kHasDiscs = false;
 #endif
 
-#ifdef tiniscript_without_text
-constexpr bool kHasText = false;
+#ifdef __AVR__
+constexpr bool kIsAvr = true;
 #else
-constexpr bool kHasText = true;
+constexpr bool kIsAvr = false;
 #endif
 
-// What only a reader with DEFs keeps takes no memory of any other, in which nothing uses or defines it.
+// One of two types.
+template <bool kIsFirst, class First, class>
+struct Choice {
+  typedef First Type;
+};
+
+template <class First, class Second>
+struct Choice<false, First, Second> {
+  typedef Second Type;
+};
+
+// A member of a class that only some robots have: `tini_with_remote` is before it. Where a robot lacks
+// what it is for, it is a static member that nothing defines, and takes no memory. What uses it comes
+// after the constant, `kHasRemote`, and is left out there.
+
+#ifdef tiniscript_without_text
+constexpr bool kHasText = false;
+#define tini_with_text static
+#else
+constexpr bool kHasText = true;
+#define tini_with_text
+#endif
+
 #ifdef tiniscript_reads_defs
 constexpr bool kReadsDefs = true;
 #define tini_with_defs
+#define tini_of_defs(...) __VA_ARGS__
 #else
 constexpr bool kReadsDefs = false;
 #define tini_with_defs static
+#define tini_of_defs(...)
 #endif
 
 #ifdef tiniscript_has_remote
 constexpr bool kHasRemote = true;
+#define tini_with_remote
 #else
 constexpr bool kHasRemote = false;
+#define tini_with_remote static
 #endif
 
 #ifdef tiniscript_reads_keys
 constexpr bool kReadsKeys = true;
+#define tini_with_keys
 #else
 constexpr bool kReadsKeys = false;
+#define tini_with_keys static
 #endif
 
 #ifdef tiniscript_has_breakpoints
@@ -157,8 +185,10 @@ constexpr bool kTextIsInProgram = true;
 
 #ifdef tiniscript_transports
 constexpr bool kHasTransports = true;
+#define tini_with_transports
 #else
 constexpr bool kHasTransports = false;
+#define tini_with_transports static
 #endif
 
 // Whether this robot knows owners. The code that the Arduino IDE's own options make for an Uno or a Nano
@@ -172,8 +202,10 @@ constexpr bool kHasOwners = true;
 
 #ifdef tiniscript_seals
 constexpr bool kMaySeal = true;
+#define tini_with_seals
 #else
 constexpr bool kMaySeal = false;
+#define tini_with_seals static
 #endif
 
 constexpr bool kHasSeals = kMaySeal && kHasOwners;
@@ -212,11 +244,7 @@ constexpr bool kCountsInstructions = false;
 #endif
 
 // The budget of a tick in a main loop. An AVR leaves it where an interrupt has an event.
-#ifdef __AVR__
-constexpr uint8_t kTickBudget = 255;
-#else
-constexpr uint8_t kTickBudget = 32;
-#endif
+constexpr uint8_t kTickBudget = kIsAvr ? 255 : 32;
 
 // What the CPU calculates at once, where the arithmetic is in C++.
 #if defined(__x86_64__) || defined(__aarch64__) || defined(__wasm__)

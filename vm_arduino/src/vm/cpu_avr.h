@@ -19,6 +19,19 @@ namespace tiniscript {
 
 inline uint8_t flash_byte(const uint8_t* address) { return pgm_read_byte(address); }
 inline uint16_t flash_word(const uint16_t* address) { return pgm_read_word(address); }
+inline int32_t flash_long(const uint8_t* address) {
+  return static_cast<int32_t>(pgm_read_dword(address));
+}
+
+// Divides a number by ten. Returns the remainder. In `reader_avr.S`: the compiler's own division takes
+// a divisor of 32 bits.
+inline uint8_t cut_digit(uint32_t* number) {
+  register uint32_t rest asm("r18") = *number;
+  register uint8_t digit asm("r24");
+  asm("%~call tiniscript_divide_10" : "+r"(rest), "=r"(digit) : : "r25");
+  *number = rest;
+  return digit;
+}
 
 template <class Type>
 inline Type* near(Type* object) {

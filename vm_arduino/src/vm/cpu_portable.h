@@ -14,6 +14,18 @@ namespace tiniscript {
 
 inline uint8_t flash_byte(const uint8_t* address) { return *address; }
 inline uint16_t flash_word(const uint16_t* address) { return *address; }
+inline int32_t flash_long(const uint8_t* address) {
+  uint32_t value = 0;
+  for (uint8_t k = 4; k != 0; k--) value = value << 8 | address[k - 1];
+  return static_cast<int32_t>(value);
+}
+
+// Divides a number by ten. Returns the remainder.
+inline uint8_t cut_digit(uint32_t* number) {
+  const uint8_t digit = static_cast<uint8_t>(*number % 10);
+  *number /= 10;
+  return digit;
+}
 
 template <class Type>
 inline Type* near(Type* object) {

@@ -130,7 +130,7 @@ bool nvm_is_ready() {
   return true;
 }
 
-bool nvm_is_readable() { return !has_refused; }
+bool nvm_has_refused() { return has_refused; }
 
 uint8_t nvm_read(uint16_t place) {
   if (!is_loaded) load();
