@@ -20,7 +20,6 @@ from tools.generate.cpp_header import (
 )
 
 UNKNOWN_REQUEST = 255  # no payload is so long
-BREAKPOINTS = "tiniscript_has_breakpoints"
 
 
 def header(command: str) -> str:
@@ -88,8 +87,8 @@ def tables(command: str) -> str:
     requests = {request.number: request for request in _requests()}
     rows = [_length_row(requests.get(number)) for number in range(1, max(requests) + 1)]
     first = len(rows) - len(messages.OF_BREAKPOINTS)
-    rows = [*rows[:first], f"#ifdef {BREAKPOINTS}\n", *rows[first:], "#endif\n"]
-    table = f"const uint8_t kRequestBytes[][2] tini_progmem = {{\n{''.join(rows)}}};\n"
+    own = f"    tini_of_breakpoints(  //\n{''.join(rows[first:])}    )\n"
+    table = f"const uint8_t kRequestBytes[][2] tini_progmem = {{\n{''.join(rows[:first])}{own}}};\n"
     return cpp_file(command, "link/messages.cpp", (), table, "sizes.h")
 
 
@@ -97,9 +96,8 @@ def _last_request() -> str:
     """Return kLastRequest: the requests for breakpoints come last, and not every robot has them."""
     last = _requests()[-len(messages.OF_BREAKPOINTS) :]
     assert tuple(message.name for message in last) == messages.OF_BREAKPOINTS
-    whole = constants(("kLastRequest", last[-1].number))
-    less = constants(("kLastRequest", last[0].number - 1))
-    return f"#ifdef {BREAKPOINTS}\n{whole}#else\n{less}#endif\n"
+    number = f"kHasBreakpoints ? {last[-1].number} : {last[0].number - 1}"
+    return f"constexpr uint8_t kLastRequest = {number};\n"
 
 
 def _length_row(request: Message | None) -> str:

@@ -6,7 +6,7 @@
 
 #include "watched_run.h"
 
-#include "../../src/firmware/breakpoints.h"
+#include "../../src/firmware/halting.h"
 #include "../../src/firmware/program.h"
 #include "../../src/vm/machine.h"
 

@@ -6,10 +6,10 @@
 #include "../vm/flags.h"
 #include "../vm/image.h"
 #include "../vm/machine.h"
-#include "breakpoints.h"
 #include "button_hold.h"
 #include "firmware.h"
 #include "guide.h"
+#include "halting.h"
 #include "persistence.h"
 #include "program.h"
 #include "remote.h"
@@ -29,63 +29,14 @@ bool has_motors_on;
 bool reads_keys;  // the program that runs has read some, where kReadsKeys
 Flag<Bit::kPrepared> is_prepared;  // machine and board are reset for a program
 
-#ifdef tiniscript_has_breakpoints
-Breakpoints breakpoints;
-uint32_t places_program;  // the checksum of the program that has them
-uint32_t held_ms;         // for how long the run has been halted
-uint32_t halted_ms;       // when that was counted last
-bool goes_on;             // from a halt, as soon as a motor may start,
-bool is_step;             // and as a step
-
-uint8_t* code_of(const uint8_t* image) {
-  return const_cast<uint8_t*>(image) + image[kHeaderLengthAt];
-}
-
-// The time of the machine, which stands while it is halted.
-uint32_t machine_ms() { return now_ms - held_ms; }
-
-// The run of an image begins. Places are those of one program.
-void begin_breakpoints(const uint8_t* image, uint16_t length) {
-  held_ms = 0;
-  goes_on = false;
-  if (breakpoints.has_places()) link.write_checksum();
-  if (breakpoints.has_places() && get32(image + kChecksumAt) != places_program) {
-    breakpoints.forget_places();
-  }
-  breakpoints.begin(code_of(image), length);
-}
-
-// Whether the machine runs now: time stands for one that is halted.
-bool runs_on() {
-  if (!breakpoints.is_halted()) return true;
-  held_ms += now_ms - halted_ms;
-  halted_ms = now_ms;
-  if (!goes_on) return false;
-  goes_on = false;
-  return true;
-}
-
-// Lets the machine run, and halts it at a place.
 Status tick_machine() {
-  if (!runs_on()) return Status::kHalted;
-  if (breakpoints.is_halted()) {
-    breakpoints.go_on(machine, is_step);
-    machine.resume();
-    machine.set_motors_again();
-  }
-  if (!breakpoints.are_on()) return machine.tick(machine_ms(), kTickBudget);
-  breakpoints.put_in();
-  const Status status = machine.tick(machine_ms(), kTickBudget);
-  if (breakpoints.take_out(&machine, status, link.may_halt())) {
-    halted_ms = now_ms;
-    robot_motors(0, 0);
-    link.halted();
-  }
+  if (!kHasBreakpoints) return machine.tick(now_ms, kTickBudget);
+  uint32_t machine_ms;
+  if (!begin_tick(&machine_ms)) return Status::kHalted;
+  const Status status = machine.tick(machine_ms, kTickBudget);
+  end_tick(status);
   return status;
 }
-#else
-Status tick_machine() { return machine.tick(now_ms, kTickBudget); }
-#endif
 
 // Records a fault.
 void fault(uint8_t number, uint16_t at) {
@@ -136,9 +87,7 @@ void begin_run(const uint8_t* image) {
   machine.start_prepared(code, length, board_readings(), readings_of(board_sensors()),
                          (time_ms ^ port_identity().nonce) | 1, time_ms);
   run_image = image;
-#ifdef tiniscript_has_breakpoints
-  begin_breakpoints(image, length);
-#endif
+  if (kHasBreakpoints) begin_halting(&machine, image, length);
   is_start_due = false;
   may_start = false;
   link.let_go();
@@ -169,9 +118,7 @@ void tick_run() {
 
 void end_run(State state, bool is_done) {
   board_stop();
-#ifdef tiniscript_has_breakpoints
-  breakpoints.end();
-#endif
+  if (kHasBreakpoints) end_halting();
   if (kHasDiscs) guide_end(false);
   if (!is_done) board_actuators_off();
   robot_off();
@@ -233,45 +180,6 @@ void firmware_on_disconnect() {
 
 uint16_t port_run_at() { return machine.at(); }
 
-#ifdef tiniscript_has_breakpoints
-Answer port_set_breakpoints(const uint8_t* places, uint8_t count) {
-  if (!is_running() && (!has_booted() || !load_program())) return not_now();
-  link.write_checksum();
-  const uint8_t* const image = is_running() ? run_image : program;
-  const uint16_t length = get16(image + kCodeLengthAt);
-  if (!breakpoints.set(code_of(image), length, places, count)) return Answer::kBadValue;
-  places_program = get32(image + kChecksumAt);
-  return Answer::kOk;
-}
-
-void port_forget_breakpoints() { breakpoints.forget_places(); }
-
-bool port_is_halted() { return is_running() && breakpoints.is_halted(); }
-
-uint8_t port_halted_task() { return machine.turn(); }
-
-void port_resume(ResumeHow how) {
-  goes_on = port_is_halted();
-  is_step = how == ResumeHow::kStep;
-}
-
-const int32_t* port_variables() { return machine.task().variables; }
-
-bool port_report_task(uint8_t task, TaskReport* report) {
-  if (task > kTasks) return false;
-  const TaskRecord& record = machine.task().records[task];
-  const int32_t left_ms = static_cast<int32_t>(record.clock_ms - machine_ms());
-  report->at = machine.place_of(task);
-  report->left_ms = left_ms > 0 ? static_cast<uint32_t>(left_ms) : 0;
-  report->state = record.state == 0       ? TaskState::kEnded
-                  : record.is(kDrives)    ? TaskState::kDriving
-                  : record.is(kIsMoving)  ? TaskState::kBlocked
-                  : report->left_ms != 0  ? TaskState::kWaiting
-                                          : TaskState::kReady;
-  return true;
-}
-#endif
-
 uint16_t port_shown_at() { return machine.shown_at(); }
 
 const uint8_t* port_run_image() { return run_image; }
@@ -282,12 +190,11 @@ bool firmware_runs(Place* place) {
   const uint8_t* const image = run_image;
   const uint16_t most = image == live ? kLiveImageBytes : kImageBytes;
   const uint16_t length = image_length(image);
-#ifdef tiniscript_has_breakpoints
-  if (breakpoints.are_in()) {  // then it has its checksum
+  if (kHasBreakpoints && are_traps_in()) {  // then it has its checksum
     place->program = get32(image + kChecksumAt);
-  } else
-#endif
+  } else {
     place->program = image_checksum(image, length < most ? length : most);
+  }
   place->at = machine.at();
   return true;
 }

@@ -9,19 +9,6 @@
 
 namespace tiniscript {
 
-#ifdef tiniscript_has_breakpoints
-// Of a robot that halts nothing.
-__attribute__((weak)) Answer port_set_breakpoints(const uint8_t*, uint8_t) {
-  return Answer::kUnknownMessage;
-}
-__attribute__((weak)) void port_forget_breakpoints() {}
-__attribute__((weak)) bool port_is_halted() { return false; }
-__attribute__((weak)) uint8_t port_halted_task() { return 0; }
-__attribute__((weak)) void port_resume(ResumeHow) {}
-__attribute__((weak)) const int32_t* port_variables() { return nullptr; }
-__attribute__((weak)) bool port_report_task(uint8_t, TaskReport*) { return false; }
-#endif
-
 namespace {
 
 constexpr uint8_t kLiveByte = static_cast<uint8_t>(Message::kLive);
@@ -32,14 +19,14 @@ bool has_right_start(const uint8_t* bytes, uint8_t end) {
   return !is_large(end) || bytes[kPayloadAt] == 0;
 }
 
+}  // namespace
+
 // The reason why the robot has no program to start or to fetch, or kOk.
-Answer lacks_program() {
+Answer Link::lacks_program() {
   const Saved saved = port_status().saved;
   if (saved == Saved::kOtherVersion) return static_cast<Answer>(Refusal::kOtherVersion);
   return saved == Saved::kNothing ? Answer::kNoProgram : Answer::kOk;
 }
-
-}  // namespace
 
 void Link::begin(Receiver* receiver, uint8_t epoch) {
   receiver_ = receiver;
@@ -107,9 +94,7 @@ void Link::turn() {
     faulted();
   }
   if (kHasOwners && left_ms_[kListen] <= kListenMs - kAuthorityMs) expire();
-#ifdef tiniscript_has_breakpoints
   if (owns_halt() && left_ms_[kHaltedAgain] == 0) halted();
-#endif
 }
 
 void Link::send_due() {
@@ -279,33 +264,17 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
     case Message::kPing:
       said_.detail = length;
       break;
-#ifdef tiniscript_has_breakpoints
     case Message::kBreak:
-      if (length % 2 != 0) {
-        found = Answer::kBadLength;
-      } else if (port_status().state == State::kRunning ||
-                 (found = lacks_program()) == Answer::kOk) {
-        found = port_set_breakpoints(payload, static_cast<uint8_t>(length / 2));
-        if (found == Answer::kOk) has_breakpoints_ = length != 0;
-      }
+      if (kHasBreakpoints) found = set_breakpoints(payload, length);
       break;
     case Message::kResume:
-      if (payload[kResumeHowAt] > static_cast<uint8_t>(ResumeHow::kStep)) {
-        found = Answer::kBadValue;
-      } else {
-        said_.detail = port_is_halted();
-        port_resume(static_cast<ResumeHow>(payload[kResumeHowAt]));
-      }
+      if (kHasBreakpoints) found = resume(payload[kResumeHowAt]);
       break;
     case Message::kReadVariables:
+      if (!kHasBreakpoints) break;
       said_.detail = payload[kReadVariablesFirstAt];
       if (said_.detail >= kVariables) found = Answer::kBadValue;
       break;
-#else
-    case Message::kBreak:
-    case Message::kResume:
-    case Message::kReadVariables:
-#endif
     case Message::kReadTasks:
     case Message::kHalted:
     case Message::kStatus:
@@ -407,7 +376,7 @@ uint8_t Link::hello(const uint8_t* payload) {
   left_ms_[kFrameSent] = 0;  // who says it may have heard no frame before
   if (is_new) {
     renew();
-    forget_breakpoints();
+    if (kHasBreakpoints) forget_breakpoints();
   }
   if (is_new || may_seal()) expire();
   if (is_new) forget_answer();
@@ -424,14 +393,5 @@ void Link::renew() {
   epoch_++;
   image_ = nullptr;
 }
-
-#ifdef tiniscript_has_breakpoints
-// Of a session that is over: what is halted for it ends.
-void Link::forget_breakpoints() {
-  if (owns_halt()) port_end();
-  if (has_breakpoints_) port_forget_breakpoints();
-  has_breakpoints_ = owns_halt_ = false;
-}
-#endif
 
 }  // namespace tiniscript

@@ -6,7 +6,6 @@
 
 #pragma once
 
-#include <stddef.h>
 #include <stdint.h>
 
 #include "../vm/build.h"
@@ -59,10 +58,8 @@ class Link {
   // The next byte to send, or false if there is none. May be called from an interrupt.
   bool next_tx_byte(uint8_t* byte);
 
-  // Where what `next_tx_byte` uses lies: the interrupt there does it in assembly.
-  static constexpr size_t sent_at() { return offsetof(Link, sent_); }
-  static constexpr size_t left_at() { return offsetof(Link, left_); }
-  static constexpr size_t out_at() { return offsetof(Link, out_); }
+  // Where what `next_tx_byte` uses lies: an AVR's interrupt does it in assembly (`link_avr.h`).
+  struct Layout;
 
   // Whether a stop has arrived that `tick` has not handled yet: until then the motors must stay
   // off, whatever else was requested. Code that turns motors on checks this with interrupts off.
@@ -75,11 +72,9 @@ class Link {
   void done();
   void faulted();  // port_status() has the record
   void stopped(Cause cause);
-#ifdef tiniscript_has_breakpoints
   void halted();
   // Whether a program may halt: somebody is there who lets it go on.
   bool may_halt() const { return is_listened_to() && !is_dead_man_over(); }
-#endif
   bool show(int32_t value, bool is_yes_no);
 
   // The button starts the program that the robot holds: cancels a program in transfer, which must
@@ -123,8 +118,8 @@ class Link {
 
   // Whether only the teacher releases the robot.
   bool is_held_back() const { return (rights_ & kHeldBack) != 0; }
-  void hold_back(bool is_held) {
-    rights_ = static_cast<uint8_t>(is_held ? rights_ | kHeldBack : rights_ & ~kHeldBack);
+  void hold_back(bool is_so) {
+    rights_ = static_cast<uint8_t>(is_so ? rights_ | kHeldBack : rights_ & ~kHeldBack);
   }
 
   Cause cause() const { return cause_; }
@@ -142,7 +137,7 @@ class Link {
 
   // Nobody is connected any more: whoever comes next begins a session.
   void forget_client() {
-    forget_breakpoints();
+    if (kHasBreakpoints) forget_breakpoints();
     is_open_ = false;
     due_ = 0;
     left_ = 0;
@@ -214,6 +209,7 @@ class Link {
   bool is_next(uint8_t seq, uint8_t epoch) const;
   void handle(uint8_t end);
   uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
+  static Answer lacks_program();
   Answer clear();
   Answer set_trim(const uint8_t* payload, uint8_t length);
   Answer hold(const RemoteKeys& remote_keys);
@@ -295,21 +291,21 @@ class Link {
     if (kHasText) is_typed_ = is_so;
   }
 
+  // breakpoints: `link_breakpoints.cpp`
+  Answer set_breakpoints(const uint8_t* places, uint8_t length);
+  Answer resume(uint8_t how);
+  void forget_breakpoints();
+  void tell_halt();
+  void tell_tasks();
+  void tell_variables();
+
   // writing: `link_writing.cpp`
   bool is_listened_to() const;
   void note_end(uint8_t due);
   void confirm(Cause cause);
   void send();
   bool is_dead_man_over() const { return dead_man_ms() <= kListenMs - kDeadManMs; }
-#ifdef tiniscript_has_breakpoints
-  bool owns_halt() const { return owns_halt_ && port_is_halted(); }
-  void forget_breakpoints();
-  void tell_tasks();
-  void tell_variables();
-#else
-  static constexpr bool owns_halt() { return false; }
-  static void forget_breakpoints() {}
-#endif
+  bool owns_halt() const { return kHasBreakpoints && owns_halt_ && port_is_halted(); }
   void reply();
   void describe();
   void fetch();
@@ -365,10 +361,8 @@ class Link {
   tini_with_seals Said sealed_last_;  // the last reply to a sealed request
   tini_with_seals Seal seal_;
   tini_with_transports bool was_stopped_;
-#ifdef tiniscript_has_breakpoints
-  bool has_breakpoints_;  // of this session
-  bool owns_halt_;        // it was told of the last halt: that ends with it
-#endif
+  tini_with_breakpoints bool has_breakpoints_;  // of this session
+  tini_with_breakpoints bool owns_halt_;  // it was told of the last halt: that ends with it
   tini_with_remote RemoteKeys remote_;  // what the remote control has said last
   uint32_t nonce_;  // of the session
   uint8_t challenge_[kChallengeBytes];

@@ -15,10 +15,6 @@ namespace {
 const uint8_t kVersions[] tini_progmem = {kLinkMajor, kLinkMinor,    kIsaMajor,
                                           kIsaMinor,  kLargestFrame, kWindow};
 
-#ifdef tiniscript_has_breakpoints
-constexpr uint16_t kHaltedAgainMs = 500;
-#endif
-
 constexpr uint8_t kPulseBytes = 2;  // state and run of a RobotStatus
 constexpr uint8_t kPlaceBytes = 2;  // its slot and `saved`
 
@@ -56,14 +52,6 @@ void Link::faulted() {
   renew();
   note_end(kDueFault);
 }
-
-#ifdef tiniscript_has_breakpoints
-void Link::halted() {
-  owns_halt_ = true;
-  due_ |= kDueHalted;
-  left_ms_[kHaltedAgain] = kHaltedAgainMs;
-}
-#endif
 
 // Of two ends that wait for the line the last one is told: an end is never told of another run.
 void Link::note_end(uint8_t due) {
@@ -114,9 +102,9 @@ bool Link::is_listened_to() const { return is_open_ && left_ms_[kListen] != 0; }
 void Link::send() {
   if (kHasText && talks()) return send_text();
   if (!is_listened_to()) due_ &= static_cast<uint8_t>(~(kDueFault | kDueDone));
-#ifdef tiniscript_has_breakpoints
-  if (!is_listened_to() || !port_is_halted()) due_ &= static_cast<uint8_t>(~kDueHalted);
-#endif
+  if (kHasBreakpoints && (!is_listened_to() || !port_is_halted())) {
+    due_ &= static_cast<uint8_t>(~kDueHalted);
+  }
   const uint8_t first = static_cast<uint8_t>(due_ & -due_);
   if (first == 0) return;
   if (kHasText && first == kDueText) return send_text();
@@ -127,13 +115,8 @@ void Link::send() {
   } else if (first == kDueStopped) {
     begin_event(Message::kStopped);
     put(byte_of(cause_));
-#ifdef tiniscript_has_breakpoints
-  } else if (first == kDueHalted) {
-    begin_event(Message::kHalted);
-    put(port_status().run);
-    put16(port_run_at());
-    put(port_halted_task());
-#endif
+  } else if (kHasBreakpoints && first == kDueHalted) {
+    tell_halt();
   } else {
     begin_event(first == kDueFault ? Message::kFault : Message::kDone);
     put(ended_run_);
@@ -194,18 +177,17 @@ void Link::reply() {
       if (said_.number == byte_of(Message::kAuthenticate) && (rights_ & kHasChallenge) != 0)
         put_all(challenge_, kChallengeBytes);
       break;
-#ifdef tiniscript_has_breakpoints
     case Message::kResume:
+      if (!kHasBreakpoints) break;
       put(robot_status.run);
       put(byte_of(said_.detail));
       break;
     case Message::kReadVariables:
-      tell_variables();
+      if (kHasBreakpoints) tell_variables();
       break;
     case Message::kReadTasks:
-      tell_tasks();
+      if (kHasBreakpoints) tell_tasks();
       break;
-#endif
     case Message::kWifi:
       if (kHasTransports) tell_wifi();
       break;
@@ -222,32 +204,6 @@ void Link::describe() {
   const DeviceInfo& device_info = port_device_info();
   put_all(device_info.name, device_info.name_length);
 }
-
-#ifdef tiniscript_has_breakpoints
-void Link::tell_variables() {
-  put(port_status().run);
-  put(port_is_halted());
-  if (port_status().state != State::kRunning || port_variables() == nullptr) return;
-  const uint8_t seal = kHasSeals && (out_[kTypeAt] & kSealed) != 0 ? kTagBytes : 0;
-  const uint8_t most = static_cast<uint8_t>(kSmallFrame - kCrcBytes - seal - sizeof(int32_t));
-  for (uint8_t k = byte_of(said_.detail); k < kVariables && size_ <= most; k++) {
-    put_all(port_variables() + k, sizeof(int32_t));
-  }
-}
-
-void Link::tell_tasks() {
-  put(port_status().run);
-  const bool is_halted = port_is_halted();
-  put(is_halted);
-  put(is_halted ? port_halted_task() : 0);
-  const bool is_running = port_status().state == State::kRunning;
-  put16(is_running ? port_run_at() : 0);
-  TaskReport report;
-  for (uint8_t k = 0; is_running && port_report_task(k, &report); k++) {
-    put_all(&report, sizeof report);
-  }
-}
-#endif
 
 void Link::fetch() {
   const uint16_t whole = port_image_length();

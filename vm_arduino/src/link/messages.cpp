@@ -31,12 +31,12 @@ const uint8_t kRequestBytes[][2] tini_progmem = {
     {9, 9},  // BEGIN
     {0, 0},  // ABORT
     {kHasRemote ? 3 : kUnknownRequest, kHasRemote ? 3 : 0},  // KEYS
-#ifdef tiniscript_has_breakpoints
+    tini_of_breakpoints(  //
     {0, 8},  // BREAK
     {1, 1},  // RESUME
     {1, 1},  // READ_VARIABLES
     {0, 0},  // READ_TASKS
-#endif
+    )
 };
 
 }  // namespace tiniscript

@@ -113,11 +113,7 @@ enum class Message : uint8_t {
 
 // Requests are the numbers from 1 up to this one; from kFirstActing on they act.
 constexpr uint8_t kFirstActing = 6;
-#ifdef tiniscript_has_breakpoints
-constexpr uint8_t kLastRequest = 28;
-#else
-constexpr uint8_t kLastRequest = 24;
-#endif
+constexpr uint8_t kLastRequest = kHasBreakpoints ? 28 : 24;
 
 // How long the payload of each request may be, from the first one on: least and most.
 // What this robot does not know has kUnknownRequest as its least.

@@ -1,6 +1,7 @@
 // What the link needs of the robot.
 //
 // Plain functions: each build links one definition of them (a board, a test). None of them blocks.
+// `port_defaults.cpp` defines what a robot without discs or breakpoints leaves out.
 
 #pragma once
 
@@ -177,9 +178,6 @@ uint16_t port_run_at();
 uint16_t port_shown_at();
 const uint8_t* port_run_image();
 
-#ifdef tiniscript_has_breakpoints
-// Where no build defines these, nothing halts.
-
 // A task, as READ_TASKS sends it: how long until its clock is reached, or 0.
 struct tini_packed TaskReport {
   TaskState state;
@@ -205,7 +203,6 @@ const int32_t* port_variables();
 
 // Reports a task of what runs, from 0 on. False: there are no more.
 bool port_report_task(uint8_t task, TaskReport* report);
-#endif
 
 // The length of the image that the robot holds.
 uint16_t port_image_length();

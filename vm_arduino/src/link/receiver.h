@@ -12,7 +12,6 @@
 
 #pragma once
 
-#include <stddef.h>
 #include <stdint.h>
 
 #include "../vm/small.h"
@@ -88,9 +87,8 @@ class Receiver : private PacketPlaces<kWindow> {
   tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) { return zeros_.stops(byte, now_ms); }
   bool keep(uint8_t byte, uint16_t now_ms);
 
-  // Where the count of zeros lies: its interrupt does `stops` in assembly.
-  static constexpr size_t zeros_at() { return offsetof(Receiver, zeros_) + ZeroRun::zeros_at(); }
-  static constexpr size_t last_ms_at() { return offsetof(Receiver, zeros_) + ZeroRun::last_ms_at(); }
+  // Where the count of zeros lies: an AVR's interrupt does `stops` in assembly (`receiver_avr.h`).
+  struct Layout;
 
   // Keeps the byte that completes a stop.
   void keep_last_zero() { keep(0, zeros_.last_ms()); }
@@ -233,18 +231,12 @@ class Receiver : private PacketPlaces<kWindow> {
   uint8_t bytes_[kWindow][kPacketBytes];
 };
 
-// The receiver of a robot's only link: a known address takes less flash than a pointer in memory does,
-// and less time.
-class OnlyReceiver {
- public:
-  void operator=(Receiver*) {}
-  Receiver* operator->() const { return *this; }
-  operator Receiver*() const {
-    extern Receiver receiver;  // firmware/one_line.cpp
-    return &receiver;
-  }
-};
-
+// Where a link has its receiver.
+class OnlyReceiver;
 typedef Choice<kIsAvr, OnlyReceiver, Receiver*>::Type ReceiverOfLink;
 
 }  // namespace tiniscript
+
+#ifdef __AVR__
+#include "receiver_avr.h"
+#endif

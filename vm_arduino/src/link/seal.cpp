@@ -12,8 +12,6 @@ tini_noinline bool are_equal(const uint8_t* first, const uint8_t* second, uint8_
   return differ == 0;
 }
 
-#ifdef tiniscript_seals
-
 namespace {
 
 // A label and the origin: no other hash under the robot's keys is of so many bytes.
@@ -83,7 +81,5 @@ void Seal::cover(const uint8_t* counter, uint8_t* bytes, uint8_t length) const {
     bytes[k] ^= stream[at];
   }
 }
-
-#endif
 
 }  // namespace tiniscript

@@ -15,4 +15,11 @@ constexpr uint8_t kHashBytes = 8;
 // part of the message: little-endian, as the authors' test vectors have it.
 void siphash(const uint8_t* key, const uint8_t* message, uint8_t length, uint8_t* hash);
 
+// Its steps, in `siphash_avr.S` or `siphash_portable.cpp`: XORs a word with another one; does rounds of
+// the state.
+constexpr uint8_t kWord = 8;  // bytes, little-endian
+constexpr uint8_t kWords = 4;
+void xor_word(uint8_t* word, const uint8_t* other);
+void sip_rounds(uint8_t* state, uint8_t rounds);
+
 }  // namespace tiniscript

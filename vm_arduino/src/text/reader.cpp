@@ -12,9 +12,7 @@ namespace {
 constexpr uint8_t kUnfinished = 0x80;  // what follows is no ASCII
 constexpr uint8_t kOdd = 0x81;         // a character that means nothing
 constexpr uint8_t kBroken = 0x82;      // no UTF-8
-#ifdef tiniscript_reads_defs
-constexpr uint8_t kDegree = 0x83;  // a sign for DEG
-#endif
+tini_of_defs(constexpr uint8_t kDegree = 0x83;)  // a sign for DEG
 
 // Of a checksum: nothing has come, all digits have come, what came was a comment.
 constexpr uint8_t kNoCheck = 0;
@@ -30,9 +28,7 @@ const uint8_t kRelatives[] tini_progmem = {
     0xc2, 0x00, 0xa0, 0,    ' ',     0xe2, 0x80, 0x80, 11,   ' ',     0xe2, 0x80,
     0xaf, 0,    ' ',  0xe2, 0x80,    0x90, 5,    '-',  0xe2, 0x88,    0x92, 0,
     '-',  0xe3, 0x80, 0x80, 0,       ' ',  0xef, 0xbb, 0xbf, 0,       ' ',
-#ifdef tiniscript_reads_defs
-    0xc2, 0x00, 0xb0, 0,    kDegree, 0xc2, 0x00, 0xba, 0,    kDegree,
-#endif
+    tini_of_defs(0xc2, 0x00, 0xb0, 0, kDegree, 0xc2, 0x00, 0xba, 0, kDegree, )  //
     0,
 };
 
@@ -52,9 +48,7 @@ const uint8_t kSigns[] tini_progmem = {
     '*',      token_of(Op::kMul),
     '%',      token_of(Op::kMod),
     '=',      token_of(Op::kEq),
-#ifdef tiniscript_reads_defs
-    kDegree,  kWordDeg,
-#endif
+    tini_of_defs(kDegree, kWordDeg, )  //
     0,
 };
 

@@ -86,6 +86,7 @@ class Reader {
  private:
   struct Block;
   struct Def;
+  struct Layout;  // of `reader_avr.S`
 
   // characters, in reader.cpp
   uint8_t character(uint8_t byte);
@@ -118,6 +119,7 @@ class Reader {
   Problem instruction(uint8_t token);
   Problem after_name(uint8_t token);
   Problem before(Problem problem);
+  static Problem no_end(uint8_t token);  // with a token where an instruction must end
   bool is_forever() const { return forever_column_ != 0; }
   void end_arguments();
   Problem end_move(uint8_t token);
@@ -129,9 +131,12 @@ class Reader {
   Problem close(uint8_t type);
   Problem next_arm();
   Problem leave_loop();
+
+  // DEFs, tasks and ways, in reader_defs.cpp
   void open_routine(uint8_t type, uint8_t ends);
   void close_routine(Block* block);
   Problem define(uint8_t token);
+  Problem head_of_def(uint8_t token);
   Problem name_value_of_def(uint8_t token);
   Problem begin_task(bool is_when);
   bool reach(uint16_t defs);
@@ -139,6 +144,7 @@ class Reader {
   bool is_call() const { return kReadsDefs && callee_ != 0; }
   void give();
   void call();
+  Problem end_way(bool is_turn);
 
   // expressions, in reader_values.cpp
   void begin_value();
@@ -150,7 +156,6 @@ class Reader {
   Problem binary(uint8_t op);
   void apply(uint8_t op);
   void push_kind(bool is_yes_no);
-  Problem end_way(bool is_turn);
   Problem end_value();
 
   // code and memory, in reader_code.cpp
@@ -237,79 +242,8 @@ class Reader {
 
 #undef tini_with_defs
 
-#ifdef __AVR__
-
-// In `reader_avr.S`, with the reader in Y: a call takes less than one of the compiler's.
-
-inline void Reader::emit(uint8_t byte) {
-  register uint8_t its asm("r24") = byte;
-  asm volatile("%~call tiniscript_emit"
-               : "+r"(its)
-               : "y"(this)
-               : "r25", "r26", "r27", "r30", "r31", "memory");
-}
-
-inline void Reader::emit_numbered(uint8_t op, uint8_t first_short, uint8_t number) {
-  register uint8_t its asm("r24") = op;
-  register uint8_t first asm("r25") = first_short;
-  register uint8_t last asm("r22") = number;
-  asm volatile("%~call tiniscript_emit_numbered"
-               : "+r"(its), "+r"(first)
-               : "r"(last), "y"(this)
-               : "r26", "r27", "r30", "r31", "memory");
-}
-
-inline void Reader::emit_number(bool is_minus) {
-  register uint8_t its asm("r22") = is_minus;
-  asm volatile("%~call tiniscript_emit_number"
-               :
-               : "r"(its), "y"(this)
-               : "r18", "r19", "r20", "r21", "r23", "r24", "r25", "r26", "r27", "r30", "r31",
-                 "memory");
-}
-
-inline void Reader::push(uint8_t byte) {
-  register uint8_t its asm("r24") = byte;
-  asm volatile("%~call tiniscript_push"
-               : "+r"(its)
-               : "y"(this)
-               : "r26", "r27", "r30", "r31", "memory");
-}
-
-inline uint8_t Reader::pop() {
-  register uint8_t its asm("r24");
-  asm volatile("%~call tiniscript_pop" : "=r"(its) : "y"(this) : "r30", "r31", "memory");
-  return its;
-}
-
-inline bool Reader::has_room(uint16_t bytes) {
-  register uint16_t its asm("r24") = bytes;
-  asm volatile("%~call tiniscript_has_room"
-               : "+r"(its)
-               : "y"(this)
-               : "r26", "r27", "r30", "r31", "memory");
-  return static_cast<uint8_t>(its) != 0;
-}
-
-inline bool Reader::matches(const uint8_t** entry, bool in_flash) {
-  register uint8_t its asm("r24") = in_flash;
-  const uint8_t* at = *entry;
-  asm volatile("%~call tiniscript_matches"
-               : "+r"(its), "+z"(at)
-               : "y"(this)
-               : "r18", "r25", "r26", "r27", "memory");
-  *entry = at;
-  return its != 0;
-}
-
-inline void Reader::resolve(uint8_t at) {
-  register uint8_t its asm("r24") = at;
-  asm volatile("%~call tiniscript_resolve"
-               : "+r"(its)
-               : "y"(this)
-               : "r25", "r26", "r30", "r31", "memory");
-}
-
-#endif  // __AVR__
-
 }  // namespace tiniscript
+
+#ifdef __AVR__
+#include "reader_calls_avr.h"
+#endif

@@ -1,4 +1,4 @@
-// The memory layout of a reader for `reader_avr.S`. `reader_code.cpp` asserts every number.
+// The memory layout of a reader for `reader_avr.S`. `reader_layout_avr.cpp` asserts every number.
 
 #pragma once
 

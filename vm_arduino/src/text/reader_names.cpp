@@ -39,25 +39,6 @@ uint8_t Reader::open_word() {
   return static_cast<uint8_t>(kFirstWord + find(kWords, kLastLetter));
 }
 
-#ifndef __AVR__
-
-// Whether the word is the one at `entry`, which goes after it.
-bool Reader::matches(const uint8_t** entry, bool in_flash) {
-  const uint8_t* word = buffer_ + length_;
-  const uint8_t* at = *entry;
-  bool is_same = true;
-  uint8_t letter;
-  do {
-    letter = in_flash ? flash_byte(at) : *at;
-    at++;
-    if (is_same && letter != *word++) is_same = false;
-  } while ((letter & kLastLetter) == 0);
-  *entry = at;
-  return is_same;
-}
-
-#endif  // __AVR__
-
 uint8_t Reader::find_unknown(const uint8_t* table) {
   return problem_ == Problem::kUnknownWord && length_ == 0 ? find(table, 0) : uint8_t{255};
 }

@@ -12,13 +12,12 @@ constexpr uint8_t kWatchWait = byte_of(Op::kWatchWait) - byte_of(Op::kWait);
 static_assert(byte_of(Op::kWatchForeverF) - byte_of(Op::kWatchF) == kWatchMove / 2, "");
 static_assert(byte_of(Op::kWatchForeverWait) - byte_of(Op::kWatchWait) == kWatchWait / 2, "");
 
-// The problem with a token where an instruction must end.
-Problem no_end(uint8_t token) {
+}  // namespace
+
+Problem Reader::no_end(uint8_t token) {
   if (ends(token)) return Problem::kNone;
   return token == ')' ? Problem::kClose : Problem::kSeparator;
 }
-
-}  // namespace
 
 void Reader::token(uint8_t token) {
   if (problem_ != Problem::kNone) return;
@@ -43,6 +42,7 @@ Problem Reader::before(Problem problem) {
 Problem Reader::parse(uint8_t token) {
   if (!kReadsDefs && token >= kWordTask && token <= kWordEndwhen) return Problem::kLacks;
   const uint8_t state = state_;
+  if (kReadsDefs && state >= kAfterDefName) return head_of_def(token);
   switch (state) {
     case kBegin:
       if (token >= kWordSi && token <= kWordPing) {
@@ -76,24 +76,6 @@ Problem Reader::parse(uint8_t token) {
       // fall through
     case kAfterMove:
       return end_move(token);
-#ifdef tiniscript_reads_defs
-    case kAfterDefName:
-      if (token == '(') {
-        brackets_ = 1;
-        state_ = kFirstOfDef;
-        return Problem::kNone;
-      }
-      state_ = kInstruction;
-      return no_end(token);
-    case kFirstOfDef:
-    case kNextOfDef:
-    case kAfterOfDef:
-      return name_value_of_def(token);
-    case kNoValues:
-      if (token != ')') return Problem::kCount;
-      end_arguments();
-      return Problem::kNone;
-#endif
     case kSeparator:
       state_ = kInstruction;
       return no_end(token);

@@ -34,13 +34,6 @@ enum Wanted : uint8_t {
   kAfterName,  // =, ( or the end of the instruction
   kArguments,  // the ( of a command
   kDefName,
-#ifdef tiniscript_reads_defs
-  kAfterDefName,  // the ( of a DEF or its end
-  kFirstOfDef,    // the name of its first value, or )
-  kNextOfDef,     // that of another one
-  kAfterOfDef,    // , or )
-  kNoValues,      // the ) of a call without values
-#endif
   kSeparator,
   kAfterMove,  // UNTIL or the end of the instruction
   kFunction,   // the ( of a function
@@ -49,6 +42,11 @@ enum Wanted : uint8_t {
   kAfterMinus,  // an operand, to whose number the minus belongs
   kOperator,
   kAfterForever,  // or after CM or DEG
+  kAfterDefName,  // the ( of a DEF or its end
+  kFirstOfDef,    // the name of its first value, or )
+  kNextOfDef,     // that of another one
+  kAfterOfDef,    // , or )
+  kNoValues,      // the ) of a call without values
 };
 
 // Whether an argument is just a number.

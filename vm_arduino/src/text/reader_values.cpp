@@ -161,22 +161,6 @@ Problem Reader::operators(uint8_t token) {
   return Problem::kNone;
 }
 
-#ifdef tiniscript_reads_defs
-
-// CM or DEG after the first value of a move, where the kit says how fast it goes or turns.
-Problem Reader::end_way(bool is_turn) {
-  if (what_ > kWordR || kinds_ < 16 || is_turn != (what_ >= kWordL) || !robot_has_way(is_turn)) {
-    return Problem::kReserved;
-  }
-  is_way_ = true;
-  const Problem problem = end_value();
-  push(kBase);  // as after FOREVER: the bracket is open
-  state_ = kAfterForever;
-  return problem == Problem::kNone ? problem : before(problem);
-}
-
-#endif
-
 Problem Reader::binary(uint8_t op) {
   const uint8_t binding = binding_of(op);
   shape_ = kNoPlain;

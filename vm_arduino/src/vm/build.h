@@ -1,7 +1,7 @@
 // What this build has, in one place for C++ and assembly. All that is conditional in `vm/` is here, in
-// `cpu.h`, in `layout_avr.h`, or encloses a whole file; and most of what is in the other folders, but
-// for `boards/`. In two files of assembly a part is conditional: `bytecode_avr.S` says what a machine
-// without tasks does about theirs, and `tasks_avr.S` has the moves, unless `drive.cpp` has them.
+// `cpu.h`, in `layout_avr.h`, or encloses a whole file, or chooses a file; and so in the other
+// folders, but for `boards/`. In one file of assembly a part is conditional: `bytecode_avr.S` says what a
+// machine without tasks does about theirs.
 //
 // The machine of an AVR is in assembly. With `tiniscript_portable` it is the C++ of all other chips,
 // which tests compare with that.
@@ -83,13 +83,13 @@
 #define tini_of_tasks(...)
 #endif
 
-// How it moves: one of three files.
+// Its turns and moves: one of three.
 #ifndef tiniscript_has_tasks
 #define tiniscript_drives_alone  // drive_alone.cpp
 #elif defined(tiniscript_in_assembly) && !defined(tiniscript_has_discs)
-#define tiniscript_drives_in_assembly  // tasks_avr.S
+#define tiniscript_tasks_in_assembly  // tasks_avr.S: an Uno
 #else
-#define tiniscript_drives_in_turns  // drive.cpp
+#define tiniscript_drives_in_turns  // turns.cpp, drive.cpp
 #endif
 
 #ifndef __ASSEMBLER__
@@ -173,8 +173,12 @@ constexpr bool kReadsKeys = false;
 
 #ifdef tiniscript_has_breakpoints
 constexpr bool kHasBreakpoints = true;
+#define tini_with_breakpoints
+#define tini_of_breakpoints(...) __VA_ARGS__
 #else
 constexpr bool kHasBreakpoints = false;
+#define tini_with_breakpoints static
+#define tini_of_breakpoints(...)
 #endif
 
 #ifdef tiniscript_has_draft

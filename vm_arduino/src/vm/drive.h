@@ -16,19 +16,19 @@ namespace tiniscript {
 class Drive : public Execution {
  protected:
   // Each returns whether the next instruction may run now.
-  bool wait(uint32_t duration_ms) tini_called_by_assembly;
+  bool wait(uint32_t duration_ms);
   bool drive(uint32_t move_ms);
   bool watch(uint32_t move_ms);  // begins to watch a move or a wait
   bool until(bool stop) tini_called_by_assembly;  // continues or ends it
-  bool go_on() tini_called_by_assembly;
-  bool comes_to_end() tini_called_by_assembly;
+  bool go_on();
+  bool comes_to_end();
 
   void motors(Powers powers);
   void stop_motors();
   void set_motors(Powers powers) tini_called_by_assembly;
 
   // Waits for the motors where its move needs them and a higher task has them.
-  bool blocks() tini_called_by_assembly;
+  bool blocks();
 
   // A new program has no way that the robot measures.
   static void forget_way();

@@ -298,13 +298,7 @@ bool Machine::execute(uint8_t budget) {
   return goes_on;
 }
 
-void Machine::run_round() {
-  for (bool is_over = false; finds_turn(is_over) && left_ != 0; is_over = true) {
-    if (execute(left_) || fault_ != Fault::kNone || status_ == Status::kDone) return;
-    // before all others the main task waits for a reading, too
-    if (!has_had_turn() && status_ == Status::kRunning) return;
-  }
-}
+bool Machine::run_turn() { return execute(left_); }
 
 bool Machine::reach_instruction(uint32_t now_ms) {
   if (status_ >= Status::kDone) return false;

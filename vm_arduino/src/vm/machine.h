@@ -95,8 +95,11 @@ class Machine : public Scheduler {
   // Whether a way that the robot measures has failed before an instruction runs.
   bool is_stuck() const { return kHasDiscs && fault_ != Fault::kNone; }
 
-  // Runs turns until the round is over or the budget is used up: `inner_loop.cpp`, `tasks_avr.S`.
+  // Runs turns until the round is over or the budget is used up: `round.cpp`, `tasks_avr.S`.
   void run_round();
+
+  // Runs what is left of a turn: `inner_loop.cpp`, `turn_avr.cpp`. Returns whether it may go on later.
+  bool run_turn();
 
   // Runs instructions: `inner_loop.cpp`, `execute_avr.S`. Returns whether the next one may run now,
   // which the assembly lets its caller find out.

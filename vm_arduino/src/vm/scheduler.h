@@ -1,7 +1,7 @@
 // The turns of tasks: who goes on, and when.
 //
 // `scheduler.cpp` has what is the same on every chip, `turns.cpp` the rest, which is in `tasks_avr.S`
-// for the AVR. Without tasks nothing here is called. Has the names of `TaskMachine` in `tasks.py`;
+// for an Uno. Without tasks nothing here is called. Has the names of `TaskMachine` in `tasks.py`;
 // `tests/project/test_twins.py` lists what has another.
 
 #pragma once

@@ -1,10 +1,9 @@
-; The turns of tasks for the AVR, and their moves where no discs measure a way.
+; The turns of tasks for an Uno without discs, and their moves.
 ;
 ; Means the same as `turns.cpp` and `drive.cpp`, which all other chips run and which name the steps; the
 ; tests run random programs with both on a simulated ATmega328P. It is here because it takes 430 bytes
 ; less of flash, a third, and an Uno's image has few left. A chip with more flash in the Uno's place,
-; or 430 bytes to spare beside all that an Uno is to learn, lets it go: then delete this file, and
-; `build.h` has two ways of moving.
+; or 430 bytes to spare beside all that an Uno is to learn, lets it go: then delete this file.
 ;
 ; Between two steps:
 ;   Y        the machine
@@ -14,7 +13,7 @@
 
 #include "layout_avr.h"
 
-#if defined(tiniscript_in_assembly) && defined(tiniscript_has_tasks)
+#ifdef tiniscript_tasks_in_assembly
 
 #define me r16          /* and r17 */
 #define me1 r17
@@ -27,64 +26,7 @@
 #define sends _ZN10tiniscript9Scheduler5sendsEv
 #define set_motors _ZN10tiniscript5Drive10set_motorsEj
 #define wait _ZN10tiniscript5Drive4waitEm
-#define go_on _ZN10tiniscript5Drive5go_onEv
-#define blocks _ZN10tiniscript5Drive6blocksEv
 #define comes_to_end _ZN10tiniscript5Drive12comes_to_endEv
-
-; What a turn asks of a move: r24 is 0 where the turn is over then.
-#ifdef tiniscript_drives_in_assembly
-
-.macro end_where_stuck
-.endm
-.macro begin_move_or over
-    rcall may_begin
-    tst r24
-    breq \over
-.endm
-.macro go_on_in_turn
-    rcall go_on_with_move
-    tst r24
-    breq end_turn
-    rjmp go_on_with_turn
-.endm
-.macro come_to_end
-    rcall end_move
-.endm
-.macro wait_in_loop
-    rcall wait_in_turn
-.endm
-
-#else  /* `drive.cpp` has the moves */
-
-.macro end_where_stuck
-    ldd r24, Y+tini_fault_at
-    cpse r24, r1
-    rjmp return
-.endm
-.macro begin_move_or over
-    movw r24, r28
-    call blocks
-    tst r24
-    brne \over
-    movw r30, me
-.endm
-.macro go_on_in_turn
-    movw r24, r28
-    call go_on
-    rjmp 7f
-.endm
-.macro come_to_end
-    movw r24, r28
-    call comes_to_end
-7:  tst r24
-    breq end_turn
-.endm
-.macro wait_in_loop
-    movw r24, r28
-    call wait
-.endm
-
-#endif
 
 ; Points Z to something that lies far behind the machine's first byte.
 .macro let_z_be at
@@ -126,7 +68,6 @@ let_z_be_first:
 
 ; finds_turn: of the next task.
 find_turn:
-    end_where_stuck
     let_z_be tini_main_task_at
     cp r30, me
     cpc r31, me1
@@ -200,7 +141,9 @@ waits_for_clock:
 5:  ld r24, Z
     sbrc r24, tini_has_begun_bit
     rjmp 6f
-    begin_move_or 9b
+    rcall may_begin
+    tst r24
+    breq 9b
     ld r24, Z
     sbrc r24, tini_has_time_bit
     rjmp go_on_with_turn
@@ -210,10 +153,13 @@ waits_for_clock:
     ldd r24, Z+tini_task_code_at
     sbrc r24, tini_watches_bit
     rjmp go_on_with_turn
-    go_on_in_turn
+    rcall go_on_with_move
+    tst r24
+    breq end_turn
+    rjmp go_on_with_turn
 6:  sbrs r24, tini_to_its_end_bit
     rjmp go_on_with_turn
-    come_to_end
+    rcall end_move
 
 go_on_with_turn:
     tst budget
@@ -248,7 +194,7 @@ go_on_with_turn:
     ldi r21, 0
     ldi r22, 0
     ldi r23, 0
-    wait_in_loop
+    rcall wait_in_turn
     rcall has_waited
     rjmp end_turn
 1:  sbis GPIOR0, tini_event_bit
@@ -393,8 +339,6 @@ let_motors_be:
     jmp set_motors
 
     .size _ZN10tiniscript7Machine9run_roundEv, . - _ZN10tiniscript7Machine9run_roundEv
-
-#ifdef tiniscript_drives_in_assembly
 
     .global tiniscript_moves
     .type tiniscript_moves, @function
@@ -768,7 +712,5 @@ _ZN10tiniscript5Drive11stop_motorsEv:
     rjmp set_clock
 
     .size tiniscript_moves, . - tiniscript_moves
-
-#endif
 
 #endif

@@ -1,8 +1,8 @@
-// The turns of tasks. `tasks_avr.S` is the same for the AVR.
+// The turns of tasks. `tasks_avr.S` is the same for an Uno without discs.
 
 #include "build.h"
 
-#if defined(tiniscript_has_tasks) && !defined(tiniscript_in_assembly)
+#ifdef tiniscript_drives_in_turns
 
 #include "scheduler.h"
 

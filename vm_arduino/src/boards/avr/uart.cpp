@@ -10,6 +10,7 @@
 
 #include "../../firmware/firmware.h"
 #include "../../firmware/state.h"
+#include "../../link/link_avr.h"
 #include "../../link/messages.h"
 #include "../kit.h"
 #include "clock.h"
@@ -55,8 +56,8 @@ void tiniscript_on_zero() {
       "lds r31, %[now] + 1\n\tlds r24, %[receiver] + %[last] + 1\n\tsbc r31, r24\n\t"
       "subi r30, lo8(%[silence])\n\tsbci r31, hi8(%[silence])\n\tbrcc 1b"
       :
-      : [receiver] "i"(&receiver), [zeros] "n"(Receiver::zeros_at()),
-        [last] "n"(Receiver::last_ms_at()), [now] "i"(&clock), [run] "M"(kStopRun),
+      : [receiver] "i"(&receiver), [zeros] "n"(Receiver::Layout::zeros_at()),
+        [last] "n"(Receiver::Layout::last_ms_at()), [now] "i"(&clock), [run] "M"(kStopRun),
         [silence] "n"(kSilenceMs)
       : "r24", "r30", "r31");
   motors_stop_quickly();
@@ -184,8 +185,8 @@ ISR(uart_send_vect, ISR_NAKED) {
       "1: ldi r30, %[listening]\n\tsts %[control], r30\n"
       "2: pop r30\n\tout __SREG__, r30\n\tpop r31\n\tpop r30\n\treti"
       :
-      : [link] "i"(&link), [left] "n"(Link::left_at()), [sent] "n"(Link::sent_at()),
-        [out] "n"(Link::out_at()), [data] "n"(_SFR_MEM_ADDR(UDR0)),
+      : [link] "i"(&link), [left] "n"(Link::Layout::left_at()), [sent] "n"(Link::Layout::sent_at()),
+        [out] "n"(Link::Layout::out_at()), [data] "n"(_SFR_MEM_ADDR(UDR0)),
         [control] "n"(_SFR_MEM_ADDR(UCSR0B)), [listening] "M"(static_cast<int>(kListening)));
 }
 

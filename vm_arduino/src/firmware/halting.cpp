@@ -1,0 +1,123 @@
+#include "halting.h"
+
+#include "../link/frames.h"
+#include "../link/port.h"
+#include "../robot.h"
+#include "../vm/build.h"
+#include "../vm/image.h"
+#include "breakpoints.h"
+#include "persistence.h"
+#include "program.h"
+#include "run.h"
+#include "state.h"
+
+#ifdef tiniscript_has_breakpoints
+
+namespace tiniscript {
+
+namespace {
+
+Breakpoints breakpoints;
+Machine* machine;         // of the run
+uint32_t places_program;  // the checksum of the program that has them
+uint32_t held_ms;         // for how long the run has been halted
+uint32_t halted_ms;       // when that was counted last
+bool goes_on;             // from a halt, as soon as a motor may start,
+bool is_step;             // and as a step
+
+uint8_t* code_of(const uint8_t* image) {
+  return const_cast<uint8_t*>(image) + image[kHeaderLengthAt];
+}
+
+// The time of the machine, which stands while it is halted.
+uint32_t time_ms() { return now_ms - held_ms; }
+
+// Whether the machine runs now: time stands for one that is halted.
+bool runs_on() {
+  if (!breakpoints.is_halted()) return true;
+  held_ms += now_ms - halted_ms;
+  halted_ms = now_ms;
+  if (!goes_on) return false;
+  goes_on = false;
+  return true;
+}
+
+}  // namespace
+
+// Places are those of one program.
+void begin_halting(Machine* of_run, const uint8_t* image, uint16_t length) {
+  machine = of_run;
+  held_ms = 0;
+  goes_on = false;
+  if (breakpoints.has_places()) link.write_checksum();
+  if (breakpoints.has_places() && get32(image + kChecksumAt) != places_program) {
+    breakpoints.forget_places();
+  }
+  breakpoints.begin(code_of(image), length);
+}
+
+void end_halting() { breakpoints.end(); }
+
+bool begin_tick(uint32_t* machine_ms) {
+  if (!runs_on()) return false;
+  if (breakpoints.is_halted()) {
+    breakpoints.go_on(*machine, is_step);
+    machine->resume();
+    machine->set_motors_again();
+  }
+  if (breakpoints.are_on()) breakpoints.put_in();
+  *machine_ms = time_ms();
+  return true;
+}
+
+void end_tick(Status status) {
+  if (!breakpoints.are_on() || !breakpoints.take_out(machine, status, link.may_halt())) return;
+  halted_ms = now_ms;
+  robot_motors(0, 0);
+  link.halted();
+}
+
+bool are_traps_in() { return breakpoints.are_in(); }
+
+// -- what the link asks ---------------------------------------------------------------------------
+
+Answer port_set_breakpoints(const uint8_t* places, uint8_t count) {
+  if (!is_running() && (!has_booted() || !load_program())) return not_now();
+  link.write_checksum();
+  const uint8_t* const image = is_running() ? port_run_image() : program;
+  const uint16_t length = get16(image + kCodeLengthAt);
+  if (!breakpoints.set(code_of(image), length, places, count)) return Answer::kBadValue;
+  places_program = get32(image + kChecksumAt);
+  return Answer::kOk;
+}
+
+void port_forget_breakpoints() { breakpoints.forget_places(); }
+
+bool port_is_halted() { return is_running() && breakpoints.is_halted(); }
+
+uint8_t port_halted_task() { return machine->turn(); }
+
+void port_resume(ResumeHow how) {
+  goes_on = port_is_halted();
+  is_step = how == ResumeHow::kStep;
+}
+
+const int32_t* port_variables() { return machine->task().variables; }
+
+bool port_report_task(uint8_t task, TaskReport* report) {
+  if (task > kTasks) return false;
+  const TaskRecord& record = machine->task().records[task];
+  const int32_t left_ms = static_cast<int32_t>(record.clock_ms - time_ms());
+  report->at = machine->place_of(task);
+  report->left_ms = left_ms > 0 ? static_cast<uint32_t>(left_ms) : 0;
+  report->state = record.state == 0       ? TaskState::kEnded
+                  : record.is(kDrives)    ? TaskState::kDriving
+                  : record.is(kIsMoving)  ? TaskState::kBlocked
+                  : report->left_ms != 0  ? TaskState::kWaiting
+                                          : TaskState::kReady;
+  return true;
+}
+
+}  // namespace tiniscript
+
+#endif

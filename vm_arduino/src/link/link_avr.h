@@ -1,0 +1,17 @@
+// Where in a link the interrupt of `boards/avr/uart.cpp` finds what it sends.
+
+#pragma once
+
+#include <stddef.h>
+
+#include "link.h"
+
+namespace tiniscript {
+
+struct Link::Layout {
+  static constexpr size_t sent_at() { return offsetof(Link, sent_); }
+  static constexpr size_t left_at() { return offsetof(Link, left_); }
+  static constexpr size_t out_at() { return offsetof(Link, out_); }
+};
+
+}  // namespace tiniscript

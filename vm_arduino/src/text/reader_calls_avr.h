@@ -1,0 +1,77 @@
+// Calls of `reader_avr.S`, with the reader in Y: each takes less than one of the compiler's. `reader.h`
+// includes this for an AVR.
+
+#pragma once
+
+namespace tiniscript {
+
+inline void Reader::emit(uint8_t byte) {
+  register uint8_t its asm("r24") = byte;
+  asm volatile("%~call tiniscript_emit"
+               : "+r"(its)
+               : "y"(this)
+               : "r25", "r26", "r27", "r30", "r31", "memory");
+}
+
+inline void Reader::emit_numbered(uint8_t op, uint8_t first_short, uint8_t number) {
+  register uint8_t its asm("r24") = op;
+  register uint8_t first asm("r25") = first_short;
+  register uint8_t last asm("r22") = number;
+  asm volatile("%~call tiniscript_emit_numbered"
+               : "+r"(its), "+r"(first)
+               : "r"(last), "y"(this)
+               : "r26", "r27", "r30", "r31", "memory");
+}
+
+inline void Reader::emit_number(bool is_minus) {
+  register uint8_t its asm("r22") = is_minus;
+  asm volatile("%~call tiniscript_emit_number"
+               :
+               : "r"(its), "y"(this)
+               : "r18", "r19", "r20", "r21", "r23", "r24", "r25", "r26", "r27", "r30", "r31",
+                 "memory");
+}
+
+inline void Reader::push(uint8_t byte) {
+  register uint8_t its asm("r24") = byte;
+  asm volatile("%~call tiniscript_push"
+               : "+r"(its)
+               : "y"(this)
+               : "r26", "r27", "r30", "r31", "memory");
+}
+
+inline uint8_t Reader::pop() {
+  register uint8_t its asm("r24");
+  asm volatile("%~call tiniscript_pop" : "=r"(its) : "y"(this) : "r30", "r31", "memory");
+  return its;
+}
+
+inline bool Reader::has_room(uint16_t bytes) {
+  register uint16_t its asm("r24") = bytes;
+  asm volatile("%~call tiniscript_has_room"
+               : "+r"(its)
+               : "y"(this)
+               : "r26", "r27", "r30", "r31", "memory");
+  return static_cast<uint8_t>(its) != 0;
+}
+
+inline bool Reader::matches(const uint8_t** entry, bool in_flash) {
+  register uint8_t its asm("r24") = in_flash;
+  const uint8_t* at = *entry;
+  asm volatile("%~call tiniscript_matches"
+               : "+r"(its), "+z"(at)
+               : "y"(this)
+               : "r18", "r25", "r26", "r27", "memory");
+  *entry = at;
+  return its != 0;
+}
+
+inline void Reader::resolve(uint8_t at) {
+  register uint8_t its asm("r24") = at;
+  asm volatile("%~call tiniscript_resolve"
+               : "+r"(its)
+               : "y"(this)
+               : "r25", "r26", "r30", "r31", "memory");
+}
+
+}  // namespace tiniscript

@@ -1,0 +1,30 @@
+// A turn of an AVR whose turns are in C++: its inner loop leaves at each jump back, where a loop may
+// wait, and at each call.
+
+#include "build.h"
+
+#if defined(tiniscript_in_assembly) && defined(tiniscript_drives_in_turns)
+
+#include "flags.h"
+#include "machine.h"
+
+namespace tiniscript {
+
+bool Machine::run_turn() {
+  uint8_t budget = left_;
+  bool may_go_on = false;
+  for (;;) {
+    execute(1);
+    if (left_ != 0 || fault_ != Fault::kNone || status_ == Status::kDone) break;
+    budget--;
+    if (code_[at_] < static_cast<uint8_t>(Op::kCall) && !goes_back()) break;
+    may_go_on = budget == 0 || Flag<Bit::kEvent>();
+    if (may_go_on) break;
+  }
+  left_ = budget;
+  return may_go_on;
+}
+
+}  // namespace tiniscript
+
+#endif
