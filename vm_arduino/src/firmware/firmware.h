@@ -77,9 +77,8 @@ bool firmware_has_key(Transport transport);
 // Nobody is connected over a transport any more: ends an attached run that it has started.
 void firmware_on_part(Transport transport);
 
-// Where there is one line: its receiver. A byte has arrived; one with a framing error is 0. May be called from the interrupt: a run of
-// zeros turns the motors off at once.
-extern Receiver receiver;
+// Where there is one line: a byte has arrived; one with a framing error is 0. May be called from the
+// interrupt: a run of zeros turns the motors off at once.
 void firmware_on_rx_byte(uint8_t byte, uint16_t now_ms);
 
 // The same for a board that has looked for a stop in a byte of 0 itself, as `Receiver::stops` does.

@@ -1,5 +1,7 @@
 // The bytes of a robot that is reached over one line.
 
+#include "one_line.h"
+
 #include "../vm/build.h"
 #include "../vm/small.h"
 #include "firmware.h"

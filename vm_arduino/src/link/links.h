@@ -73,6 +73,9 @@ class Links {
   // A line of text of the current session begins. False: another one has the memory for it now.
   bool take_text_memory();
 
+  // Text has memory of its own: what is made ahead stays.
+  static void drop_ahead() {}
+
  private:
   static constexpr uint8_t kNobody = 0xff;
 

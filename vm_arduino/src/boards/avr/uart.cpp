@@ -9,6 +9,7 @@
 #include <avr/io.h>
 
 #include "../../firmware/firmware.h"
+#include "../../firmware/one_line.h"
 #include "../../firmware/state.h"
 #include "../../link/link_avr.h"
 #include "../../link/messages.h"
