@@ -215,6 +215,18 @@ def test_paths_in_sources_exist() -> None:
     assert not wrong, "\n".join(wrong)
 
 
+def test_a_version_of_the_changelog_has_each_heading_once() -> None:
+    """Where two lines of work meet, each with a heading of its own, one of them is left over."""
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    order = ["Breaking", "Added", "Changed", "Fixed"]
+    _, *versions = re.split(r"(?m)^## ", text)
+    assert len(versions) > 2
+    for version in versions:
+        headings = re.findall(r"(?m)^### (.*)$", version)
+        assert headings == [each for each in order if each in headings], version.split("\n")[0]
+        assert not re.search(r"(?m)[^\n]\n#", version), "a heading follows an empty line"
+
+
 def test_modules_that_are_named_exist() -> None:
     """What `python -m` is to run, in documents, sources and scripts, is a module."""
     paths = [*DOCUMENTS, *SOURCES, *ROOT.glob("tools/*.sh"), *ROOT.glob(".ci/*")]
