@@ -292,7 +292,8 @@ def test_any_order_of_programs_undos_and_power_offs() -> None:
 
 EARLIER = 21  # the power of the program that was saved first
 IN_MEMORY = {
-    "holds a program in memory only", "holds a program that was typed", "is running a program in memory",
+    "holds a program in memory only", "holds a program that was typed",
+    "is running a program in memory",
 }  # fmt: skip
 NOT_OWNER = STATUSES["NOT_OWNER"]
 

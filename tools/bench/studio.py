@@ -52,8 +52,8 @@ ROWS = {
     "again": "the same at the next visit",
     "pictures": f"frames of a run at 20 times the speed that took over {LATE_MS} ms, on that "
     "processor, starting 1.5 s into the run",
-    "work": "the same, judged by the work of the page's main thread for each frame, times four: over "
-    f"{LATE_MS} ms",
+    "work": "the same, judged by the work of the page's main thread for each frame, times four: "
+    f"over {LATE_MS} ms",
     "letter": f"processor time to compile {LINES} lines after a letter is typed",
     "button": "processor time to try out what a button does, after a pause",
     "rated": "Lighthouse, desktop: performance, accessibility, best practices (median of five)",

@@ -44,7 +44,10 @@ WIFI_STEPS = (
         "BROKER_TLS",
         "Use TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that expired earlier is refused.",
     ),
-    ("BROKER_TRUST", "The next part of the certificate, in DER, that signs the broker's certificate."),
+    (
+        "BROKER_TRUST",
+        "The next part of the certificate, in DER, that signs the broker's certificate.",
+    ),
 )
 WIFI_MODES = (
     ("OFF", "No network is set."),
