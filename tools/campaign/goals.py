@@ -108,7 +108,7 @@ GOALS: tuple[Goal, ...] = (
          "programs, right and broken", 100_000, 5_000, "tests.vm.test_agreement {count} --seed {seed}", (*_COMPILER, *_MACHINE, "tests/oracle"), 10_000),
     Goal("tasks", "Programs with TASK and WHEN do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
          "programs", 100_000, 5_000, "tests.oracle.test_tasks {count} --seed {seed}", (*_COMPILER, *_MACHINE, "tests/oracle"), 10_000),
-    Goal("values", "Programs whose DEFs take values, where several tasks reach the same DEF and DEFs call each other, do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
+    Goal("values", "Programs whose DEFs take values, with several tasks that reach the same DEF and DEFs that call each other, do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
          "programs", 100_000, 10_000, "tests.oracle.test_values {count} --seed {seed}", (*_COMPILER, *_MACHINE, "tests/oracle"), 10_000),
     Goal("ways", "Programs that go by centimetres and degrees, half of them with tasks, do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
          "programs", 100_000, 5_000, "tests.oracle.test_ways {count} --seed {seed}", (*_COMPILER, *_MACHINE, "tests/oracle"), 10_000),

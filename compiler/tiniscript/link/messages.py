@@ -297,7 +297,7 @@ MESSAGES = (
     _message(26, "RESUME", True, "how:u8", "run:u8 was_halted:u8",
              "Continues a halted program: `how` of RESUMES."),
     _message(27, "READ_VARIABLES", True, "first:u8", f"run:u8 is_halted:u8 values:rest=0..{VARIABLES_BYTES}",
-             "Asks for the variables of the running program, from the variable `first` on: 32 bits each."),
+             "Asks for the variables of the running program, starting with the variable `first`: 32 bits each."),
     _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 at:u16 tasks:rest=0..{TASKS_BYTES}",
              "Asks for the tasks of the running program, and where each of them is."),
     # events: a robot sends these without being asked

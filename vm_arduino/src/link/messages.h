@@ -102,7 +102,7 @@ enum class Message : uint8_t {
   kKeys = 24,  // Sends the state of a remote control: a bit for each key that is held, and its pad. Also a heartbeat.
   kBreak = 25,  // Sets all places where the running program halts or, if none is running, the one that the robot holds: offsets of 16 bits.
   kResume = 26,  // Continues a halted program: `how` of RESUMES.
-  kReadVariables = 27,  // Asks for the variables of the running program, from the variable `first` on: 32 bits each.
+  kReadVariables = 27,  // Asks for the variables of the running program, starting with the variable `first`: 32 bits each.
   kReadTasks = 28,  // Asks for the tasks of the running program, and where each of them is.
   kShow = 32,  // A value that a program shows. `place`: its run, and where its SHOW is.
   kFault = 33,  // The program has ended with a fault.
@@ -179,7 +179,7 @@ enum class Answer : uint8_t {
   kLatched = 73,  // The robot was stopped, and stays stopped until the stop is cleared.
   kNoProgram = 74,  // The robot has no program.
   kNotBegun = 75,  // The robot is no longer waiting for this program: another request came first.
-  kIncomplete = 76,  // The program did not arrive completely: it is missing from byte {detail} on.
+  kIncomplete = 76,  // The program did not arrive completely: bytes are missing, starting at byte {detail}.
   kNotSealed = 77,  // The robot does not accept sealed messages.
   kSaving = 78,  // The robot has received it, and will save it as soon as its motors have stopped; if the robot is switched off before that, it is lost.
   kLowSupply = 79,  // The robot's batteries are too weak to save anything; if the robot is switched off, this is lost.
