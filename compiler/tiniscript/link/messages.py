@@ -21,7 +21,7 @@ BROKER_NAME_BYTES, TRUST_BYTES = 96, 2048  # of the name of a computer; of a cer
 WIFI_STEPS = (
     ("TELL", "Changes nothing."),
     ("NETWORK", "The name of a network. The robot forgets any earlier step."),
-    ("PASSWORD", "The next part of its password."),
+    ("PASSWORD", "The next part of the network's password."),
     ("JOIN", "The robot joins that network, now and after each reset."),
     ("HOST", "The robot is an access point with that name."),
     ("FORGET", "The robot no longer uses WiFi or a broker."),
@@ -30,7 +30,7 @@ WIFI_STEPS = (
         "An MQTT broker: its address, its port (16 bits) and the class. The robot forgets any earlier step. Empty: no broker.",
     ),
     ("BROKER_USER", "The robot's user name at the broker."),
-    ("BROKER_PASSWORD", "The next part of its password at the broker."),
+    ("BROKER_PASSWORD", "The next part of the robot's password at the broker."),
     ("USE_BROKER", "The robot connects to that broker, now and after each reset, or to none."),
     (
         "TELL_BROKER",
@@ -68,7 +68,7 @@ WIFI_STATES = (
     ),
     (
         "RESTS",
-        "WiFi is off, since the robot restarted three times in a row soon after it started WiFi. JOIN, HOST and FORGET end that.",
+        "WiFi is off, because the robot restarted three times in a row soon after it started WiFi. JOIN, HOST and FORGET end that.",
     ),
 )
 
@@ -278,7 +278,7 @@ MESSAGES = (
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES + PACE_BYTES}", f"wheels:u8 balance:i8 least:u8 pace:rest=0..{PACE_BYTES}",
              "Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. OK as for NAME."),
     _message(16, "CLAIM", True, f"which:u8 key:rest=0..{KEY_BYTES}", "",
-             "Gives the robot a key after its button was held: `which` of KEYS. Without a key, it removes that key. OK as for NAME."),
+             "Gives the robot a key after its button has been held: `which` of KEYS. Without a key, it removes that key. OK as for NAME."),
     _message(17, "AUTHENTICATE", True, f"which:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
              "Without a tag, it asks for a challenge. With a tag, it shows a key of the robot."),
     _message(18, "IDENTIFY", True, "", "", "Makes the robot blink and play the tune of its id."),

@@ -91,7 +91,7 @@ enum class Message : uint8_t {
   kCommit = 12,  // Ends a longer program, with its image's checksum.
   kName = 14,  // Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again.
   kTrim = 15,  // Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. OK as for NAME.
-  kClaim = 16,  // Gives the robot a key after its button was held: `which` of KEYS. Without a key, it removes that key. OK as for NAME.
+  kClaim = 16,  // Gives the robot a key after its button has been held: `which` of KEYS. Without a key, it removes that key. OK as for NAME.
   kAuthenticate = 17,  // Without a tag, it asks for a challenge. With a tag, it shows a key of the robot.
   kIdentify = 18,  // Makes the robot blink and play the tune of its id.
   kUndo = 19,  // Brings back the previous program. The running program ends; no program starts.
@@ -245,13 +245,13 @@ enum class Key : uint8_t {
 enum class WifiStep : uint8_t {
   kTell = 0,  // Changes nothing.
   kNetwork = 1,  // The name of a network. The robot forgets any earlier step.
-  kPassword = 2,  // The next part of its password.
+  kPassword = 2,  // The next part of the network's password.
   kJoin = 3,  // The robot joins that network, now and after each reset.
   kHost = 4,  // The robot is an access point with that name.
   kForget = 5,  // The robot no longer uses WiFi or a broker.
   kBroker = 6,  // An MQTT broker: its address, its port (16 bits) and the class. The robot forgets any earlier step. Empty: no broker.
   kBrokerUser = 7,  // The robot's user name at the broker.
-  kBrokerPassword = 8,  // The next part of its password at the broker.
+  kBrokerPassword = 8,  // The next part of the robot's password at the broker.
   kUseBroker = 9,  // The robot connects to that broker, now and after each reset, or to none.
   kTellBroker = 10,  // Changes nothing. The reply is about the broker: `mode` 1 if there is one, its address, and in `network` the class.
   kBrokerName = 11,  // The next part of the broker's name, as in its certificate. If the name is not found, the address is used.
@@ -274,7 +274,7 @@ enum class WifiState : uint8_t {
   kOtherName = 5,  // The broker's certificate is for a computer with another name.
   kExpired = 6,  // The broker's certificate had expired before the robot got it.
   kNoTls = 7,  // The broker and the robot cannot agree on TLS, or the robot lacks the memory for it.
-  kRests = 8,  // WiFi is off, since the robot restarted three times in a row soon after it started WiFi. JOIN, HOST and FORGET end that.
+  kRests = 8,  // WiFi is off, because the robot restarted three times in a row soon after it started WiFi. JOIN, HOST and FORGET end that.
 };
 
 enum class ResumeHow : uint8_t {
