@@ -205,7 +205,7 @@ def test_the_spec_promises_no_number_that_is_taken() -> None:
     assert int(promised.pop("NO_ROOM")) not in {number for number, _ in REFUSALS.values()}
     assert not {int(each) for each in promised.values()} & {number for number, *_ in FAULTS}
     assert len(promised) == 2
-    first = re.search(r"rules from (\d+) on", later)
+    first = re.search(r"for\s+rules,\s+these\s+start\s+at\s+(\d+)", later)
     assert first
     assert int(first[1]) == 1 + max(number for number, *_ in RULES.values())
 

@@ -179,7 +179,7 @@ def test_a_stop_in_every_state(state: str, way: str) -> None:
     table.talk(1500)
     later = [line for line in happened(robot)[before:] if line.startswith("MOTORS")]
     assert set(later) <= {"MOTORS 0 0"}, "nothing begins by itself"
-    if state == "saves its program":
+    if state == "is saving its program":
         again = after_power_off(table)
         again.push()
         again.wait(50)

@@ -292,7 +292,8 @@ def test_any_order_of_programs_undos_and_power_offs() -> None:
 
 EARLIER = 21  # the power of the program that was saved first
 IN_MEMORY = {
-    "holds a program in memory only", "holds a program that was typed", "runs a program in memory",
+    "holds a program in memory only", "holds a program that was typed",
+    "is running a program in memory",
 }  # fmt: skip
 NOT_OWNER = STATUSES["NOT_OWNER"]
 
@@ -328,7 +329,7 @@ def back_in(state: str) -> int:
     """Return the power of the program that comes back."""
     if state == "holds no program":
         return 0  # EARLIER is the only one
-    if state == "brings the program before back":
+    if state == "is bringing back the previous program":
         return OTHER
     return SAVED if state in IN_MEMORY else EARLIER
 
@@ -379,7 +380,7 @@ def test_a_plug_that_is_pulled_leaves_a_program_that_was_there(state: str, cut_m
     table, session = robot_in_state(state)
     robot = table.robot
     kept = {after_power_off(table), program_of(EARLIER), program_of(SAVED)}
-    kept |= {program_of(OTHER)} if state == "brings the program before back" else set()
+    kept |= {program_of(OTHER)} if state == "is bringing back the previous program" else set()
     session.undo()
     robot.talk(session, cut_ms)
     assert after_power_off(table) in kept

@@ -40,7 +40,7 @@ ROWS = (
     "last byte of the same line, sent by `tsc live`, to the motor pins",
     "last byte of a stop to motors off, in a busy robot: the slowest",
     "the same: the median",
-    "the same: at most, if everything that can delay a stop comes at once",
+    "the same: at most, if everything that can delay a stop happens at the same time",
 )
 OTHERS = {  # by environment
     "nano_liner": "`liner`, Nano", "mega_grabber": "`grabber`, Mega",

@@ -50,12 +50,12 @@ ROWS = {
     "moving": "on a processor four times as slow: from a click on a picture to the moving robot, "
     "empty cache, median of five",
     "again": "the same at the next visit",
-    "pictures": f"pictures of a run at 20 times the speed that took over {LATE_MS} ms, on that "
-    "processor, from 1.5 s after its start",
-    "work": "the same by the work of the page's main thread for each picture, times four: over "
-    f"{LATE_MS} ms",
-    "letter": f"processor time of compiling {LINES} lines after a letter",
-    "button": "processor time of trying out what a button does, after a pause",
+    "pictures": f"frames of a run at 20 times the speed that took over {LATE_MS} ms, on that "
+    "processor, starting 1.5 s into the run",
+    "work": "the same, judged by the work of the page's main thread for each frame, times four: "
+    f"over {LATE_MS} ms",
+    "letter": f"processor time to compile {LINES} lines after a letter is typed",
+    "button": "processor time to try out what a button does, after a pause",
     "rated": "Lighthouse, desktop: performance, accessibility, best practices (median of five)",
     "files": "all files, gzipped",
 }

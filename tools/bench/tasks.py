@@ -40,7 +40,7 @@ WATCH = "WHEN(LIGHT_L > 500); M(50, 50); W(0.04); M(0, 0); W(0.06); END_WHEN;"
 # What belongs to each part, of the names of functions and tables.
 PARTS = {
     "turns, rounds and waiting": r"run_round|end_turn|Machine::go_on",
-    "who has the motors, and moves that stand still":
+    "which task has the motors, and moves that are paused":
         r"tiniscript_moves|Machine::(take|want|sends|motors|set_motors|drive|end_move|watch|until|block|keep_move)"
         r"|robot_motors",
     "verifier": r"::pass\(|kForm|to_the_end",

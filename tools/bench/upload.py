@@ -35,7 +35,7 @@ ROWS = (
     "opening the port itself (an Uno resets then: 1.4 s more)",
     "a Python process that does nothing",
     "`upload` to thirty robots, until the last one moves",
-    "`stop` of thirty robots, until the last one stands",
+    "`stop` of thirty robots, until the last one has stopped",
 )
 
 

@@ -43,7 +43,7 @@ LIMITS = {"discs": (1.5, 3, 6), "time, calibrated": (10, 20, 20), "time": (math.
 SHOWN = {
     "discs": ("discs", SLIPS),
     "time, calibrated": ("time, after `tsc set trim`", SLIPS),
-    "time": ("time, as it comes", SLIPS[1:2]),
+    "time": ("time, without `tsc set trim`", SLIPS[1:2]),
 }
 ROWS = tuple(row for row, slips in SHOWN.values() for _ in slips)
 

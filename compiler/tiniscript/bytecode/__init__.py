@@ -1,1 +1,1 @@
-"""The contract of compiler and machine: opcodes, images, the verifier, disassembly."""
+"""The contract between compiler and machine: opcodes, images, the verifier, disassembly."""

@@ -143,7 +143,7 @@ AREA = ("x_cm", "y_cm")  # from and to, around a place
 # fmt: off
 KINDS: dict[str, Kind] = {
     "ends_in": Kind("at the end the robot is within `within_cm` of a place, or completely inside an area", (WITHIN,), places=1, has_area=True),
-    "reaches": Kind("it comes within `within_cm` of places, in their order (`either_way`: or from the last to the first), in at most `by_seconds` and on a path of at most `by_cm`; with `what`, as that sensor measures it",
+    "reaches": Kind("it comes within `within_cm` of each of these places, in order (`either_way`: or from the last to the first), in at most `by_seconds` and on a path of at most `by_cm`; with `what`, as that sensor measures it",
                     (WITHIN, Number("by_seconds", 0.1, MOST, MOST), Number("by_cm", 1, MOST, MOST)), places=1, words="sensor", flags=("either_way",)),
     "stays_in": Kind("it is never more than `within_cm` from a place, or its wheels never leave an area", (Number("within_cm", 1, 500, 500),), places=1, has_area=True),
     "stands_before": Kind("at the end it stands `low_cm` to `high_cm` before whatever is ahead of it; with `at`, before that place", (Number("low_cm", 0, 400), Number("high_cm", 0, 400)), places=1, may_be_anywhere=True),
@@ -159,8 +159,8 @@ KINDS: dict[str, Kind] = {
     "order": Kind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
     "obeys": Kind("it does what the keys say: it goes forward for KEY_UP and back for KEY_DOWN, turns for KEY_LEFT and KEY_RIGHT, beeps for KEY_A and KEY_B, and stands while nothing is held"),
     "ends": Kind("the program ends by itself"),
-    "uses": Kind("the text has each of these words `times` times; a DEF counts if it is called, a LOOP if it repeats more than waiting, an UNTIL if it asks for something", (TIMES,), words="word"),
-    "needs": Kind("the program needs these words, LOOP, DEF, WHEN or TASK: the robot misses one of the criteria above if each loop runs once, if the words of DEF are left out, or if the other tasks are", words="block"),
+    "uses": Kind("the text has each of these words `times` times; a DEF counts if it is called, a LOOP if it repeats more than a wait, an UNTIL if it checks something", (TIMES,), words="word"),
+    "needs": Kind("the program needs these words, LOOP, DEF, WHEN or TASK: the robot fails one of the criteria above if each loop runs only once, if the words defined by DEF are left out, or if the other tasks are", words="block"),
     "moves": Kind("the text has at most `at_most` moves; with `ahead`, turns do not count", (Number("at_most", 1, 1000),), flags=("ahead",)),
 }
 # fmt: on

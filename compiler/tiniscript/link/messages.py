@@ -21,7 +21,7 @@ BROKER_NAME_BYTES, TRUST_BYTES = 96, 2048  # of the name of a computer; of a cer
 WIFI_STEPS = (
     ("TELL", "Changes nothing."),
     ("NETWORK", "The name of a network. The robot forgets any earlier step."),
-    ("PASSWORD", "The next part of its password."),
+    ("PASSWORD", "The next part of the network's password."),
     ("JOIN", "The robot joins that network, now and after each reset."),
     ("HOST", "The robot is an access point with that name."),
     ("FORGET", "The robot no longer uses WiFi or a broker."),
@@ -30,7 +30,7 @@ WIFI_STEPS = (
         "An MQTT broker: its address, its port (16 bits) and the class. The robot forgets any earlier step. Empty: no broker.",
     ),
     ("BROKER_USER", "The robot's user name at the broker."),
-    ("BROKER_PASSWORD", "The next part of its password at the broker."),
+    ("BROKER_PASSWORD", "The next part of the robot's password at the broker."),
     ("USE_BROKER", "The robot connects to that broker, now and after each reset, or to none."),
     (
         "TELL_BROKER",
@@ -44,12 +44,15 @@ WIFI_STEPS = (
         "BROKER_TLS",
         "Use TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that expired earlier is refused.",
     ),
-    ("BROKER_TRUST", "The next part of the certificate that signs the broker's, in DER."),
+    (
+        "BROKER_TRUST",
+        "The next part of the certificate, in DER, that signs the broker's certificate.",
+    ),
 )
 WIFI_MODES = (
     ("OFF", "No network is set."),
     ("STATION", "The robot joins a network."),
-    ("ACCESS_POINT", "The robot is one."),
+    ("ACCESS_POINT", "The robot is an access point."),
 )
 WIFI_STATES = (
     ("OFF", "The robot has no WiFi, or has not started it."),
@@ -65,7 +68,7 @@ WIFI_STATES = (
     ),
     (
         "RESTS",
-        "WiFi is off, since the robot restarted three times in a row soon after it started WiFi. JOIN, HOST and FORGET end that.",
+        "WiFi is off, because the robot restarted three times in a row soon after it started WiFi. JOIN, HOST and FORGET end that.",
     ),
 )
 
@@ -144,7 +147,7 @@ FEATURES = (
     (OWNED, "OWNED", "It has an owner."),
     (TEXT_ALLOWED, "TEXT_ALLOWED", "Lines of text may drive it."),
     (YOURS, "YOURS", "This session has shown a key of the robot."),
-    (BY_TEACHER, "BY_TEACHER", "It was the teacher's key."),
+    (BY_TEACHER, "BY_TEACHER", "That key was the teacher's."),
     (
         SEALS,
         "SEALS",
@@ -170,7 +173,7 @@ HOLD_MS = 500
 KEYS = (
     (
         "OWNER",
-        "The key of whoever claimed the robot. Once somebody has, nobody can drive it without a key.",
+        "The key of whoever claimed the robot. Once it is claimed, nobody can drive the robot without a key.",
     ),
     (
         "TEACHER",
@@ -260,7 +263,7 @@ MESSAGES = (
              _STATUS + f" damaged:u8 dropped:u8 framing:u8 overrun:u8 noise:rest=0..{NOISE_BYTES}",
              "Asks what the robot is doing, what its last fault was, and how well it receives."),
     _message(4, "FETCH", False, "offset:u16", "length:u16 bytes:rest=0..",
-             "Asks for the stored program's image, from `offset` on. `length` is the length of the whole image."),
+             "Asks for the stored program's image, starting at `offset`. `length` is the length of the whole image."),
     _message(5, "STOP", False, "", "", "Does the same as the stop sequence, but gets an answer."),
     # these act: they are valid in one epoch only
     _message(6, "CLEAR", True, "", "", "Releases the latch that a stop or a fault has set."),
@@ -269,13 +272,13 @@ MESSAGES = (
              "Runs code once. The program that the robot holds does not change."),
     _message(9, "PROGRAM", True, "mode:u8 code:rest=0..", _RECEIPT, "Sends a whole program in one frame."),
     _message(11, "DATA", True, "offset:u16 bytes:rest=1..", "next:u16",
-             "Sends the bytes after the checksum, from `offset` on. The robot accepts only DATA that begins at `next`."),
+             "Sends the bytes after the checksum, starting at `offset`. The robot accepts only DATA that begins at `next`."),
     _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "Ends a longer program, with its image's checksum."),
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again."),
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES + PACE_BYTES}", f"wheels:u8 balance:i8 least:u8 pace:rest=0..{PACE_BYTES}",
              "Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. OK as for NAME."),
     _message(16, "CLAIM", True, f"which:u8 key:rest=0..{KEY_BYTES}", "",
-             "Gives the robot a key after its button was held: `which` of KEYS. Without a key, it removes that key. OK as for NAME."),
+             "Gives the robot a key after its button has been held: `which` of KEYS. Without a key, it removes that key. OK as for NAME."),
     _message(17, "AUTHENTICATE", True, f"which:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
              "Without a tag, it asks for a challenge. With a tag, it shows a key of the robot."),
     _message(18, "IDENTIFY", True, "", "", "Makes the robot blink and play the tune of its id."),
@@ -294,7 +297,7 @@ MESSAGES = (
     _message(26, "RESUME", True, "how:u8", "run:u8 was_halted:u8",
              "Continues a halted program: `how` of RESUMES."),
     _message(27, "READ_VARIABLES", True, "first:u8", f"run:u8 is_halted:u8 values:rest=0..{VARIABLES_BYTES}",
-             "Asks for the variables of the running program, from the variable `first` on: 32 bits each."),
+             "Asks for the variables of the running program, starting with the variable `first`: 32 bits each."),
     _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 at:u16 tasks:rest=0..{TASKS_BYTES}",
              "Asks for the tasks of the running program, and where each of them is."),
     # events: a robot sends these without being asked
@@ -365,9 +368,9 @@ DETAILS = {
 }
 
 STATES = (
-    ("IDLE",    "Nothing runs. The button or START starts the program, if there is one."),
-    ("RUNNING", "A program runs."),
-    ("STOPPED", "It was stopped: nothing starts before CLEAR or the button."),
+    ("IDLE",    "Nothing is running. The button or START starts the program, if there is one."),
+    ("RUNNING", "A program is running."),
+    ("STOPPED", "The robot was stopped: nothing starts before CLEAR or the button."),
     ("FAULTED", "A fault has ended the program: nothing starts before CLEAR or the button."),
 )
 SAVED = (
@@ -377,7 +380,7 @@ SAVED = (
     ("STORED",     "It is saved."),
     ("LOW_SUPPLY", "It is only in RAM: the voltage is too low to save it. It is saved when the voltage recovers."),
     ("OTHER_VERSION", "The stored program is for another version of the robot's machine: the robot holds none."),
-    ("UNREADABLE", "The robot cannot read its memory: it holds no program, and nobody drives it."),
+    ("UNREADABLE", "The robot cannot read its memory: it holds no program, and nobody can drive it."),
 )
 CAUSES = (
     ("NONE",     "Not stopped."),
@@ -393,10 +396,10 @@ RESUMES = (
 )
 TASK_STATES = (
     ("ENDED",   "It has ended, or there is none."),
-    ("READY",   "It is its turn, or it waits for a reading, or to send a value."),
-    ("WAITING", "It waits for its clock, and for the check of an UNTIL or a WHEN."),
+    ("READY",   "It is the task's turn, or the task is waiting for a reading or to send a value."),
+    ("WAITING", "It is waiting for its clock, or for the next check of an UNTIL or a WHEN."),
     ("DRIVING", "Its move has the motors."),
-    ("BLOCKED", "Its move waits for the motors."),
+    ("BLOCKED", "Its move is waiting for the motors."),
 )
 RESETS = (
     ("UNKNOWN",   "The chip does not say."),
@@ -414,7 +417,7 @@ TEXT_LEVELS = (
 )
 # Faults that no instruction causes. The faults of instructions are in `opcodes.py`.
 LINK_FAULTS = (
-    (64, "LINK_LOST", "No valid frame for a second while an attached program ran."),
+    (64, "LINK_LOST", "No valid frame for a second while an attached program was running."),
     (65, "MAX_RUN",   "A program without a dead-man timer ran longer than the robot allows."),
     (66, "STALL",     "The robot's own program hung."),
 )

@@ -81,17 +81,17 @@ enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
   kPing = 2,  // Asks whether the robot is there; also the heartbeat. With any byte, it also asks where the program is.
   kStatus = 3,  // Asks what the robot is doing, what its last fault was, and how well it receives.
-  kFetch = 4,  // Asks for the stored program's image, from `offset` on. `length` is the length of the whole image.
+  kFetch = 4,  // Asks for the stored program's image, starting at `offset`. `length` is the length of the whole image.
   kStop = 5,  // Does the same as the stop sequence, but gets an answer.
   kClear = 6,  // Releases the latch that a stop or a fault has set.
   kStart = 7,  // Starts the program that the robot holds.
   kLive = 8,  // Runs code once. The program that the robot holds does not change.
   kProgram = 9,  // Sends a whole program in one frame.
-  kData = 11,  // Sends the bytes after the checksum, from `offset` on. The robot accepts only DATA that begins at `next`.
+  kData = 11,  // Sends the bytes after the checksum, starting at `offset`. The robot accepts only DATA that begins at `next`.
   kCommit = 12,  // Ends a longer program, with its image's checksum.
   kName = 14,  // Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again.
   kTrim = 15,  // Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. OK as for NAME.
-  kClaim = 16,  // Gives the robot a key after its button was held: `which` of KEYS. Without a key, it removes that key. OK as for NAME.
+  kClaim = 16,  // Gives the robot a key after its button has been held: `which` of KEYS. Without a key, it removes that key. OK as for NAME.
   kAuthenticate = 17,  // Without a tag, it asks for a challenge. With a tag, it shows a key of the robot.
   kIdentify = 18,  // Makes the robot blink and play the tune of its id.
   kUndo = 19,  // Brings back the previous program. The running program ends; no program starts.
@@ -102,7 +102,7 @@ enum class Message : uint8_t {
   kKeys = 24,  // Sends the state of a remote control: a bit for each key that is held, and its pad. Also a heartbeat.
   kBreak = 25,  // Sets all places where the running program halts or, if none is running, the one that the robot holds: offsets of 16 bits.
   kResume = 26,  // Continues a halted program: `how` of RESUMES.
-  kReadVariables = 27,  // Asks for the variables of the running program, from the variable `first` on: 32 bits each.
+  kReadVariables = 27,  // Asks for the variables of the running program, starting with the variable `first`: 32 bits each.
   kReadTasks = 28,  // Asks for the tasks of the running program, and where each of them is.
   kShow = 32,  // A value that a program shows. `place`: its run, and where its SHOW is.
   kFault = 33,  // The program has ended with a fault.
@@ -175,7 +175,7 @@ enum class Answer : uint8_t {
   kLatched = 73,  // The robot was stopped, and stays stopped until the stop is cleared.
   kNoProgram = 74,  // The robot has no program.
   kNotBegun = 75,  // The robot is no longer waiting for this program: another request came first.
-  kIncomplete = 76,  // The program did not arrive completely: it is missing from byte {detail} on.
+  kIncomplete = 76,  // The program did not arrive completely: bytes are missing, starting at byte {detail}.
   kNotSealed = 77,  // The robot does not accept sealed messages.
   kSaving = 78,  // The robot has received it, and will save it as soon as its motors have stopped; if the robot is switched off before that, it is lost.
   kLowSupply = 79,  // The robot's batteries are too weak to save anything; if the robot is switched off, this is lost.
@@ -193,9 +193,9 @@ enum class Answer : uint8_t {
 };
 
 enum class State : uint8_t {
-  kIdle = 0,  // Nothing runs. The button or START starts the program, if there is one.
-  kRunning = 1,  // A program runs.
-  kStopped = 2,  // It was stopped: nothing starts before CLEAR or the button.
+  kIdle = 0,  // Nothing is running. The button or START starts the program, if there is one.
+  kRunning = 1,  // A program is running.
+  kStopped = 2,  // The robot was stopped: nothing starts before CLEAR or the button.
   kFaulted = 3,  // A fault has ended the program: nothing starts before CLEAR or the button.
 };
 
@@ -206,7 +206,7 @@ enum class Saved : uint8_t {
   kStored = 3,  // It is saved.
   kLowSupply = 4,  // It is only in RAM: the voltage is too low to save it. It is saved when the voltage recovers.
   kOtherVersion = 5,  // The stored program is for another version of the robot's machine: the robot holds none.
-  kUnreadable = 6,  // The robot cannot read its memory: it holds no program, and nobody drives it.
+  kUnreadable = 6,  // The robot cannot read its memory: it holds no program, and nobody can drive it.
 };
 
 enum class Cause : uint8_t {
@@ -234,31 +234,31 @@ enum class TextLevel : uint8_t {
 };
 
 enum class Key : uint8_t {
-  kOwner = 0,  // The key of whoever claimed the robot. Once somebody has, nobody can drive it without a key.
+  kOwner = 0,  // The key of whoever claimed the robot. Once it is claimed, nobody can drive the robot without a key.
   kTeacher = 1,  // Gives the same rights. After a stop with this key, only this key or the button releases the robot.
 };
 
 enum class WifiStep : uint8_t {
   kTell = 0,  // Changes nothing.
   kNetwork = 1,  // The name of a network. The robot forgets any earlier step.
-  kPassword = 2,  // The next part of its password.
+  kPassword = 2,  // The next part of the network's password.
   kJoin = 3,  // The robot joins that network, now and after each reset.
   kHost = 4,  // The robot is an access point with that name.
   kForget = 5,  // The robot no longer uses WiFi or a broker.
   kBroker = 6,  // An MQTT broker: its address, its port (16 bits) and the class. The robot forgets any earlier step. Empty: no broker.
   kBrokerUser = 7,  // The robot's user name at the broker.
-  kBrokerPassword = 8,  // The next part of its password at the broker.
+  kBrokerPassword = 8,  // The next part of the robot's password at the broker.
   kUseBroker = 9,  // The robot connects to that broker, now and after each reset, or to none.
   kTellBroker = 10,  // Changes nothing. The reply is about the broker: `mode` 1 if there is one, its address, and in `network` the class.
   kBrokerName = 11,  // The next part of the broker's name, as in its certificate. If the name is not found, the address is used.
   kBrokerTls = 12,  // Use TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that expired earlier is refused.
-  kBrokerTrust = 13,  // The next part of the certificate that signs the broker's, in DER.
+  kBrokerTrust = 13,  // The next part of the certificate, in DER, that signs the broker's certificate.
 };
 
 enum class WifiMode : uint8_t {
   kOff = 0,  // No network is set.
   kStation = 1,  // The robot joins a network.
-  kAccessPoint = 2,  // The robot is one.
+  kAccessPoint = 2,  // The robot is an access point.
 };
 
 enum class WifiState : uint8_t {
@@ -270,7 +270,7 @@ enum class WifiState : uint8_t {
   kOtherName = 5,  // The broker's certificate is for a computer with another name.
   kExpired = 6,  // The broker's certificate had expired before the robot got it.
   kNoTls = 7,  // The broker and the robot cannot agree on TLS, or the robot lacks the memory for it.
-  kRests = 8,  // WiFi is off, since the robot restarted three times in a row soon after it started WiFi. JOIN, HOST and FORGET end that.
+  kRests = 8,  // WiFi is off, because the robot restarted three times in a row soon after it started WiFi. JOIN, HOST and FORGET end that.
 };
 
 enum class ResumeHow : uint8_t {
@@ -280,15 +280,15 @@ enum class ResumeHow : uint8_t {
 
 enum class TaskState : uint8_t {
   kEnded = 0,  // It has ended, or there is none.
-  kReady = 1,  // It is its turn, or it waits for a reading, or to send a value.
-  kWaiting = 2,  // It waits for its clock, and for the check of an UNTIL or a WHEN.
+  kReady = 1,  // It is the task's turn, or the task is waiting for a reading or to send a value.
+  kWaiting = 2,  // It is waiting for its clock, or for the next check of an UNTIL or a WHEN.
   kDriving = 3,  // Its move has the motors.
-  kBlocked = 4,  // Its move waits for the motors.
+  kBlocked = 4,  // Its move is waiting for the motors.
 };
 
 // Faults that no instruction makes. The others are `Fault`.
 enum class LinkFault : uint8_t {
-  kLinkLost = 64,  // No valid frame for a second while an attached program ran.
+  kLinkLost = 64,  // No valid frame for a second while an attached program was running.
   kMaxRun = 65,  // A program without a dead-man timer ran longer than the robot allows.
   kStall = 66,  // The robot's own program hung.
 };

@@ -1,4 +1,4 @@
-"""The ways in which bytes reach a robot, one file each: `link.ports` finds the one for a port.
+"""The ways in which bytes reach a robot, a file for each: `link.ports` finds the one for a port.
 
 Each has `resolved`, which finds the address of a name, and `opened`, which opens an address.
 """
