@@ -153,15 +153,20 @@ def test_each_task_gets_its_readings_in_time(seed: int) -> None:
 # -- what a robot has besides
 
 
+def buzzer_of(robot: Robot) -> int:
+    assert robot.board.buzzer is not None
+    return robot.board.buzzer
+
+
 @pytest.mark.sampled("hertz", keep=3)
 @pytest.mark.parametrize("hertz", [31, 100, 440, 880, 3000, 12345, 19800, 20000])
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])
 def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:
     robot = robots.load(name)
     board = started(robot, f"SI|BEEP(0.3, {hertz})")
-    board.watch(robot.board.buzzer)
+    board.watch(buzzer_of(robot))
     board.ran(START + 290)
-    edges = board.edges(robot.board.buzzer)
+    edges = board.edges(buzzer_of(robot))
     periods = (len(edges) - 1) // 2
     found = HERTZ * periods / (edges[2 * periods] - edges[0])
     assert abs(found / hertz - 1) < 0.01
@@ -170,9 +175,9 @@ def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:
 def test_a_beep_of_no_time_ends_the_one_before() -> None:
     robot = on_board("tinibot", "mega")
     board = started(robot, "SI|BEEP(0.5, 440)\nTASK\nW(0.1);BEEP(0, 440);W(9)\nEND_TASK")
-    board.watch(robot.board.buzzer)
+    board.watch(buzzer_of(robot))
     board.ran(START + 300)
-    edges = [cycle / MS - START for cycle in board.edges(robot.board.buzzer)]
+    edges = [cycle / MS - START for cycle in board.edges(buzzer_of(robot))]
     assert 95 < edges[-1] < 103
 
 
@@ -181,10 +186,10 @@ def test_a_program_that_has_ended_plays_its_tune_and_the_light_says_that_one_cou
     light = robot.board.status_led
     assert light is not None
     board = started(robot, "SI|F(0.1, 50)")
-    board.watch(robot.board.buzzer)
+    board.watch(buzzer_of(robot))
     board.watch(light)
     board.ran(START + 500)
-    edges = [cycle / MS - START for cycle in board.edges(robot.board.buzzer)]
+    edges = [cycle / MS - START for cycle in board.edges(buzzer_of(robot))]
     assert 99 < edges[0] < 102
     assert 338 < edges[-1] < 342
     halves = [b - a for a, b in pairwise(edges)]
@@ -196,10 +201,10 @@ def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
     """The button starts the program again while the first note of its end sounds."""
     robot = robots.load("tinibot")
     board = started(robot, "SI|BEEP(0.05, 880);W(0.2)")
-    board.watch(robot.board.buzzer)
+    board.watch(buzzer_of(robot))
     board.press(START + 255, START + 345 - STEADY)
     board.ran(START + 590)
-    edges = [cycle / MS - START for cycle in board.edges(robot.board.buzzer)]
+    edges = [cycle / MS - START for cycle in board.edges(buzzer_of(robot))]
     assert any(255 < edge < 340 for edge in edges), "the tune has begun"
     assert any(350 < edge < 390 for edge in edges), "the program runs again"
     assert not any(400 < edge < 585 for edge in edges)

@@ -230,8 +230,10 @@ def test_pwm_of_an_esp32_c3() -> None:
 
 def test_every_code_has_a_test() -> None:
     of_boards = {"pin_at_boot", "pin_of_reset", "timers_used_up"}
+    of_shields = {"shield_of_uno", "shield_pin_twice", "shield_timer_twice"}  # test_board_shield
     tested = (
         of_boards
+        | of_shields
         | {"no_such_robot", *(code for code, *_ in FILES)}
         | {code for code, *_ in REFUSED}
     )

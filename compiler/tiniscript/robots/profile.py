@@ -71,7 +71,7 @@ class Board(NamedTuple):
     sensors: tuple[Wiring, ...]
     actuators: tuple[Wiring, ...]
     start_button: int
-    buzzer: int
+    buzzer: int | None = None
     status_led: int | None = None
     bluetooth_state: int | None = None
     language: str = ""

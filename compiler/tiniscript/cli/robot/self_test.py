@@ -71,7 +71,7 @@ class SelfTest(Conversation):
         for sensor in robot.kit.sensors:
             self._sensor(sensor)
         self._motors(is_lifted)
-        if robot.board.buzzer:
+        if robot.board.buzzer is not None:
             self._buzzer()
 
     def _add(self, cause: str, of: str = "", **values: str) -> None:
