@@ -68,6 +68,8 @@ REFUSED = [
     ("not_one_of", "tinibot", "baud = 9600", "baud = 9601", "board.baud"),
     ("not_one_of", "tinibot", '"hc_sr04"', '"digital"', "board.sensors.DISTANCE.driver"),
     ("not_one_of", "tinibot", 'sees = "light"', 'sees = "stars"', "body.sensors.LIGHT_R.sees"),
+    ("not_one_of", "grabber", 'sees = "distance"', 'sees = "distance", turns_with = "LED"',
+     "body.sensors.DISTANCE.turns_with"),
     ("out_of_range", "tinibot", "baud = 9600", "baud = 0", "board.baud"),
     ("out_of_range", "tinibot", "baud = 9600", "baud = 9600\nprogram_bytes = 390",
      "board.program_bytes"),
