@@ -46,7 +46,7 @@ def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
     grabber = json.loads(json.dumps(known["grabber"]))
     grabber["places"]["DISTANCE"]["turns_with"] = "GRIPPER"
     state = after("SI|GRIPPER(45);W(9)", "grabber", 100)
-    both = ((known["grabber"], {}), (grabber, {"GRIPPER": -45}))
+    both: list[tuple[Any, dict[str, int]]] = [(known["grabber"], {}), (grabber, {"GRIPPER": -45})]
     asked = [
         {"robot": robot, "state": {**state, "turned": turned}, "seen": STILL}
         for robot, turned in both
