@@ -81,6 +81,8 @@ def test_every_board_has_its_sensors_tested(name: str) -> None:
     """Without `--robot`, too: the robot says which kit it has."""
     kit = robots.load(name).kit
     with PtyRobot(kit) as robot:
+        middle = [sensor.is_yes_no or (sensor.low + sensor.high) // 2 for sensor in kit.sensors]
+        robot.ask(lambda its: its.sense(*map(int, middle)))
         code, found = found_by(robot)
         # an ESP32's robot has the words of the paper's
         kits = {name: robots.load(name).kit for name in robots.names()}
@@ -134,6 +136,11 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     first, second = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
     assert found[first]["cause"] == "stuck"
     assert found[second]["verdict"] == "ok"
+    pty_robot.ask(lambda robot: robot.sense(LIGHT, LIGHT, 0))
+    code, found = found_by(pty_robot)
+    assert (code, found["sensor DISTANCE"]["cause"]) == (3, "echo_hung")
+    assert found["sensor DISTANCE"]["verdict"] == "wrong"
+    pty_robot.ask(lambda robot: robot.sense(low, LIGHT, DISTANCE))
     pty_robot.damages = 100
     code, found = found_by(pty_robot)
     assert code == 3

@@ -14,7 +14,7 @@ from tests.machines.host import SOURCES, missing
 from tests.support.casefile import ROOT
 from tests.support.needs import need
 from tests.wiring.test_wiring import DEVICES, DISCS, MOTORS, robot_with, with_discs
-from tiniscript import compile_text
+from tiniscript import compile_text, robots
 from tiniscript.base.kit import Device
 from tiniscript.codegen.sketch.wiring import SketchPlan
 from tiniscript.codegen.sketch.writing import sketch_of
@@ -98,7 +98,30 @@ def test_discs_are_counted_by_the_firmware(name: str, chip: str) -> None:
             assert re.search(rf"#define tiniscript_disc_{side.lower()} INT\d_vect\n", header)
 
 
+def silent(chip: str) -> Robot:
+    """Return a robot without a buzzer."""
+    robot = robots.load("tinibot" if chip == "uno" else "tinibot32")
+    return robot._replace(board=robot.board._replace(buzzer=None))
+
+
+def test_a_robot_without_a_buzzer_has_no_tone() -> None:
+    for chip in ("uno", "esp32dev"):
+        assert "#define tiniscript_silent\n" in firmware.header([silent(chip)], "a test.")
+    robot = silent("uno")
+    compiled = compile_text("SB|BEEP(1, 440);F(1, 50)", robot.kit, "prog.ts")
+    assert compiled.program is not None
+    sketch = sketch_of(compiled.source, compiled.program, robot, "en")
+    assert "one(" not in sketch and "BUZZER" not in sketch
+    assert "waitMs(ms);" in sketch, "a sound takes its time"
+
+
 # -- what is written is C++ ------------------------------------------------------------------------
+
+
+def is_shield(motors: str) -> bool:
+    """Whether a driver has the pins of an Uno, which an ESP32 has in other places."""
+    return any(pin.fixed is not None for pin in DRIVERS["motors", motors].pins)
+
 
 KNOWING = [path for path in sorted((SOURCES / "src" / "boards").glob("*.cpp"))
            if '"kit.h"' in path.read_text(encoding="utf-8")]  # fmt: skip
@@ -107,9 +130,10 @@ ALL = [
     *(pytest.param(robot_with(motors, DEVICES[:3], "nano", False), id=f"nano {motors}")
       for motors in MOTORS),
     *(pytest.param(robot_with(motors, DEVICES[k % 2 :: 2], "esp32dev", False), id=f"esp32 {motors}")
-      for k, motors in enumerate(MOTORS)),
+      for k, motors in enumerate(MOTORS) if not is_shield(motors)),
     *(pytest.param(with_discs(chip, discs), id=f"{chip} {discs}")
       for chip in ("mega", "esp32dev") for discs in DISCS),
+    *(pytest.param(silent(chip), id=f"{chip}, silent") for chip in ("uno", "esp32dev")),
 ]  # fmt: skip
 
 

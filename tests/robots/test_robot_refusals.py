@@ -68,6 +68,8 @@ REFUSED = [
     ("not_one_of", "tinibot", "baud = 9600", "baud = 9601", "board.baud"),
     ("not_one_of", "tinibot", '"hc_sr04"', '"digital"', "board.sensors.DISTANCE.driver"),
     ("not_one_of", "tinibot", 'sees = "light"', 'sees = "stars"', "body.sensors.LIGHT_R.sees"),
+    ("not_one_of", "grabber", 'sees = "distance"', 'sees = "distance", turns_with = "LED"',
+     "body.sensors.DISTANCE.turns_with"),
     ("out_of_range", "tinibot", "baud = 9600", "baud = 0", "board.baud"),
     ("out_of_range", "tinibot", "baud = 9600", "baud = 9600\nprogram_bytes = 390",
      "board.program_bytes"),
@@ -230,8 +232,10 @@ def test_pwm_of_an_esp32_c3() -> None:
 
 def test_every_code_has_a_test() -> None:
     of_boards = {"pin_at_boot", "pin_of_reset", "timers_used_up"}
+    of_shields = {"shield_of_uno", "shield_pin_twice", "shield_timer_twice"}  # test_board_shield
     tested = (
         of_boards
+        | of_shields
         | {"no_such_robot", *(code for code, *_ in FILES)}
         | {code for code, *_ in REFUSED}
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +38,26 @@ def after(text: str, robot: str, ms: int) -> dict[str, Any]:
 
 def of(drawn: Drawn, how: str, color: str) -> list[list[float]]:
     return [numbers for kind, numbers, found in drawn if (kind, found) == (how, color)]
+
+
+def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
+    """And such a servo has no jaws."""
+    known = {each["name"]: each for each in description()["robots"]}
+    grabber = json.loads(json.dumps(known["grabber"]))
+    grabber["places"]["DISTANCE"]["turns_with"] = "GRIPPER"
+    state = after("SI|GRIPPER(45);W(9)", "grabber", 100)
+    both: list[tuple[Any, dict[str, int]]] = [(known["grabber"], {}), (grabber, {"GRIPPER": -45})]
+    asked = [
+        {"robot": robot, "state": {**state, "turned": turned}, "seen": STILL}
+        for robot, turned in both
+    ]
+    ahead, right = json.loads(in_node(SCRIPT, given=json.dumps(asked))[0])
+    (cone,), (turned_cone,) = (of(drawn, "fill", "#e0452f33") for drawn in (ahead, right))
+    assert [a - b for a, b in zip(turned_cone[-2:], cone[-2:], strict=True)] == pytest.approx(
+        [-math.pi / 4] * 2
+    )
+    jaws = [of(drawn, "stroke", "#37434f") for drawn in (ahead, right)]
+    assert len(jaws[0]) == len(jaws[1]) + 2
 
 
 def test_wheels_turn_as_far_as_they_have_rolled() -> None:

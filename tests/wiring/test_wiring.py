@@ -50,13 +50,19 @@ def pins_of(robot: Robot) -> set[int]:
 def wired(driver: Driver, chip: Chip, taken: set[int], is_whole: bool = True) -> Wiring:
     """Wire a driver to the first pins that fit. `is_whole`: with what is optional, too."""
     pins = {}
-    for key, need, is_optional in driver.pins:
+    settings = {setting.key: setting.default for setting in driver.settings}
+    for key, need, is_optional, fixed, _ in driver.pins:
+        if fixed is not None:
+            if driver.chosen_by(key, settings):
+                pins[key] = fixed
+                taken.add(fixed)
+            continue
         if is_optional and not is_whole:
             continue
         every = sorted(chip.digital | chip.analog, key=lambda pin: (-pin % 7, pin))
         pins[key] = next(pin for pin in every if chip.can(pin, need) and pin not in taken)
         taken.add(pins[key])
-    return Wiring(driver.name, pins, {setting.key: setting.default for setting in driver.settings})
+    return Wiring(driver.name, pins, settings)
 
 
 def robot_with(motors: str, devices: list[Driver], chip_name: str = "mega", is_whole: bool = True,

@@ -71,7 +71,7 @@ CAUSES = dict((
     *_finding_kinds(WRONG, "discs", "discs_noise", then="discs"),
     *_finding_kinds(OK, "sensor", "reads changes"),
     *_finding_kinds(OPEN, "sensor", "stuck as_bright", then="hand"),
-    *_finding_kinds(WRONG, "sensor", "same no_reading", then="wires"),
+    *_finding_kinds(WRONG, "sensor", "same no_reading echo_hung", then="wires"),
     *_finding_kinds(OK, "motor", "turns"),
     *_finding_kinds(WRONG, "motor", "other_turn", then="trim"),
     *_finding_kinds(WRONG, "motor", "still", then="wires"),

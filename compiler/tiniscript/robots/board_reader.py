@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tiniscript.base.kit import Device, Kit
 from tiniscript.base.languages import languages
 from tiniscript.robots.boards import BAUDS, CHIPS, Chip
-from tiniscript.robots.driver import AT_STOP, Setting
+from tiniscript.robots.driver import AT_STOP, PinKey, Setting
 from tiniscript.robots.drivers import DRIVERS, drivers_for
 from tiniscript.robots.ledc import FREQUENCIES, timers_of
 from tiniscript.robots.profile import Board, Wiring
@@ -25,12 +25,16 @@ NOTHING = Wiring("", {}, {})
 
 
 class Use(NamedTuple):
-    """A use of a pin: the path of the key, and the ability that it needs, one of `NEEDS`."""
+    """A use of a pin: the path of the key, and the ability that it needs, one of `NEEDS`.
+
+    `shield` is what a shield calls the pin, where it decides the pin.
+    """
 
     table: Table
     key: str
     pin: int
     need: str
+    shield: str = ""
 
 
 class Pins:
@@ -77,6 +81,27 @@ class Pins:
             self._uses.append(Use(table, key, pin, need))
         return pin
 
+    def take_fixed(self, table: Table, key: str, fixed: PinKey) -> int | None:
+        """Return the number of a pin that a shield decides, or None if it is not usable.
+
+        `key` is what a complaint names: the profile does not say the pin.
+        """
+        chip, pin = self._chip, fixed.fixed
+        if chip is None or pin is None:
+            return None
+        if chip.first_analog is None:  # its pins are in other places
+            if not any(code == "shield_of_uno" for code, _ in table.reasons):
+                table.complain("shield_of_uno", key, chip=chip.name)
+            return None
+        before = next((use for use in self._uses if use.pin == pin), None)
+        if before is not None:
+            first = before.table.path_of(before.key)
+            name = chip.pin_name(pin)
+            table.complain("shield_pin_twice", key, pin=name, name=fixed.name, first=first)
+        else:
+            self._uses.append(Use(table, key, pin, fixed.need, fixed.name))
+        return pin
+
     def check_timers(self) -> None:
         """Complain about every PWM pin whose timer is taken by servos or the buzzer."""
         if self._chip is None:
@@ -91,11 +116,12 @@ class Pins:
             for use in self._uses:
                 if use.need == "pwm" and self._chip.pwm[use.pin] == timer:
                     use.table.complain(
-                        "timer_twice",
+                        "shield_timer_twice" if use.shield else "timer_twice",
                         use.key,
                         pin=self._chip.pin_name(use.pin),
                         timer=str(timer),
                         first=owner.table.path_of(owner.key),
+                        name=use.shield,
                         choices=_choices(self._chip, "pwm", frozenset(owners.values())),
                     )
 
@@ -137,7 +163,7 @@ def read_board(table: Table, kit: Kit) -> Board:
         table.complain("not_one_of", "baud", found=str(baud), choices=known)
     max_run = table.whole_number("max_run_seconds", 1, LONGEST_RUN_SECONDS, default=TEN_MINUTES)
     start_button = pins.take(table, "start_button", "pull_up")
-    buzzer = pins.take(table, "buzzer", "tone")
+    buzzer = pins.take(table, "buzzer", "tone", is_optional=True)
     status_led = pins.take(table, "status_led", "output", is_optional=True)
     bluetooth_state = pins.take(table, "bluetooth_state", "input", is_optional=True)
     language = table.choice("language", languages()) if table.has("language") else ""
@@ -158,7 +184,7 @@ def read_board(table: Table, kit: Kit) -> Board:
         sensors=sensors,
         actuators=actuators,
         start_button=start_button or 0,
-        buzzer=buzzer or 0,
+        buzzer=buzzer,
         status_led=status_led,
         bluetooth_state=bluetooth_state,
         language=language,
@@ -213,10 +239,15 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
         table.complain("at_stop_of_no_servo", AT_STOP)
     settings = {setting.key: _read_setting(table, setting) for setting in driver.settings}
     taken = {}
-    for key, need, is_optional in driver.pins:
-        has_pull_up = need == "input" and settings.get("pull_up")
-        need = "pull_up" if has_pull_up else need
-        pin = pins.take(table, key, need, is_optional, is_motor=used_by == "motors")
+    for wanted in driver.pins:
+        key, need, is_optional, fixed, _ = wanted
+        if fixed is not None:
+            chosen_by = driver.chosen_by(key, settings)
+            pin = pins.take_fixed(table, chosen_by, wanted) if chosen_by else None
+        else:
+            has_pull_up = need == "input" and settings.get("pull_up")
+            need = "pull_up" if has_pull_up else need
+            pin = pins.take(table, key, need, is_optional, is_motor=used_by == "motors")
         if pin is not None:
             taken[key] = pin
     table.finish()

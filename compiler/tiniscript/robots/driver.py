@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from typing import ClassVar, NamedTuple, Protocol
 
 from tiniscript.base.fixed_point import ONE
@@ -30,9 +31,16 @@ FIVE_VOLTS = 5 * ONE
 
 
 class PinKey(NamedTuple):
+    """A pin of a driver. `fixed` is its number where a shield decides it, and no profile says it.
+
+    A fixed pin is told to people as `name`: what the shield prints beside it.
+    """
+
     key: str
     need: str
     is_optional: bool = False
+    fixed: int | None = None
+    name: str = ""
 
 
 class Setting(NamedTuple):
@@ -96,7 +104,7 @@ class PinTexts(Protocol):
 
     def servo(self, pin: int) -> str: ...
 
-    def buzzer(self, pin: int) -> str: ...
+    def buzzer(self, pin: int | None) -> str: ...
 
     def echo(self, pin: int) -> str: ...
 
@@ -179,6 +187,10 @@ class Driver(ABC):
     pins: ClassVar[tuple[PinKey, ...]]
     settings: ClassVar[tuple[Setting, ...]] = ()
     looks: ClassVar[Shape]
+
+    def chosen_by(self, key: str, settings: Mapping[str, int]) -> str:
+        """Return the key of the profile that makes it take a fixed pin, or nothing: it does not."""
+        return "driver"
 
     def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
         """Return what it looks like; a sensor `sees` what its place in the robot's body says."""

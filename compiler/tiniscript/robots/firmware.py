@@ -137,6 +137,8 @@ class Header(Part):
     def _parts(self) -> list[str]:
         """Return the names of the firmware's modules that this robot needs."""
         names = [motors_of(self.robot.board.motors).module]
+        if self.robot.board.buzzer is None:
+            names.append("silent")
         if self.servos:
             names.append("servos")
         if self.ultrasonics:
@@ -247,7 +249,7 @@ class AvrPins:
     def servo(self, pin: int) -> str:
         return self.pin(pin)
 
-    def buzzer(self, pin: int) -> str:
+    def buzzer(self, pin: int | None) -> str:
         return f"Pin kBuzzer = {self.pin(pin)}"
 
     def echo(self, pin: int) -> str:
@@ -279,8 +281,8 @@ class Esp32Pins:
     def servo(self, pin: int) -> str:
         return self.pwm(pin)
 
-    def buzzer(self, pin: int) -> str:
-        return f"Pwm kBuzzer = {self.pwm(pin)}"
+    def buzzer(self, pin: int | None) -> str:
+        return f"Pwm kBuzzer = {'{kNoPin, 0}' if pin is None else self.pwm(pin)}"
 
     def echo(self, pin: int) -> str:
         return f"{{{self.pin(pin)}}}"

@@ -19,7 +19,8 @@ FREQUENCIES = ("tone", "pwm", "servo")  # of `boards.NEEDS`, in the order of the
 def channels_of(board: Board) -> dict[int, int]:
     """Return the channel of each pin that needs one."""
     groups: dict[str, list[int]] = {need: [] for need in FREQUENCIES}
-    groups["tone"].append(board.buzzer)
+    if board.buzzer is not None:
+        groups["tone"].append(board.buzzer)
     used = chain(
         [("motors", board.motors)],
         (("sensors", wiring) for wiring in board.sensors),
@@ -46,7 +47,7 @@ def _pin_needs(used_by: str, wiring: Wiring) -> Iterable[tuple[int, str]]:
     """Return the pins of a device with what each needs."""
     for (use, name), driver in DRIVERS.items():
         if name == wiring.driver and use.split()[0] == used_by:
-            for key, need, _ in driver.pins:
-                if key in wiring.pins:
-                    yield wiring.pins[key], need
+            for pin in driver.pins:
+                if pin.key in wiring.pins:
+                    yield wiring.pins[pin.key], pin.need
             return

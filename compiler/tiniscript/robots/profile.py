@@ -71,7 +71,7 @@ class Board(NamedTuple):
     sensors: tuple[Wiring, ...]
     actuators: tuple[Wiring, ...]
     start_button: int
-    buzzer: int
+    buzzer: int | None = None
     status_led: int | None = None
     bluetooth_state: int | None = None
     language: str = ""
@@ -82,13 +82,15 @@ class Place(NamedTuple):
     """Where a sensor sits, from the middle between the wheels, and what it detects.
 
     `x_cm` goes forward and `y_cm` to the left; `heading` is in degrees, 0 ahead and 90 to the
-    left. `sees` is one of SEES.
+    left. `sees` is one of SEES. `turns_with` names the actuator that carries it, a servo: its value
+    is in degrees, and `heading` is where the sensor looks in the middle of its range.
     """
 
     x_cm: float
     y_cm: float
     heading: float
     sees: str
+    turns_with: str = ""
 
 
 SEES = ("light", "distance", "line", "touch")

@@ -135,18 +135,21 @@ def _read_body(table: Table, kit: Kit) -> Body:
     turn_s = kit.turn / ONE or by_wheels
     length_cm, width_cm = size("length_cm", "20"), size("width_cm", "15")
     wired = device_tables(table, "sensors", kit.sensors)
-    places = {name: _read_place(wired[name]) for name, *_ in kit.sensors if name in wired}
+    servos = tuple(device.name for device in kit.actuators if not device.is_yes_no)
+    places = {name: _read_place(wired[name], servos) for name, *_ in kit.sensors if name in wired}
     table.finish()
     return Body(wheel_base_cm, speed_cm_s, turn_s, length_cm, width_cm, places)
 
 
-def _read_place(table: Table) -> Place:
+def _read_place(table: Table, servos: Sequence[str]) -> Place:
     def number(key: str, most: int, example: str = "") -> float:
         return table.number(key, -most, most, example) / ONE
 
     x_cm = number("x_cm", FARTHEST_CM, "x_cm = 8")
     y_cm = number("y_cm", FARTHEST_CM, "y_cm = 0")
     place = Place(x_cm, y_cm, number("heading", 360 * ONE), table.choice("sees", SEES))
+    if table.has("turns_with"):
+        place = place._replace(turns_with=table.choice("turns_with", servos))
     table.finish()
     return place
 

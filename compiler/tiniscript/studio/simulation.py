@@ -246,6 +246,7 @@ class Simulation:
             "score": self._score.state(),
             "actuators": [None if (value := robot.actuators.get(k)) is None else value / ONE
                           for k in range(len(kit.actuators))],
+            "turned": dict(robot.sensing.turned),
             "at": robot.at if self.held_at is None else self.held_at,
             "places": robot.places,
             "is_held": self.held_at is not None,

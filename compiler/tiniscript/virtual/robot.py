@@ -250,6 +250,7 @@ class VirtualRobot:
         self._advance_to(now_ms)
         self._traced.set(actuator, value)
         self.actuators[actuator] = self._traced.events[-1].values[1]
+        self.sensing.turn(actuator, self.actuators[actuator])
 
     def actuators_off(self, now_ms: int) -> None:
         """Turn actuators off; a servo gets no more pulses, unless its profile holds it."""

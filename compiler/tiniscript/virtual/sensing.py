@@ -52,6 +52,8 @@ class Sensing:
         ]
         self.hull = Hull(robot.body)
         self._chance = chance or Random(1)
+        # how far what carries a sensor has turned to the left, by the name of the actuator
+        self.turned: dict[str, float] = {}
         self._told = {number: list(values) for number, values in (told or {}).items()}
         self._near: tuple[Pose, list[Segment]] | None = None  # what a robot might touch there
 
@@ -68,6 +70,12 @@ class Sensing:
         """Have a sensor read that from now on, as far as it can; in thousandths, or 0 and 1."""
         self._told[number] = [_in_range(self.robot.kit.readings[number], reading)]
 
+    def turn(self, actuator: int, value: int) -> None:
+        """Turn the sensors that an actuator carries. They stay so when it gets no more pulses."""
+        device = self.robot.kit.actuators[actuator]
+        if any(place.turns_with == device.name for place in self.robot.body.places.values()):
+            self.turned[device.name] = (value - (device.low + device.high) / 2) / ONE
+
     def look(self, number: int, pose: Pose) -> int:
         """Return the reading without noise. This does not change later readings."""
         message = self._told.get(number)
@@ -83,6 +91,7 @@ class Sensing:
     def _noisy_reading(self, device: Device, place: Place, pose: Pose, noise: float) -> float:
         """Return a reading in thousandths, which may be out of range."""
         eye, heading = _sensor_pose(place, pose)
+        heading += math.radians(self.turned.get(place.turns_with, 0.0))
         span = device.high - device.low
         off = self._chance.gauss(0.0, noise) if noise else 0.0
         if place.sees == "distance":

@@ -54,6 +54,7 @@ import { watched } from './page/progress.js';
  * @property {[number, number] | null} touches where it touches something
  * @property {{taken: number, of: number, points: number, stars: number} | null} score of the flags of its world
  * @property {(number | null)[]} actuators null of one that has not been set, or is released
+ * @property {Record<string, number>} [turned] how far an actuator that carries a sensor has turned to the left, in degrees
  * @property {number | null} at where the program is, or what it does next where it is held
  * @property {number[]} places where each of its tasks is
  * @property {boolean} is_held

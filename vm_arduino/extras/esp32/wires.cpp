@@ -46,6 +46,7 @@ static_assert(sizeof kServos / sizeof *kServos <= kMostServos, "more servos than
 #endif
 
 uint32_t tone() {
+  if (!is_there(kBuzzer.pin)) return 0;
   const bool is_joined = chip.pins[kBuzzer.pin.number].signal == signal_of(kBuzzer.channel);
   const SimulatedChannel& channel = chip.channels[kBuzzer.channel];
   return is_joined && channel.duty != 0 ? channel.hertz : 0;

@@ -8,6 +8,8 @@
 #include "motors_bridge.h"
 #elif defined(tiniscript_motors_two_wire)
 #include "motors_two_wire.h"
+#elif defined(tiniscript_motors_shift_register)
+#include "motors_shift_register.h"
 #else
 #include "motors_servos.h"
 #endif
@@ -45,6 +47,9 @@ void board_motors(int16_t left, int16_t right) {
   const CriticalSection critical;  // a stop comes before or after this block, never inside it
   if (!is_released) left_level = right_level = 0;
   begin_drive((left_level | right_level) != 0);
+#ifdef tiniscript_motors_shift_register
+  if ((left_level | right_level) != 0) point(left < 0, right < 0);
+#endif
   if (left_level == 0) {
     off(kLeftMotor);
   } else {

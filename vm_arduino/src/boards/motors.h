@@ -24,6 +24,23 @@ struct TwoWire {
   Pwm backward;
 };
 
+// The motors of a side behind a shield with a shift register: their PWM pins, and the bits of the
+// register that turn them forward and backward. The second PWM pin may be missing.
+struct ShieldMotors {
+  Pwm pwm;
+  Pwm second;
+  uint8_t forward;
+  uint8_t backward;
+};
+
+// A 74HC595 as it is wired. Its outputs are on while `enable` is low.
+struct ShiftRegister {
+  Pin latch;
+  Pin enable;
+  Pin data;
+  Pin clock;
+};
+
 // A continuous-rotation servo; it stands still at `still_us`.
 struct TurningServo {
   uint8_t number;  // index of the servo

@@ -14,17 +14,29 @@ namespace {
 constexpr uint8_t kTriggerUs = 10;      // minimum length of the trigger pulse
 constexpr uint16_t kLimitUs = 25000;    // an echo takes at most 23.3 ms, plus 0.5 ms to begin
 constexpr uint16_t kSpacingUs = 30000;  // between two pings
-constexpr uint8_t kFreshMs = 57;        // 60 ms, less 2 for a late clock and steps of 2
+constexpr uint8_t kFresh = 28;          // 60 ms, less 2 for a late clock and a step of 2
+constexpr uint8_t kOld = 150;           // 300 ms: a healthy sensor has lowered its echo by then
+constexpr uint16_t kNearUs = 175;       // 3 cm
 constexpr uint8_t kGlitchUs = 100;      // an echo is at least 117 us long, from 2 cm
 constexpr uint16_t kNothing = 0xffff;
 constexpr uint32_t kFarthest = 400000;
+constexpr uint16_t kFarUs = 23326;      // an echo from there
 constexpr uint16_t kThousandthsPer256Us = 4390;  // half of 34.3 cm/ms
+
+// A Nano has no room for more.
+#ifdef tiniscript_trusts_samples
+constexpr bool kTrustsSamples = true;
+#else
+constexpr bool kTrustsSamples = false;
+#endif
 
 enum class Ping : uint8_t { kNone, kTriggered, kListening };
 
+// Lengths of echoes; kLimitUs: it heard none; or kNothing.
 struct Reading {
-  uint16_t echo_us;  // the length of its echo; kLimitUs: it heard none; or kNothing
-  uint32_t ping_ms;  // when its ping was sent
+  uint16_t echo_us;    // the value
+  uint16_t sample_us;  // a sample that is not yet confirmed
+  uint8_t age;         // since its last ping, in steps of 2 ms; a long time is 0xff
 };
 
 // The interrupt's record of an echo. It ignores pulses and gaps shorter than kGlitchUs.
@@ -45,6 +57,7 @@ struct Sonar {
   volatile uint16_t again_us;
   Ping ping;
   bool is_held;        // there is a stale echo
+  uint8_t aged_ms;     // when the ages were right
   uint8_t last_asked;  // the sensor of the current ping
   uint16_t ping_us;    // when the last ping of any sensor was sent
   uint16_t begun_us;   // when the trigger, or a stale echo, went high
@@ -92,6 +105,44 @@ tini_always_inline void on_pin_change() {
 }
 #endif
 
+// Whether `more` is over 3 cm, and over 20 % of `value`.
+tini_always_inline bool is_far(uint16_t more, uint16_t value) {
+  if (more >= 0x2000) return true;  // no value is so long that this is less
+  return more > kNearUs && static_cast<uint16_t>(5 * more) > value;
+}
+
+// One wrong sample changes nothing: one that is far from the value counts only with a second, and
+// the value is the middle one of the three. So is the first value of a run, of three samples.
+void take(Reading& mine, uint16_t us) {
+  if (kTrustsSamples) {
+    mine.echo_us = us;
+    mine.sample_us = kNothing;
+    return;
+  }
+  uint16_t value = mine.echo_us;
+  const uint16_t before = mine.sample_us;
+  uint16_t low = us;
+  uint16_t high = value;
+  if (low > high) {
+    low = value;
+    high = us;
+  }
+  if (before == kNothing) {
+    const uint16_t more = static_cast<uint16_t>(high - low);
+    if (is_far(more, value)) {  // always, where there is no value
+      mine.sample_us = us;
+      return;
+    }
+    value = us;
+  } else if (value == kNothing) {
+    value = us;
+  } else {
+    value = before < low ? low : before > high ? high : before;
+    mine.sample_us = kNothing;
+  }
+  mine.echo_us = value;
+}
+
 void listen(bool is_on) {
   const CriticalSection critical;
   if (is_on) sonar.heard = Heard::kNothing;
@@ -103,11 +154,11 @@ void lower_trigger() {
   write(ultrasonic_at(asked()).trigger, false);
   it->ping_us = clock_us();
   is_spaced = false;
-  it->readings[asked()].ping_ms = clock_ms();
+  it->readings[asked()].age = 0;
 }
 
-// Continues the current ping. Returns true when it is over and there is a reading.
-bool is_over() {
+// Continues the current ping. Returns whether it is over, and puts the sample into `*us`.
+bool is_over(uint16_t* us) {
   Sonar* const it = near(&sonar);
   if (it->ping == Ping::kTriggered) {
     if (since(clock_us(), it->begun_us) < kTriggerUs) return false;
@@ -133,14 +184,13 @@ bool is_over() {
   if (gone_us < kLimitUs && !(has_ended && quiet_us >= kGlitchUs)) return false;
   listen(false);
   it->ping = Ping::kNone;
-  it->readings[asked()].echo_us = has_ended && echo_us < kLimitUs ? echo_us : kLimitUs;
+  if (has_ended && echo_us < kLimitUs) *us = echo_us;
   return true;
 }
 
 void begin(uint8_t number) {
   Sonar* const it = near(&sonar);
-  it->last_asked = number;
-  it->readings[number].echo_us = kNothing;
+  if (kUltrasonics != 1) it->last_asked = number;
   write(ultrasonic_at(number).trigger, true);
   it->begun_us = clock_us();
   it->ping = Ping::kTriggered;
@@ -152,32 +202,47 @@ bool may_ping() {
   return is_spaced;
 }
 
-// The length of an echo, or kNothing: ask again.
-uint16_t echo_of(uint8_t number) {
+// Whether the value of a sensor is fresh, if it has one; else: ask again.
+bool is_fresh(uint8_t number) {
   Sonar* const it = near(&sonar);
-  const Reading& mine = it->readings[number];
-  // Nobody has waited for an echo that is found so late.
-  if (it->ping != Ping::kNone && is_over() && !is_spaced && asked() == number) return mine.echo_us;
-  if (it->ping != Ping::kNone && asked() == number) return kNothing;
-  // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.
-  const bool is_busy = it->ping == Ping::kNone && is_high(ultrasonic_at(number).echo.pin);
-  if (it->ping == Ping::kNone && !is_busy) {
+  Reading& mine = it->readings[number];
+  uint8_t whose = number;
+  uint16_t us = kLimitUs;
+  bool is_awaited = true;
+  if (it->ping != Ping::kNone) {
+    whose = asked();
+    if (!is_over(&us)) return whose != number && mine.age <= kFresh;
+    is_awaited = !is_spaced && whose == number;  // nobody has waited for an echo found so late
+  } else {
+    if (release(ultrasonic_at(number).echo)) return false;
+    // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.
+    const bool is_busy = is_high(ultrasonic_at(number).echo.pin);
+    if (!is_busy) {
+      it->is_held = false;
+      if (may_ping()) {
+        if (mine.age >= kOld) mine.sample_us = kNothing;
+        begin(number);
+        return false;
+      }
+    }
+    if (mine.age <= kFresh) return true;
+    if (!is_busy) return false;
+    if (!it->is_held) {
+      it->is_held = true;
+      it->begun_us = clock_us();
+      return false;
+    }
+    if (since(clock_us(), it->begun_us) < kLimitUs) return false;
     it->is_held = false;
-    if (may_ping()) {
-      begin(number);
-      return kNothing;
+    if (mine.age >= kOld) {
+      revive(ultrasonic_at(number).echo);
+      mine.echo_us = 0;
+      mine.sample_us = kNothing;
+      return true;
     }
   }
-  if (clock_ms() - mine.ping_ms <= kFreshMs) return mine.echo_us;
-  if (!is_busy) return kNothing;
-  if (!it->is_held) {
-    it->is_held = true;
-    it->begun_us = clock_us();
-    return kNothing;
-  }
-  if (since(clock_us(), it->begun_us) < kLimitUs) return kNothing;
-  it->is_held = false;
-  return kLimitUs;
+  take(it->readings[whose], us);
+  return is_awaited;
 }
 
 }  // namespace
@@ -190,13 +255,23 @@ void ultrasonic_begin() {
 
 void ultrasonic_tick() {
   if (!is_spaced) may_ping();
+  Sonar* const it = near(&sonar);
+  const uint8_t gone_ms = (clock_8_ms() - it->aged_ms) & 0xfe;
+  it->aged_ms = static_cast<uint8_t>(it->aged_ms + gone_ms);
+  for (uint8_t number = 0; number < kUltrasonics; number++) {
+    Reading& reading = it->readings[number];
+    const uint8_t age = static_cast<uint8_t>(reading.age + gone_ms / 2);
+    reading.age = age < reading.age ? 0xff : age;
+  }
 }
 
 bool ultrasonic_read(uint8_t number, int32_t* distance) {
-  const uint16_t echo_us = echo_of(number);
-  if (echo_us == kNothing) return false;
-  const uint32_t near = uint32_t{echo_us} * kThousandthsPer256Us >> 8;
-  *distance = static_cast<int32_t>(near < kFarthest ? near : kFarthest);
+  if (!is_fresh(number)) return false;
+  const Reading& mine = near(&sonar)->readings[number];
+  const uint16_t echo_us = mine.echo_us;
+  if (echo_us == kNothing || mine.sample_us != kNothing) return false;
+  *distance = kFarthest;
+  if (echo_us < kFarUs) *distance = uint32_t{echo_us} * kThousandthsPer256Us >> 8;
   return true;
 }
 
@@ -206,7 +281,9 @@ void ultrasonic_forget() {
   if (it->ping == Ping::kListening) listen(false);
   it->ping = Ping::kNone;
   it->is_held = false;
-  for (Reading& reading : it->readings) reading.echo_us = kNothing;
+  for (uint8_t number = 0; number < kUltrasonics; number++) {
+    it->readings[number].echo_us = it->readings[number].sample_us = kNothing;
+  }
 }
 
 }  // namespace tiniscript

@@ -1,7 +1,10 @@
 // HC-SR04: measures distance without waiting for the echo.
 //
 // Pings of all sensors are at least 30 ms apart, so that a late echo is not taken for the next one.
-// A reading is valid for 60 ms from its ping on.
+// A reading is valid for 60 ms from its ping on. A sample that differs much from the last value has
+// to be confirmed by a second one, and a run's first value is the middle one of three. An echo that
+// stays high for 0.3 s is of a sensor that hangs: it is read as 0, and pulled low for a moment where
+// the pin is joined to it without a divider.
 
 #pragma once
 

@@ -6,10 +6,13 @@ import os.path
 from argparse import Namespace
 from pathlib import Path
 
+from tiniscript import robots
 from tiniscript.base.kit import OWN_BESIDE_REMOTE
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.robots import firmware
+from tiniscript.robots.nearness import nearest_to
+from tiniscript.robots.profile import Robot
 
 SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the place in it
 
@@ -18,6 +21,8 @@ def run(options: Namespace, language: str) -> int:
     robot = inputs.wired_robot(options, language).with_language(language)
     if not robot.kit.has_remote:
         say_aside("board_no_remote", language, robot=robot.name, most=str(OWN_BESIDE_REMOTE))
+    if robots.is_path(options.robot):
+        _compare(robot, language)
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
     if not outputs.put(options.output, header.encode()):
         return 0
@@ -25,6 +30,17 @@ def run(options: Namespace, language: str) -> int:
     say("board", language, file=inputs.printable_name(options.output), robot=robot.name,
         chip=robot.board.chip, now=now)  # fmt: skip
     return 0
+
+
+def _compare(robot: Robot, language: str) -> None:
+    """Say which shipped robot is nearest to somebody's own."""
+    nearest = nearest_to(robot)
+    if nearest.is_same:
+        say_aside("board_same_kit", language, kit=nearest.name)
+        return
+    lists = {"shared": nearest.shared, "there": nearest.only_there, "here": nearest.only_here}
+    values = {key: ", ".join(names) or "–" for key, names in lists.items()}
+    say_aside("board_nearest_kit", language, kit=nearest.name, **values)
 
 
 def _next(robot: str, output: Path, chip: str, language: str) -> str:

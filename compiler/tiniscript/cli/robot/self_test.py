@@ -28,11 +28,12 @@ from tiniscript.library.known_kits import robot_of_kit
 from tiniscript.link.messages import RESETS, SAVED
 from tiniscript.link.names import row_name
 from tiniscript.link.trim import Trim, trim_from_reply
-from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import Robot, Wiring
 
 PARTS = ("kit", "firmware", "line", "supply", "store")  # of which a robot tells itself
 SIDES = ("left", "right")
 READINGS = 3
+SONAR = "hc_sr04"  # a driver: one that hangs is read as 0
 NOTICED = 50  # a hand changes a reading by more than one part of so many of its range
 STANDS = "W(2)"
 HEARD, AGAIN = 1, 3  # answers about the buzzer
@@ -68,10 +69,10 @@ class SelfTest(Conversation):
         if self.heard is not None and self.heard.status.noise:
             self._discs()
         is_lifted = self._is_lifted()
-        for sensor in robot.kit.sensors:
-            self._sensor(sensor)
+        for sensor, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True):
+            self._sensor(sensor, wiring)
         self._motors(is_lifted)
-        if robot.board.buzzer:
+        if robot.board.buzzer is not None:
             self._buzzer()
 
     def _add(self, cause: str, of: str = "", **values: str) -> None:
@@ -133,10 +134,13 @@ class SelfTest(Conversation):
             return True
         return False
 
-    def _sensor(self, sensor: Device) -> None:
+    def _sensor(self, sensor: Device, wiring: Wiring) -> None:
         name = sensor.name
         try:
             before = self._read(sensor)
+            if wiring.driver == SONAR and not any(before):  # nothing is so near
+                self._add("echo_hung", name=name)
+                return
             values = _range(sensor, before)
             self.answer("ask_free", name=name, values=values)
             before = self._read(sensor)

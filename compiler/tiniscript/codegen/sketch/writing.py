@@ -132,6 +132,8 @@ class _Sketch:
         self.functions["to_ms"] = helpers.TO_MS[self.is_exact]
         self.functions["servo_pulse"] = helpers.SERVO_PULSE
         self.functions["begin_servos"] = helpers.BEGIN_SERVOS
+        if robot.board.buzzer is None:
+            self.functions = {key: _silent(code) for key, code in self.functions.items()}
 
     def use(self, key: str) -> str:
         self.needed[key] = None
@@ -266,7 +268,8 @@ class _Sketch:
         if self.needs_serial():
             lines.append(f"Serial.begin({self.robot.board.baud});")
         lines.append("pinMode($START_BUTTON_$PIN, INPUT_PULLUP);")
-        self.plan.pin("$BUZZER_$PIN", self.robot.board.buzzer)
+        if self.robot.board.buzzer is not None:
+            self.plan.pin("$BUZZER_$PIN", self.robot.board.buzzer)
         self.plan.pin("$START_BUTTON_$PIN", self.robot.board.start_button)
         if self.plan.servo_pins:
             lines.append("$begin_servos();")
@@ -286,7 +289,8 @@ class _Sketch:
     def halt(self) -> str:
         lines = ["$stop_motors();", "noTone($BUZZER_PIN);", *self.plan.off, "while (true) {"]
         body = "\n".join(f"  {line}" for line in lines)
-        return f"void $halt() {{\n{body}\n  }}\n}}"
+        code = f"void $halt() {{\n{body}\n  }}\n}}"
+        return code if self.robot.board.buzzer is not None else _silent(code)
 
     def follow(self, texts: Iterable[str]) -> None:
         """Find the helpers that texts and other helpers need."""
@@ -412,6 +416,11 @@ def _lines(*parts: list[str]) -> str:
         if first and others[0]:
             first.append("")
     return "".join(f"{line}\n" for line in (*first, *(row for rows in others for row in rows)))
+
+
+def _silent(code: str) -> str:
+    """Return a helper for a robot without a buzzer: a sound takes its time."""
+    return "\n".join(line for line in code.split("\n") if "$BUZZER_PIN" not in line)
 
 
 def _heading(text: str) -> str:

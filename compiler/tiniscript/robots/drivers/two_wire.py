@@ -1,4 +1,4 @@
-"""Chips that take two PWM pins for each motor: DRV8833, L9110S."""
+"""Chips that take two PWM pins for each motor, under any name of their pins."""
 
 from __future__ import annotations
 

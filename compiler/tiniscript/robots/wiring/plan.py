@@ -168,9 +168,9 @@ def plan_of(robot: Robot, language: str) -> Plan:
     matches.append(
         counter.part(label_of("part_button"), "SB", switch(), {"pin": board.start_button})
     )
-    matches.append(
-        counter.part(label_of("part_buzzer"), "BEEP", parts.BUZZER, {"pin": board.buzzer})
-    )
+    if board.buzzer is not None:
+        beep = {"pin": board.buzzer}
+        matches.append(counter.part(label_of("part_buzzer"), "BEEP", parts.BUZZER, beep))
     has_radio = chip.pin_volts == FIVE_VOLTS
     has_lamp = has_radio and board.status_led == LAMP_PIN
     if board.status_led is not None and not has_lamp:

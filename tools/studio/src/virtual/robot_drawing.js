@@ -26,7 +26,7 @@ const LOOK_CM = 14; // of a ray of light
 export function drawRobot(pen, robot, state, seen) {
   if (state) drawSenses(pen, robot, state);
   actuatorsOf(robot).forEach((device, k) => {
-    if (!device.is_yes_no) drawJaws(pen, robot, (state?.actuators[k] ?? 0) / (device.arguments[0]?.high || 1));
+    if (!device.is_yes_no && !carriesSensor(robot, device.text)) drawJaws(pen, robot, (state?.actuators[k] ?? 0) / (device.arguments[0]?.high || 1));
   });
   path(pen, robot.outline, '#0d4f38', 0.8, state?.fault ? '#c8372a' : '#2a9d6f');
   const side = robot.wheel_base_cm / 2;
@@ -96,6 +96,11 @@ function drawBuzzer(pen, isBeeping) {
   }
 }
 
+/** @param {Robot} robot @param {string} actuator */
+function carriesSensor(robot, actuator) {
+  return Object.values(robot.places).some((place) => place.turns_with === actuator);
+}
+
 /** @param {Pen} pen @param {Robot} robot @param {number} part of how far they can open */
 function drawJaws(pen, robot, part) {
   const front = Math.max(...robot.outline.map(([x = 0]) => x));
@@ -107,14 +112,15 @@ function drawJaws(pen, robot, part) {
 
 /** What each sensor looks at, and how much it finds. @param {Pen} pen @param {Robot} robot @param {RobotState} state */
 function drawSenses(pen, robot, state) {
-  /** @type {Record<string, {x_cm: number, y_cm: number, heading: number, sees: string} | undefined>} */
+  /** @type {Record<string, {x_cm: number, y_cm: number, heading: number, sees: string, turns_with: string} | undefined>} */
   const places = robot.places;
+  const turned = state.turned ?? {};
   robot.devices.filter((device) => device.role === 'sensor').forEach((device, k) => {
     const place = places[device.text];
     const reading = state.readings[k];
     if (!place || !reading) return;
     const { x_cm: x, y_cm: y } = place;
-    const along = (place.heading * Math.PI) / 180;
+    const along = ((place.heading + (turned[place.turns_with] ?? 0)) * Math.PI) / 180;
     if (place.sees === 'distance') {
       cone(pen, x, y, along, reading.value, '#e0452f33');
     } else if (place.sees === 'light') {

@@ -25,6 +25,19 @@ struct Echo {
 // The robot's header names the vectors, and the handler is theirs.
 tini_always_inline void begin_echo(Echo, void (*)()) {}
 
+// Pulls an echo that has been high for too long low, until `release`: many a clone that hangs lets
+// go then. Returns whether it was pulled.
+tini_always_inline void revive(Echo echo) {
+  set_bits(static_cast<uint16_t>(echo.pin.port - 1), echo.pin.mask);  // without pull-up: low
+}
+
+tini_always_inline bool release(Echo echo) {
+  const uint16_t direction = static_cast<uint16_t>(echo.pin.port - 1);
+  if ((register8(direction) & echo.pin.mask) == 0) return false;
+  clear_bits(direction, echo.pin.mask);
+  return true;
+}
+
 // Turns the interrupt on or off. For callers with interrupts off.
 tini_always_inline void listen_inside(Echo echo, bool is_on) {
   const uint16_t masks =

@@ -124,6 +124,8 @@ tini_always_inline void begin_servo(Pin pin) { begin_output(pin, false); }
 
 // -- PWM
 
+constexpr Pwm kNoPwm = {kNoPin, 0, kChannelA};
+
 constexpr uint16_t control_of(Pwm pwm) {
   return pwm.timer == 0   ? 0x44
          : pwm.timer == 1 ? 0x80

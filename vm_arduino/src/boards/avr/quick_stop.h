@@ -9,7 +9,8 @@
 #include "pins.h"
 
 // Servos that turn have no pins to turn off: they get another pulse.
-#if defined(tiniscript_motors_bridge) || defined(tiniscript_motors_two_wire)
+#if defined(tiniscript_motors_bridge) || defined(tiniscript_motors_two_wire) || \
+    defined(tiniscript_motors_shift_register)
 #define tiniscript_has_quick_stop
 #endif
 
@@ -40,6 +41,7 @@ tini_always_inline void stop_quickly(Pin pin) {
 }
 
 tini_always_inline void stop_quickly(Pwm pwm) {
+  if (!is_there(pwm.pin)) return;
   clear_quickly(control_of(pwm), connection_of(pwm));
   stop_quickly(pwm.pin);
 }
@@ -53,6 +55,11 @@ tini_always_inline void stop_quickly(const Bridge& motor) {
 tini_always_inline void stop_quickly(const TwoWire& motor) {
   stop_quickly(motor.forward);
   stop_quickly(motor.backward);
+}
+
+tini_always_inline void stop_quickly(const ShieldMotors& motors) {
+  stop_quickly(motors.pwm);
+  stop_quickly(motors.second);
 }
 
 // Closes the latch and turns the motors off. Changes r30 alone; for callers with interrupts off.

@@ -6,6 +6,8 @@
 #include "clock.h"
 #include "../kit.h"
 
+#ifndef tiniscript_silent
+
 namespace tiniscript {
 
 namespace {
@@ -101,5 +103,7 @@ ISR(TIMER2_COMPA_vect, ISR_NAKED) {
         [bit] "I"(__builtin_ctz(kBuzzer.mask)), [first] "i"(&first_half),
         [second] "i"(&second_half), [compare] "n"(_SFR_MEM_ADDR(OCR2A)));
 }
+
+#endif  // tiniscript_silent
 
 #endif  // __AVR__

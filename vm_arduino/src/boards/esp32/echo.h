@@ -17,6 +17,11 @@ inline void begin_echo(Echo echo, void (*handler)()) {
   gpio_intr_disable(gpio_of(echo.pin));
 }
 
+// Between the pin and the echo is a divider, so the pin cannot pull it low.
+inline void revive(Echo) {}
+
+inline bool release(Echo) { return false; }
+
 // Turns the interrupt on or off. For callers in a critical section.
 inline void listen_inside(Echo echo, bool is_on) {
   if (is_on) {

@@ -4,6 +4,8 @@
 
 #include "../kit.h"
 
+#ifndef tiniscript_silent
+
 namespace tiniscript {
 
 namespace {
@@ -65,5 +67,7 @@ void sound_tick(uint32_t now_ms) {
 }
 
 }  // namespace tiniscript
+
+#endif  // tiniscript_silent
 
 #endif  // ARDUINO_ARCH_ESP32

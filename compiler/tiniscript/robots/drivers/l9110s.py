@@ -1,0 +1,29 @@
+"""The module L9110S (HG7881), with two motors: two PWM pins for each."""
+
+from __future__ import annotations
+
+from tiniscript.robots.driver import GROUND, MOTOR_BATTERY, PULL_DOWN, Shape, Terminal
+from tiniscript.robots.drivers.two_wire import TwoWire
+
+
+class L9110S(TwoWire):
+    name = "l9110s"
+    looks = Shape(
+        "bridge",
+        "need_l9110s",
+        (
+            Terminal("A-IA", "left_forward", to_ground=PULL_DOWN),
+            Terminal("A-IB", "left_backward", to_ground=PULL_DOWN),
+            Terminal("B-IA", "right_forward", to_ground=PULL_DOWN),
+            Terminal("B-IB", "right_backward", to_ground=PULL_DOWN),
+            Terminal("VCC", rail=MOTOR_BATTERY),
+            Terminal("GND", rail=GROUND),
+        ),
+        "L9110S",
+        ("MOTOR A", "MOTOR B"),
+        ("mind_l9110s",),
+        power="power_volts_l9110s",
+    )
+
+
+DRIVER = L9110S()

@@ -1,0 +1,65 @@
+"""Compares a robot with the shipped ones: which kit is nearest to it, and what tells them apart."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tiniscript import robots
+from tiniscript.base.kit import Device, Kit
+from tiniscript.robots.profile import Robot
+
+
+class Nearest(NamedTuple):
+    """The shipped robot that is nearest. The devices are names, as programs have them.
+
+    `is_same`: the kits are one, so each runs the other's programs.
+    """
+
+    name: str
+    is_same: bool
+    shared: tuple[str, ...]
+    only_there: tuple[str, ...]
+    only_here: tuple[str, ...]
+
+
+def nearest_to(robot: Robot) -> Nearest:
+    """Return the nearest of the shipped robots.
+
+    That is the one with the most devices in common, then with the fewest others, then on the same
+    board, then with the same driver of motors; the first of those that are as near.
+    """
+    here = _devices(robot.kit)
+
+    def distance(other: Robot) -> tuple[int, int, bool, bool]:
+        there = _devices(other.kit)
+        return (
+            -len(here & there),
+            len(here ^ there),
+            other.board.chip != robot.board.chip,
+            other.board.motors.driver != robot.board.motors.driver,
+        )
+
+    best = min(map(robots.load, robots.names()), key=distance)
+    there = _devices(best.kit)
+    return Nearest(
+        best.name,
+        best.kit.fingerprint == robot.kit.fingerprint,
+        _names(robot.kit, here & there),
+        _names(best.kit, there - here),
+        _names(robot.kit, here - there),
+    )
+
+
+def _devices(kit: Kit) -> set[tuple[bool, Device]]:
+    """Return what programs know of a kit: whether it senses, and what it is."""
+    return {
+        (is_sensor, device)
+        for is_sensor, devices in ((True, kit.sensors), (False, kit.actuators))
+        for device in devices
+    }
+
+
+def _names(kit: Kit, devices: set[tuple[bool, Device]]) -> tuple[str, ...]:
+    """Return their names, in the order of the kit."""
+    chosen = {device.name for _, device in devices}
+    return tuple(device.name for device in (*kit.sensors, *kit.actuators) if device.name in chosen)

@@ -1,0 +1,248 @@
+"""Motors behind a shield with a 74HC595: what the sketch writes, read as the shield reads it.
+
+`tests/machines/shift_register.py` is the part; what of each L293D turns its motor is here.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import NamedTuple
+
+import pytest
+
+from tests.firmware.test_boards import BACK, FORWARD, MOVES, OFF, START, STOPS, TURN, started
+from tests.machines.board import CONTROLS, HERTZ, MS, PORTS, Board
+from tests.machines.shift_register import HOLD_NS, ShiftRegister, WrongTiming
+from tiniscript.robots.profile import ProfileRefused, Robot
+from tiniscript.robots.reader import read
+from tiniscript.robots.refusals import describe
+
+NS = 1e9 / HERTZ  # of a cycle
+# Of the schematic of Adafruit's shield: its outputs at the inputs of each half L293D, and its PWM.
+MOTORS = {"M1": (2, 3, 11), "M2": (1, 4, 3), "M3": (5, 7, 6), "M4": (0, 6, 5)}
+WIRES = {"latch": 12, "enable": 7, "data": 8, "clock": 4}
+SIDES = {"two": ("M3", "M4"), "four": ("M1 M2", "M3 M4"), "crossed": ("M2 M4", "M1 M3")}
+
+
+def profile(left: str, right: str, chip: str = "uno") -> str:
+    """A robot that has little beside the shield: no buzzer takes a timer."""
+    return f"""
+[kit]
+speed = 45
+[[kit.sensors]]
+name = "LIGHT"
+kind = "number"
+range = [0, 1023]
+[board]
+chip = "{chip}"
+baud = 9600
+start_button = 2
+[board.motors]
+driver = "hw130"
+left = "{left}"
+right = "{right}"
+[board.sensors.LIGHT]
+driver = "analog"
+pin = "A0"
+[body]
+wheel_base_cm = 13.5
+length_cm = 21
+width_cm = 15
+"""
+
+
+ARM = """[[kit.actuators]]
+name = "ARM"
+kind = "number"
+range = [0, 180]
+"""
+WIRED_ARM = """[board.actuators.ARM]
+driver = "servo"
+pin = 9
+"""
+
+
+def shield(left: str, right: str, chip: str = "uno") -> Robot:
+    return read(profile(left, right, chip), "shield")
+
+
+class Seen(NamedTuple):
+    """What the motors do from a cycle on: `M1` forward with 204 is `{"M1": 204}`."""
+
+    cycle: int
+    powers: dict[str, int]
+
+
+def seen_by_the_motors(board: Board) -> list[Seen]:
+    """Play all writes into a shift register and L293Ds; return what the motors do, in order.
+
+    A motor whose PWM is on while its two inputs are not known is a motor that nobody controls.
+    """
+    register = ShiftRegister()
+    states: list[Seen] = []
+    values: dict[int, int] = {}
+    for change in board.changes:
+        values[change.address] = change.value
+        for name, pin in WIRES.items():
+            port, bit = board.bit(pin)
+            if change.address == PORTS[port]:
+                register.change(change.cycle * NS, name, bool(change.value >> bit & 1))
+        powers = {}
+        for motor, (forward, backward, pin) in MOTORS.items():
+            level = level_of(board, pin, values)
+            if level == 0:
+                continue
+            bits = register.outputs
+            assert bits is not None, f"{motor} has power, and no direction"
+            way = (bits >> forward & 1) - (bits >> backward & 1)
+            powers[motor] = way * level
+        if not states or states[-1].powers != powers:
+            states.append(Seen(change.cycle, powers))
+    return states
+
+
+def level_of(board: Board, pin: int, values: dict[int, int]) -> int:
+    """Return what a PWM pin gives, 255 of 255 where it is simply high."""
+    timer, channel = board.avr.compares[pin]
+    connection = {"a": 0x80, "b": 0x20, "c": 0x08}[channel]
+    if values.get(CONTROLS[timer], 0) & connection:
+        return values.get(board.compare_address(pin), 0)
+    port, bit = board.bit(pin)
+    return 255 * (values.get(PORTS[port], 0) >> bit & 1)
+
+
+def at(states: list[Seen], ms: float) -> dict[str, int]:
+    return [each.powers for each in states if each.cycle <= ms * MS][-1]
+
+
+def both(sides: tuple[str, str], left: int, right: int) -> dict[str, int]:
+    powers = dict.fromkeys(sides[0].split(), left)
+    return {**powers, **dict.fromkeys(sides[1].split(), right)}
+
+
+@pytest.mark.parametrize("chip", ["uno", "mega"])
+@pytest.mark.parametrize("name", SIDES)
+def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> None:
+    sides = SIDES[name]
+    board = started(shield(*sides, chip), MOVES).ran(START + OFF + 50)
+    states = seen_by_the_motors(board)
+    assert at(states, START - 1) == {}
+    assert at(states, START + FORWARD) == both(sides, 204, 204)
+    assert at(states, START + BACK) == both(sides, -102, -102)
+    assert at(states, START + TURN) == both(sides, 127, -255)
+    assert at(states, START + OFF) == {}
+    assert board.quiet_us < 40  # half of what two bytes take at 115,200 baud
+
+
+@pytest.mark.sampled("seed", keep=2)
+@pytest.mark.parametrize("seed", range(8))
+def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
+    """Whatever a program drives: in between a motor is only off, or has one of the two powers."""
+    draw = random.Random(seed)
+    moves = [(draw.choice([-80, -40, 0, 40, 80]), draw.choice([-80, -40, 0, 40, 80]))
+             for _ in range(12)]  # fmt: skip
+    text = "SI|" + ";".join(f"M({left}, {right});W(0.02)" for left, right in moves)
+    sides = SIDES["crossed"]
+    states = seen_by_the_motors(started(shield(*sides), text).ran(START + 300))
+    left_of = set(sides[0].split())
+    previous = (0, 0)
+    for number, (left, right) in enumerate(moves):
+        begin, end = START + 20 * number, START + 20 * (number + 1)
+        levels = [int(each * 2.55) for each in (left, right)]
+        steady = at(states, end - 1)
+        assert steady == {m: p for m, p in both(sides, *levels).items() if p}
+        for each in states:
+            if not begin - 1 < each.cycle / MS < end - 1:
+                continue
+            for motor, power in each.powers.items():
+                side = 0 if motor in left_of else 1
+                assert power in (levels[side], int(previous[side] * 2.55))
+        previous = (left, right)
+
+
+@pytest.mark.parametrize("chip", ["uno", "mega"])
+def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
+    robot = shield(*SIDES["four"], chip)
+    more = STOPS if chip == "uno" else ""
+    board = started(robot, "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP", more)
+    if chip == "uno":
+        board.level(START + 50.123, 19, True)
+    board.press(400, 450)
+    board.ran(430)
+    states = seen_by_the_motors(board)
+    assert all(each.cycle >= (START - 1) * MS for each in states if each.powers)
+    stopped = START + 50.123 + 0.02 if chip == "uno" else 402
+    assert all(each.cycle < stopped * MS for each in states if each.powers)
+    enable = board.edges(WIRES["enable"])
+    assert enable[0] < 100, "its outputs are off before a program drives"
+
+
+@pytest.mark.parametrize(("changes", "why"), [
+    ([(0, "data", True), (20, "clock", True)], "data before the clock"),
+    ([(0, "data", True), (0, "clock", True)], "data before the clock"),
+    ([(0, "clock", True), (HOLD_NS - 1, "data", True)], "data after the clock"),
+    ([(0, "clock", True), (10, "clock", False)], "a pulse of the clock"),
+    ([(0, "clock", True), (50, "clock", False), (60, "clock", True)], "a pulse of the clock"),
+    ([(0, "clock", True), (10, "latch", True)], "the clock before the latch"),
+    ([(0, "latch", True), (10, "latch", False)], "a pulse of the latch"),
+])  # fmt: skip
+def test_the_part_refuses_wrong_timing(changes: list[tuple[float, str, bool]], why: str) -> None:
+    register = ShiftRegister()
+    with pytest.raises(WrongTiming, match=why):
+        for ns, name, is_high in changes:
+            register.change(ns, name, is_high)
+
+
+def test_the_part_shows_eight_bits_at_its_latch_and_not_before() -> None:
+    register = ShiftRegister()
+    ns = 0.0
+    for bit in (1, 0, 1, 0, 0, 1, 1, 0):
+        for name, is_high in (("data", bool(bit)), ("clock", True), ("clock", False)):
+            ns += 100
+            register.change(ns, name, is_high)
+    assert register.outputs is None
+    register.change(ns + 100, "latch", True)
+    assert register.outputs == 0b10100110
+    register.change(ns + 200, "enable", True)
+    assert register.outputs is None
+
+
+def told(robot: str) -> list[str]:
+    with pytest.raises(ProfileRefused) as caught:
+        read(robot, "test")
+    return describe(caught.value, "en")
+
+
+def test_what_takes_the_shields_pins_is_named() -> None:
+    """A buzzer takes the timer of M1 and M2, on a Mega a servo that of M1."""
+    four = profile(*SIDES["four"])
+    assert read(four, "test").board.buzzer is None
+    beeping = four.replace("start_button = 2", 'start_button = 2\nbuzzer = "A5"')
+    assert told(beeping) == [
+        f"board.motors.left: the speed of {motor} is the PWM of pin {pin}, which needs timer 2,"
+        " but board.buzzer uses that. Leave one of the two out."
+        for motor, pin in (("M1", 11), ("M2", 3))
+    ]
+    assert read(beeping.replace("M1 M2", "M3").replace("M3 M4", "M4"), "test").board.buzzer == 19
+    servo = four.replace("[board]", ARM + "[board]").replace("[body]", WIRED_ARM + "[body]")
+    assert read(servo, "test").board.actuators[0].pins == {"pin": 9}, "where the shield has it"
+    assert told(servo.replace('"uno"', '"mega"')) == [
+        "board.motors.left: the speed of M1 is the PWM of pin 11, which needs timer 1,"
+        " but board.actuators.ARM.pin uses that. Leave one of the two out."
+    ]
+    assert told(four.replace("start_button = 2", "start_button = 12")) == [
+        "board.motors.driver: the shield uses pin 12 for LATCH, but board.start_button already"
+        " uses it. Use another pin there, or another motor here."
+    ]
+    assert told(four.replace("M3 M4", "M2 M4")) == [
+        "board.motors.right: the shield uses pin 3 for M2, but board.motors.left already uses it."
+        " Use another pin there, or another motor here."
+    ]
+    assert told(servo.replace("pin = 9", "pin = 4"))[0].startswith(
+        "board.actuators.ARM.pin is pin 4, which board.motors.driver already uses."
+    )
+    for chip in ("esp32dev", "esp32c3"):
+        text = four.replace('"uno"', f'"{chip}"').replace('"A0"', "3" if chip[-1] == "3" else "34")
+        assert [each.partition(",")[0] for each in told(text)] == [
+            "board.motors.driver is a shield for boards with the pins of an Uno"
+        ]

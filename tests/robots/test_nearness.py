@@ -1,0 +1,68 @@
+"""Which of the shipped robots is nearest to somebody's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.robots.test_robots import TEXTS
+from tests.support.command import Tsc
+from tiniscript import robots
+from tiniscript.base.kit import Kit
+from tiniscript.robots.nearness import nearest_to
+from tiniscript.robots.reader import read
+
+BATTERY = '[[kit.sensors]]\nname = "BATTERY"\nkind = "number"\nunit = "V"\nrange = [0, 10]\n\n'
+
+
+@pytest.mark.parametrize("name", robots.names())
+def test_a_shipped_robot_is_nearest_to_itself(name: str) -> None:
+    """Those that share a kit are told apart by their boards; discs are no part of a kit's words."""
+    nearest = nearest_to(robots.load(name))
+    assert nearest.is_same and not nearest.only_there and not nearest.only_here
+    kits = robots.load(name).kit, robots.load(nearest.name).kit
+    assert kits[0].fingerprint == kits[1].fingerprint
+    chips = robots.load(name).board.chip, robots.load(nearest.name).board.chip
+    assert chips[0] == chips[1]
+
+
+def test_what_both_have_counts_first_and_what_only_one_has_then() -> None:
+    text = TEXTS["liner"].replace(BATTERY, "")
+    assert text != TEXTS["liner"]
+    head, _, rest = text.partition("[board.sensors.BATTERY]")
+    text = head + rest[rest.index("[board.actuators.LED]") :]
+    text = text.replace('BATTERY = "battery voltage"\n', "")
+    nearest = nearest_to(read(text, "mine"))
+    assert nearest == ("liner", False, ("LINE_L", "LINE_R", "BUTTON", "LED"), ("BATTERY",), ())
+    other = TEXTS["tinibot"].replace('"LIGHT_R"', '"LIGHT_B"', 1)
+    for table in ("board.sensors.", "body.sensors."):
+        other = other.replace(f"[{table}LIGHT_R]", f"[{table}LIGHT_B]")
+    other = other.replace("\nLIGHT_R = {", "\nLIGHT_B = {").replace('LIGHT_R = "', 'LIGHT_B = "')
+    nearest = nearest_to(read(other, "mine"))
+    assert nearest == ("tinibot", False, ("LIGHT_L", "DISTANCE"), ("LIGHT_R",), ("LIGHT_B",))
+    range_of = TEXTS["grabber"].replace("range = [0, 180]", "range = [0, 90]")
+    nearest = nearest_to(read(range_of, "mine"))
+    assert (nearest.name, nearest.only_there, nearest.only_here) == (
+        "grabber", ("GRIPPER",), ("GRIPPER",),
+    )  # fmt: skip
+
+
+def test_more_in_common_counts_before_fewer_others() -> None:
+    distance, _, button = robots.load("grabber").kit.sensors
+    mine = robots.load("tinibot")._replace(kit=Kit((distance, button), ()))
+    assert nearest_to(mine)[:3] == ("grabber", False, ("DISTANCE", "BUTTON"))
+
+
+def test_the_command_says_it_of_a_file_and_of_nothing_shipped(tsc: Tsc, tmp_path: Path) -> None:
+    own = tmp_path / "mine.toml"
+    own.write_text(TEXTS["tinibot"], encoding="utf-8")
+    done = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
+    assert "Your robot has the kit of tinibot" in done.err
+    own.write_text(TEXTS["grabber"].replace("[0, 180]", "[0, 90]"), encoding="utf-8")
+    done = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
+    assert done.err == (
+        "The robot that comes with tsc and is nearest to yours is grabber. In common: DISTANCE,"
+        " TEMPERATURE, BUTTON, LED. Only grabber has: GRIPPER. Only yours has: GRIPPER.\n"
+    )
+    assert tsc("firmware", "--board", "grabber", "-o", tmp_path / "own.h").err == ""

@@ -1,0 +1,67 @@
+"""A sensor that a servo carries looks where the servo has turned it."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from tests.robots.test_robots import TEXTS
+from tests.support.virtual_robot import Talk
+from tiniscript import robots
+from tiniscript.robots.kinematics import Pose
+from tiniscript.robots.profile import Robot
+from tiniscript.robots.reader import read
+from tiniscript.virtual import worlds
+from tiniscript.virtual.robot import Settings, VirtualRobot
+from tiniscript.virtual.sensing import Sensing
+
+
+def with_neck(low: int = 0, high: int = 180) -> Robot:
+    """The grabber, whose servo carries its distance sensor."""
+    text = TEXTS["grabber"].replace(
+        'sees = "distance"', 'sees = "distance", turns_with = "GRIPPER"'
+    )
+    return read(text.replace("range = [0, 180]", f"range = [{low}, {high}]"), "necked")
+
+
+@pytest.mark.parametrize(("low", "high"), [(0, 180), (-90, 90), (20, 160)])
+def test_it_reads_what_a_sensor_reads_that_looks_there(low: int, high: int) -> None:
+    """Anywhere in a world, and whatever its range is called: the middle is where it looks ahead."""
+    necked, world = with_neck(low, high), worlds.load("obstacles")
+    draw = random.Random(3)
+    seen = set()
+    for _ in range(60):
+        pose = Pose(draw.uniform(20, 200), draw.uniform(20, 180), draw.uniform(0, 360))
+        value = draw.randint(low, high)
+        place = necked.body.places["DISTANCE"]
+        fixed = place._replace(heading=value - (low + high) / 2, turns_with="")
+        body = necked.body._replace(places={"DISTANCE": fixed})
+        turned, looks = Sensing(necked, world), Sensing(necked._replace(body=body), world)
+        turned.turn(0, value * 1000)
+        assert turned.look(0, pose) == looks.look(0, pose)
+        seen.add((turned.look(0, pose), Sensing(necked, world).look(0, pose)))
+    assert sum(a != b for a, b in seen) > 30, "it turns, and sees something else"
+
+
+def test_it_stays_as_it_is_when_its_servo_is_released() -> None:
+    """A stop lets go of the servo, which nothing then turns back."""
+    robot = VirtualRobot(with_neck(), worlds.load("maze"), Settings(1))
+    talk = Talk(robot)
+    ahead = robot.sensing.look(0, robot.pose)
+    talk.upload("SI|GRIPPER(0);W(0.2)", is_detached=True)
+    robot.step(robot.now_ms + 1000)
+    robot.actuators_off(robot.now_ms)
+    assert robot.actuators == {}
+    assert robot.sensing.turned == {"GRIPPER": -90.0}
+    assert robot.sensing.look(0, robot.pose) != ahead
+    talk.upload("SI|GRIPPER(90);W(0.2)", is_detached=True)
+    robot.step(robot.now_ms + 1000)
+    assert robot.sensing.look(0, robot.pose) == ahead
+
+
+def test_another_actuator_turns_no_sensor() -> None:
+    robot = VirtualRobot(robots.load("grabber"), worlds.load("maze"), Settings(1))
+    Talk(robot).upload("SI|GRIPPER(0);LED(TRUE);W(0.2)", is_detached=True)
+    robot.step(robot.now_ms + 100)
+    assert robot.sensing.turned == {}

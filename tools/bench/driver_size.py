@@ -1,0 +1,84 @@
+"""Prints how much flash each driver of motors takes on an Uno, beside what `tinibot` takes with it.
+
+Builds tinibot with PlatformIO as `firmware_size` does, in a copy of the project, once for each
+driver, with its distance sensor where no shield has pins. What does not fit is what `tsc firmware`
+then builds without tasks.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+from tiniscript import robots
+from tiniscript.flash import building
+from tiniscript.robots import firmware
+from tiniscript.robots.boards import CHIPS
+from tiniscript.robots.drivers import DRIVERS, drivers_for
+from tiniscript.robots.profile import Robot, Wiring
+from tools.bench import page
+from tools.bench.firmware_size import PROJECT, measure
+
+USED = "l298n"  # by tinibot
+ENVIRONMENT = "uno"
+DRIVERS_IN_ORDER = sorted(drivers_for("motors"), key=lambda name: name != USED)
+ROWS = [f"`{name}`" for name in DRIVERS_IN_ORDER]
+BESIDE_A_SHIELD = {"trigger": 16, "echo": 17}  # A2, A3
+
+
+def wired(name: str, robot: Robot) -> Wiring:
+    """Return the motors of a driver, on the first pins that fit and that nothing else has."""
+    chip, driver = CHIPS[robot.board.chip], DRIVERS["motors", name]
+    settings = {setting.key: setting.default for setting in driver.settings}
+    taken = {*chip.link_pins, 11, 13, robot.board.start_button}
+    pins = {}
+    for key, need, _, fixed, _ in driver.pins:
+        if fixed is None:
+            can = (pin for pin in sorted(chip.digital) if chip.can(pin, need) and pin not in taken)
+            pins[key] = next(can)
+            taken.add(pins[key])
+        elif driver.chosen_by(key, settings):
+            pins[key] = fixed
+    return Wiring(name, pins, settings)
+
+
+def flash_with(name: str, project: Path, environment: str = ENVIRONMENT) -> int:
+    """Return the bytes of the firmware of a tinibot with these motors."""
+    tinibot = robots.load("tinibot")
+    *lights, distance = tinibot.board.sensors
+    sensors = (*lights, distance._replace(pins=BESIDE_A_SHIELD))
+    motors = wired(name, tinibot)
+    board = tinibot.board._replace(motors=motors, sensors=sensors, bluetooth_state=None)
+    changed = tinibot._replace(board=board)
+    own = project / "src" / "boards" / "kits" / "own.h"
+    own.write_text(firmware.header([changed], "a benchmark."), encoding="utf-8")
+    return measure(environment, project).flash
+
+
+def main() -> int:
+    rows = []
+    with tempfile.TemporaryDirectory() as name:
+        project = Path(name) / "vm_arduino"
+        shutil.copytree(PROJECT, project, ignore=shutil.ignore_patterns(".pio", "own.h"))
+        usual = 0
+        for driver in DRIVERS_IN_ORDER:
+            try:
+                flash, note = flash_with(driver, project), ""
+            except RuntimeError as why:
+                if "greater than maximum allowed" not in str(why):
+                    print(why, file=sys.stderr)
+                    return 2
+                smaller, _ = building.SMALLER[ENVIRONMENT]
+                flash = flash_with(driver, project, smaller)
+                note = "without tasks"
+            usual = usual or flash
+            more = f"{flash - usual:+,}" if not note else ""
+            rows.append([f"`{driver}`", f"{flash:,}", more, note])
+    page.show("driver_size", rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,115 @@
+"""Prints what a second ping brings, and what it costs: `python -m tools.bench.sonar`.
+
+The firmware of tinibot on a simulated Uno, with an obstacle that comes at 50 cm/s and one wrong
+sample in fifty, at places that the seed draws; and the same firmware where it trusts each sample,
+as on a Nano. A reading is wrong that is off by more than 20 % and 3 cm. How late it
+knows is counted from the moment at which the obstacle is nearer than 15 cm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from statistics import median
+from typing import NamedTuple
+
+from tests.firmware.test_board_sonar import US_PER_CM, approaching, driven_ms, pings, wire
+from tests.firmware.test_boards import START, STEADY
+from tests.machines.board import BUILT_IN, Board, built
+from tiniscript import compile_text, robots
+from tiniscript.robots import firmware
+from tools.bench import page
+
+SEEDS = 40
+SAMPLES = 100
+SPEED_CM_MS = 0.05
+LOOKS = "SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP"
+STOPS = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
+NEAR = f"pwm {90 * 653 >> 8}"
+PING_MS = 30.07  # from ping to ping of a program that asks all the time
+PHASES = 12
+NEAR_CM = 15.0
+TRUSTS = "#define tiniscript_trusts_samples\n"
+ROWS = (
+    "wrong readings, one wrong sample in fifty",
+    "runs of 3 s with a wrong reading",
+    "until it knows that an obstacle at 50 cm/s is near: median, most",
+    "until it knows of one that is suddenly there: median, most",
+)
+
+
+class Looked(NamedTuple):
+    readings: int
+    wrong: int
+
+
+def board_of(text: str, is_trusting: bool) -> Board:
+    """Return a tinibot with a program, as `tests.firmware.test_boards` starts it."""
+    robot = robots.load("tinibot")
+    board = Board(robot, text)
+    if is_trusting:
+        head = firmware.header([robot], "the tests.").replace("#pragma once", TRUSTS, 1)
+        elf = built(head, robot.board.chip)
+        before = compile_text(BUILT_IN, robot.kit).image
+        after = compile_text(text, robot.kit).image
+        at = elf.index(before)
+        board.elf = elf[:at] + after + b"\0" * 4 + elf[at + len(after) + 4 :]
+    board.press(100, START - STEADY)
+    return board
+
+
+def looked(seed: int, is_trusting: bool) -> Looked:
+    true, heard = approaching(seed, SAMPLES)
+    board = board_of(LOOKS, is_trusting)
+    trigger, echo = wire(board.robot)
+    board.watch(trigger)
+    board.echoes(trigger, echo, [cm * US_PER_CM for cm in heard])
+    times = pings(board.ran(START + 2900), trigger)
+    readings = driven_ms(board, 1)
+    wrong = 0
+    for ms in readings:
+        number = sum(sent < ms for sent in times) - 1
+        cm = 2 * int(board.motors(ms)[0].removeprefix("pwm ")) / 2.55
+        wrong += abs(cm - true[number]) > max(4, 0.2 * true[number] + 3)
+    return Looked(len(readings), wrong)
+
+
+def late_ms(distances: Callable[[float], float], phase: float, is_trusting: bool) -> float:
+    """Return for how long the obstacle has been near when the program knows it.
+
+    `distances` says how far it is so many ms after the first ping, which is `phase` of a ping late.
+    """
+    board = board_of(STOPS, is_trusting)
+    trigger, echo = wire(board.robot)
+    board.watch(trigger)
+    begins = phase * PING_MS
+    cms = [distances(number * PING_MS + begins) for number in range(60)]
+    board.echoes(trigger, echo, [cm * US_PER_CM for cm in cms])
+    first = pings(board.ran(START + 1500), trigger)[0]
+    near = next(ms for ms in range(1500) if distances(ms + begins) < NEAR_CM)
+    knows = next(ms for ms in driven_ms(board, 1) if board.motors(ms)[0] == NEAR)
+    return knows - first - near
+
+
+def comes(ms: float) -> float:
+    return max(3, 60 - SPEED_CM_MS * ms)
+
+
+def is_there(ms: float) -> float:
+    return 100 if ms < 500 else 8
+
+
+def main() -> None:
+    found: list[list[str]] = [[row] for row in ROWS]
+    for is_trusting in (True, False):
+        runs = [looked(seed, is_trusting) for seed in range(SEEDS)]
+        wrong, readings = sum(run.wrong for run in runs), sum(run.readings for run in runs)
+        found[0].append(f"{wrong:,} of {readings:,}")
+        found[1].append(f"{sum(run.wrong > 0 for run in runs)} of {SEEDS}")
+        for row, way in ((2, comes), (3, is_there)):
+            late = [late_ms(way, phase / PHASES, is_trusting) for phase in range(PHASES)]
+            found[row].append(f"{median(late):.0f} ms, {max(late):.0f} ms")
+    page.show("sonar", found)
+
+
+if __name__ == "__main__":
+    main()
