@@ -85,7 +85,7 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
     [
         ("B(5, 60);IF(DISTANCE > 20);S;ENDIF", "After B(5, 60), the robot stands still anyway"),
         ("F(5, 60);IF(DISTANCE = 20);S;ENDIF", "After F(5, 60), the robot stands still"),
-        ("IF(DISTANCE > 20);S;ENDIF;F(5, 60)", "To stand still, put F(5, 60) after an ELSE."),
+        ("IF(DISTANCE > 20);S;ENDIF;F(5, 60)", "To make the robot stand still, put F(5, 60) after an ELSE."),
         ("F(5, 60);IF(DISTANCE < 20);S;ENDIF", "F(5, 60) UNTIL(DISTANCE < 20)"),
         ("D = DISTANCE;B(5, 60) UNTIL(D < 20)",
             "Check a sensor in UNTIL, as in UNTIL(DISTANCE > 2"),

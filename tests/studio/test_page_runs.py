@@ -204,7 +204,7 @@ def test_a_file_that_is_dropped_is_opened(page: Page) -> None:
     }"""
     page.evaluate(drop, ["x.png", "no"])
     page.locator(
-        "#note", has_text="x.png was not opened. A saved run's file name ends in .tsr."
+        "#note", has_text="x.png was not opened. The file name of a saved run ends in .tsr."
     ).wait_for()
     page.evaluate(drop, ["mine.tsr", real(*rows)])
     told(page, "Both did the same. Values compared: 4.")
