@@ -122,7 +122,7 @@ CASES = [
     ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "F(1, 89)", "ended before the robot got to the goal 2 of 2"),
     ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "F(1, 89); B(20, 5)", "In 10.0 s the robot did not get to the goal 2 of 2"),
     ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "LOOP(20);F(1, 89);B(1, 89);END_LOOP", "did not get to the goal 2 of 2. Look at the move before it"),
-    ('kind = "faces"\nheading = 90', "L(0.42, 60)", "R(0.42, 60)", "faces the opposite way."),
+    ('kind = "faces"\nheading = 90', "L(0.42, 60)", "R(0.42, 60)", "facing the opposite way."),
     ('kind = "order"\nwords = ["moves", "beeps", "moves", "beeps", "moves"]', "LOOP(3);F(0.1, 50);BEEP(0.1,440);END_LOOP", "LOOP(2);F(0.1, 50);BEEP(0.1,440);END_LOOP", "After it beeps 2 times, the robot should move once more"),
     ('kind = "shows"', "SHOW(1)", "IF(DISTANCE < 1);SHOW(1);ENDIF", "has SHOW, but the robot never gets there"),
     ('kind = "beeps"', "BEEP(0.1,440)", "IF(DISTANCE < 1);BEEP(0.1,440);ENDIF", "has BEEP, but the robot never gets there"),
