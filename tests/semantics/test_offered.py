@@ -83,15 +83,15 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
 @pytest.mark.parametrize(
     ("text", "fix"),
     [
-        ("B(5, 60);IF(DISTANCE > 20);S;ENDIF", "After B(5, 60), the robot stands still anyway"),
-        ("F(5, 60);IF(DISTANCE = 20);S;ENDIF", "After F(5, 60), the robot stands still"),
+        ("B(5, 60);IF(DISTANCE > 20);S;ENDIF", "After B(5, 60), the robot is standing still anyway"),
+        ("F(5, 60);IF(DISTANCE = 20);S;ENDIF", "After F(5, 60), the robot is standing still"),
         ("IF(DISTANCE > 20);S;ENDIF;F(5, 60)", "To make the robot stand still, put F(5, 60) after an ELSE."),
         ("F(5, 60);IF(DISTANCE < 20);S;ENDIF", "F(5, 60) UNTIL(DISTANCE < 20)"),
         ("D = DISTANCE;B(5, 60) UNTIL(D < 20)",
             "Check a sensor in UNTIL, as in UNTIL(DISTANCE > 2"),
         ("D = DISTANCE;B(5, 60) UNTIL(D > 20)", "B(5, 60) UNTIL(DISTANCE > 20)"),
         ("F(5, 60) UNTIL(DISTANCE > 0)", "Use a time to end the move"),
-        ("F(5, 60);IF(NOT (DISTANCE < 20));S;ENDIF", "After F(5, 60), the robot stands still"),
+        ("F(5, 60);IF(NOT (DISTANCE < 20));S;ENDIF", "After F(5, 60), the robot is standing still"),
         ("D = 2;LOOP(3);F(5, 60);IF(DISTANCE < D);S;ENDIF;END_LOOP", "F(5, 60) UNTIL(DISTANCE < D"),
         ("D = DISTANCE;F(5, 60) UNTIL(NOT (D < 20))", "Check a sensor in UNTIL"),
         ("F(007, 60)", "Write 7, or the seconds"),
