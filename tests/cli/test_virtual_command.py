@@ -310,7 +310,10 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         (["robot", "--listen", "70000"], "--listen takes a whole number from 0 to 65535"),
         (["robot", "--noise", "51"], "--noise takes a number from 0 to 50, not 51"),
         (["robot", "--faults", "-1"], "--faults takes a number from 0 to 200"),
-        (["robot", "--hurry", "fast"], "--hurry takes a number (how many times as fast the robot runs"),
+        (
+            ["robot", "--hurry", "fast"],
+            "--hurry takes a number (how many times as fast the robot runs",
+        ),
         (["robot", "--hurry", "0"], "--hurry takes a number from 0.1 to 10000, not 0"),
         (["robot", "--motors", "100"], "--motors takes two numbers"),
         (["robot", "--motors", "100,1"], "--motors takes a number from 10 to 200, not 1"),

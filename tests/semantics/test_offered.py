@@ -83,9 +83,9 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
 @pytest.mark.parametrize(
     ("text", "fix"),
     [
-        ("B(5, 60);IF(DISTANCE > 20);S;ENDIF", "After B(5, 60), the robot is standing still anyway"),
+        ("B(5, 60);IF(DISTANCE > 20);S;ENDIF", "After B(5, 60), the robot is standing still"),
         ("F(5, 60);IF(DISTANCE = 20);S;ENDIF", "After F(5, 60), the robot is standing still"),
-        ("IF(DISTANCE > 20);S;ENDIF;F(5, 60)", "To make the robot stand still, put F(5, 60) after an ELSE."),
+        ("IF(DISTANCE > 20);S;ENDIF;F(5, 60)", "put F(5, 60) after an ELSE."),
         ("F(5, 60);IF(DISTANCE < 20);S;ENDIF", "F(5, 60) UNTIL(DISTANCE < 20)"),
         ("D = DISTANCE;B(5, 60) UNTIL(D < 20)",
             "Check a sensor in UNTIL, as in UNTIL(DISTANCE > 2"),
