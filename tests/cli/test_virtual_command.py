@@ -340,7 +340,7 @@ def test_a_port_that_is_taken_and_a_memory_that_is_none(tsc: Tsc, tmp_path: Path
     with socket.create_server(("127.0.0.1", 0)) as taken:
         done = tsc("robot", "--listen", str(taken.getsockname()[1]))
     assert done.code == 3
-    assert "Choose another with --listen" in done.err
+    assert "Choose another port with --listen" in done.err
     small = tmp_path / "small.bin"
     small.write_bytes(b"TS")
     tsc("robot", "--memory", small).gives(2, "which has 1024 bytes")
