@@ -227,7 +227,9 @@ def test_an_image_of_another_robot_says_which(tsc: Tsc, tmp_path: Path) -> None:
         assert tsc("compile", "-e", text, "-o", target, "--robot", robot).code == 0
         done = tsc("run", target)
         assert done.code == 1
-        assert f"is for another robot, not for tinibot. Name it:  --robot {robot}" in done.err
+        assert (
+            f"is for another robot, not for tinibot. Name that robot:  --robot {robot}" in done.err
+        )
         assert tsc("run", target, "--robot", robot).code == 0
         assert f"for {robot}" in tsc("show", target).out
 

@@ -91,7 +91,7 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     inside("upload", "--virtual", "--detach", "-e", "SI|F(1, 80)").gives(2, "Leave --detach out")
     lines = b"F(0.1, 50)\nSHOW(1)\nLOOP(FOREVER);F(1, 50);END_LOOP\nSHOW(2)\n"
     done = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines).gives(0)
-    assert done.out.splitlines()[:2] == ["SHOW 1", "The time of --for is over."]
+    assert done.out.splitlines()[:2] == ["SHOW 1", "The time set with --for is over."]
     assert "SHOW 2" not in done.out
 
 
@@ -101,7 +101,7 @@ def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
     done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry).gives(0)
     # 2.5 s at 80 % of 45 cm a second, to the millisecond
     assert done.out.splitlines()[1:] == [
-        "The time of --for is over.", "Saved. It starts with the button.",
+        "The time set with --for is over.", "Saved. It starts with the button.",
         "The virtual robot drove 90 cm in 2.5 s and touched nothing.",
     ]  # fmt: skip
 
@@ -208,17 +208,19 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
 @each_row(
     "words, said",
     [
-        (["-e", "SI|SHOW(DISTANCE);SHOW(DISTANCE)"], "DISTANCE read 0: --sensor DISTANCE=50,9\n"),
+        (["-e", "SI|SHOW(DISTANCE);SHOW(DISTANCE)"],
+         "DISTANCE read 0. To give it readings:  --sensor DISTANCE=50,9\n"),
         (["-e", "SI|SHOW(DISTANCE)", "--machine", "cpp"],
-         "DISTANCE read 0: --sensor DISTANCE=50,9\n"),
+         "DISTANCE read 0. To give it readings:  --sensor DISTANCE=50,9\n"),
         (["-e", "SI|SHOW(DISTANCE)", "--show", "--lang", "es"],
          "DISTANCE midió 0: --sensor DISTANCE=50,9\n"),
         (["-e", "SI|SHOW(DISTANCE)", "--sensor", "DISTANCE=0"], ""),
         (["-e", "SI|SHOW(DISTANCE + LIGHT_R)", "--sensor", "DISTANCE=5"],
-         "LIGHT_R read 0: --sensor LIGHT_R=127,23\n"),
+         "LIGHT_R read 0. To give it readings:  --sensor LIGHT_R=127,23\n"),
         (["-e", "SI|IF(FALSE);SHOW(DISTANCE);ENDIF"], ""),
         (["-e", "// robot: liner\nSI|SHOW(BUTTON);SHOW(BATTERY)"],
-         "BUTTON read FALSE: --sensor BUTTON=FALSE,TRUE\nBATTERY read 0: --sensor BATTERY=1,0.2\n"),
+         "BUTTON read FALSE. To give it readings:  --sensor BUTTON=FALSE,TRUE\n"
+         "BATTERY read 0. To give it readings:  --sensor BATTERY=1,0.2\n"),
     ],
 )  # fmt: skip
 def test_a_sensor_without_readings_is_told_once(words: list[str], said: str, tsc: Tsc) -> None:
@@ -231,7 +233,9 @@ def test_a_sensor_without_readings_is_told_once(words: list[str], said: str, tsc
 
 def test_a_fault_by_a_zero_is_told_with_its_cause(tsc: Tsc) -> None:
     done = tsc("run", "-e", "SI|SHOW(1 / DISTANCE)").gives(1)
-    assert done.err.startswith("DISTANCE read 0: --sensor DISTANCE=50,9\nfault DIVIDE_BY_ZERO")
+    assert done.err.startswith(
+        "DISTANCE read 0. To give it readings:  --sensor DISTANCE=50,9\nfault DIVIDE_BY_ZERO"
+    )
 
 
 @each_row("language, try_it", [("en", "Try"), ("es", "Prueba"), ("pt", "Tente")])
@@ -275,8 +279,8 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     assert "tinibot has no GRIPPER; the robot grabber" in tsc("check", "-e", "PINZA(90)").err
     assert "// robot: liner " in tsc("check", "-e", "SHOW(BATERIA)").err
     # a name that no kit has
-    assert "write LINE_X = and its number before it" in tsc("check", "-e", "F(LINE_X, 80)").err
-    assert "write LINE_X = and its number before it" in tsc("check", "-e", "SHOW(LINE_X)").err
+    assert "give it a value first: LINE_X = 5" in tsc("check", "-e", "F(LINE_X, 80)").err
+    assert "give it a value first: LINE_X = 5" in tsc("check", "-e", "SHOW(LINE_X)").err
     assert tsc("live", "LED(TRUE)", "--virtual").err.count("TS119") == 1
 
 

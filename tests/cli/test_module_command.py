@@ -27,7 +27,7 @@ ENDS = {
 }  # fmt: skip
 UNSEEN = [
     "       Seen: it cannot confirm the value",
-    "       Try:  Pair it, and see whether it has the new value.",
+    "       Try:  Pair the module, and see whether it has the new value.",
 ]
 
 
@@ -50,12 +50,13 @@ def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
     assert (module.name, module.pin, module.baud) == ("ANA", "4711", 57600)
     assert done.out.splitlines() == [
         f"HC-06 3.x on {port_of(module)}, version 3.0-20170609; it listens at 9600 baud.",
-        "?      name ANA: the module says that it did it",
+        "?      name ANA: the module reports that it has done this",
         *UNSEEN,
-        "?      PIN 4711: the module says that it did it",
+        "?      PIN 4711: the module reports that it has done this",
         *UNSEEN,
         "ok     57600 baud: done; it answers at this speed",
-        "Now switch it off, connect it to the robot as before, switch it on and pair it again.",
+        "Now switch the module off, connect it to the robot as before, switch it on and"
+        " pair it again.",
     ]
 
 

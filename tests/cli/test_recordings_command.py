@@ -134,8 +134,8 @@ def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> 
         ((), 1, "The recording ends before the robot sent anything"),
         (((200, "LOST"),), 1, "The recording ends before the robot sent anything"),
         (((900, "SHOW 5"),), 1, "Line 1: the robot got there at a different time."),
-        (((200, "SHOW 5"), (400, "DONE")), 1, "Line 3: the robot says DONE after 0.4 s"),
-        (((200, "SHOW 5"), (9000, "STOPPED")), 1, "Line 3: the virtual robot says FAULT"),
+        (((200, "SHOW 5"), (400, "DONE")), 1, "Line 3: the robot reported DONE after 0.4 s"),
+        (((200, "SHOW 5"), (9000, "STOPPED")), 1, "Line 3: the virtual robot reported FAULT"),
     ],
 )
 def test_a_real_run_of_the_page_is_compared(

@@ -197,7 +197,7 @@ def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
     assert done.code == 0 and "batter" not in done.err + done.out, "nothing is to be saved"
     done = on(pty_robot, "upload", "-e", "SI|SHOW(7)")
     assert "SHOW 7" in done.out, "it runs all the same"
-    assert done.code == 3 and "Change the batteries and send it again" in done.err
+    assert done.code == 3 and "Change the batteries and send the program again" in done.err
     done = on(pty_robot, "upload", "-e", "SB|SHOW(8)", "--lang", "es")
     assert done.code == 3 and "Cambia las pilas y envíalo otra vez" in done.err
     assert "RAM: the robot's batteries are too weak to save it" in on(pty_robot, "doctor").out

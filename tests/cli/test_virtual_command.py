@@ -249,7 +249,7 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
     done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
                    "--plot", way)  # fmt: skip
     assert done.code == 0
-    assert "The time of --for is over.\nSaved. It starts with the button.\n" in done.out
+    assert "The time set with --for is over.\nSaved. It starts with the button.\n" in done.out
     assert f"and touched nothing. Picture: {way}\n" in done.out
     before, after = colours(still.read_bytes()), colours(way.read_bytes())
     assert before["way"] < 20 < 4000 < after["way"]
@@ -310,7 +310,10 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         (["robot", "--listen", "70000"], "--listen takes a whole number from 0 to 65535"),
         (["robot", "--noise", "51"], "--noise takes a number from 0 to 50, not 51"),
         (["robot", "--faults", "-1"], "--faults takes a number from 0 to 200"),
-        (["robot", "--hurry", "fast"], "--hurry takes how many times faster the robot goes"),
+        (
+            ["robot", "--hurry", "fast"],
+            "--hurry takes a number (how many times as fast the robot runs",
+        ),
         (["robot", "--hurry", "0"], "--hurry takes a number from 0.1 to 10000, not 0"),
         (["robot", "--motors", "100"], "--motors takes two numbers"),
         (["robot", "--motors", "100,1"], "--motors takes a number from 10 to 200, not 1"),
@@ -337,7 +340,7 @@ def test_a_port_that_is_taken_and_a_memory_that_is_none(tsc: Tsc, tmp_path: Path
     with socket.create_server(("127.0.0.1", 0)) as taken:
         done = tsc("robot", "--listen", str(taken.getsockname()[1]))
     assert done.code == 3
-    assert "Choose another with --listen" in done.err
+    assert "Choose another port with --listen" in done.err
     small = tmp_path / "small.bin"
     small.write_bytes(b"TS")
     tsc("robot", "--memory", small).gives(2, "which has 1024 bytes")

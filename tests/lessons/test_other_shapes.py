@@ -95,7 +95,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "F(2.78, 80); W(2); B(2.78, 80)": "At the end the robot was 141 cm from the school",
         },
         "wrong": {
-            "F(3.7, 60); L(0.42, 60); F(3.7, 60); L(0.42, 60)": "At the end the robot faces 91 degrees too far to the left",
+            "F(3.7, 60); L(0.42, 60); F(3.7, 60); L(0.42, 60)": "At the end the robot was facing 91 degrees too far to the left",
             "F(3.7, 60); L(0.42, 60)": "At the end the robot was 100 cm from the school",
         },
     },

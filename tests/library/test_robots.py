@@ -484,7 +484,7 @@ def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
     if watches:
         with fails(tiniscript.RobotError, "replaced"):
             robot.wait()
-    with pytest.warns(RuntimeWarning, match="holds the port until the other has ended."):
+    with pytest.warns(RuntimeWarning, match="holds the port until the other command has ended."):
         robot.close()
     robot.close()  # does nothing
     began_ms = pty_robot.robot_ms

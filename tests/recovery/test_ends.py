@@ -45,7 +45,10 @@ def test_each_place_is_named_and_none_is_made(
     for body in BODIES:
         text = begun + between.join((block[0], *body))
         _, tried = said(text)
-        assert tried == f"Where does it end? Write ;{block[1]} after one of these: {places(body)}"
+        assert (
+            tried
+            == f"Where does the block end? Write ;{block[1]} after one of these: {places(body)}"
+        )
         assert repair_program(text, check).text == text
 
 
@@ -61,7 +64,7 @@ def test_the_inner_block_lacks_its_end_where_the_outer_one_has_its_own(
     name = block[0].partition("(")[0]
     assert said(text) == (
         f"This {name} has no {block[1]}",
-        f"Where does it end? Write ;{block[1]} after one of these: {places(body)}",
+        f"Where does the block end? Write ;{block[1]} after one of these: {places(body)}",
     )
     assert repair_program(text, check).text == text
 
@@ -83,7 +86,9 @@ def test_one_place_is_no_question(block: tuple[str, str]) -> None:
 
 def test_it_ends_in_its_last_branch_and_before_the_end_of_another() -> None:
     text = "SI|IF(DISTANCE < 9);S;W(2);ELSE;W(1);F(1, 60)"
-    assert said(text)[1] == "Where does it end? Write ;ENDIF after one of these: W(1), F(1, 60)"
+    assert (
+        said(text)[1] == "Where does the block end? Write ;ENDIF after one of these: W(1), F(1, 60)"
+    )
     (found,) = check("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP")
     made = apply_edits("SI|LOOP(2);IF(DISTANCE < 9);S;END_LOOP", edits_of(found) or [])
     assert made == "SI|LOOP(2);IF(DISTANCE < 9);S;ENDIF;END_LOOP"

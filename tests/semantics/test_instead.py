@@ -64,11 +64,11 @@ def test_the_unit_of_the_sensor_says_the_unit_of_the_move(unit: str, number: str
 
 def test_a_move_of_another_unit_and_a_robot_without_one_get_a_number_of_their_own() -> None:
     assert "CM, 60" not in fix_of("SI|DISTANCE = 30;R(DISTANCE, 60)")
-    assert fix_of("SI|DISTANCE = 30;R(DISTANCE, 60)").startswith("R does not go by CM")
+    assert fix_of("SI|DISTANCE = 30;R(DISTANCE, 60)").startswith("R does not take CM")
     kit = TINIBOT._replace(speed=0, turn=0)
     (diagnostic,) = check_text("SI|DISTANCE = 30;F(DISTANCE, 60)", kit).diagnostics
     said = message(diagnostic, Source("SI|DISTANCE = 30;F(DISTANCE, 60)"), "en")
-    assert said.fix.startswith("F goes by time here, not by CM")
+    assert said.fix.startswith("F takes a time here, not CM")
     assert fix_of("SI|LIGHT_L = 300;F(LIGHT_L, 60)") == "MY_LIGHT_L = 300"
 
 

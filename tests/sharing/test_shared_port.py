@@ -249,7 +249,7 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
     second.ended().gives(0, out="Done.")
     done = first.ended().gives(
-        3, "another command started a program", "holds the port until the other has ended."
+        3, "another command started a program", "holds the port until the other command has ended."
     )
     assert done.err.index("holds the port") < done.err.index("another command started a program")
     assert hellos(pty_robot) == 1

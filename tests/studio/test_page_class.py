@@ -573,7 +573,7 @@ def test_work_is_kept_until_the_page_has_said_that_it_has_it(
     ana.evaluate(LOSES)
     row = opened_row(teacher, "Ana")
     row.locator("button").click()
-    row.filter(has_text="Ana is getting it.").wait_for()
+    row.filter(has_text="Ana is getting the work back.").wait_for()
     noted(ana, "Your teacher gave you back your work.")
     said(ana, "The teacher’s computer does not answer.")
     assert "F(1, 77)" in str(taught.room.work())

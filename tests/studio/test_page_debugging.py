@@ -74,7 +74,7 @@ def test_a_breakpoint_of_a_line_with_nothing_on_it_is_that_of_the_next_part(page
     press_margin(page, 5)
     assert points(page) == 0
     press_margin(page, 6)
-    noted(page, "From line 6 on there is nothing to stop at.")
+    noted(page, "There is nothing to stop at on line 6 or after it.")
     assert points(page) == 0
 
 

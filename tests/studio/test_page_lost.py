@@ -25,7 +25,7 @@ SILENT = (
     "The robot has not confirmed the stop."
     " If it moves, lift it and remove its batteries or unplug it."
 )
-LATE = "The robot has now confirmed the stop: it stands still."
+LATE = "The robot has now confirmed the stop: it is standing still."
 # What is said beneath the buttons from now on.
 LISTEN = """() => {
   const line = document.querySelector('#link_said');

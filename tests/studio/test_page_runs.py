@@ -155,7 +155,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     told(page, "Both did the same. Values compared: 4.")
     changed = (*rows[:2], (451, "SHOW 6"), (452, "DONE"))
     opened(page, real(*changed), tmp_path / "run.tsr")
-    told(page, "Line 5: the robot says 6 after 0.5 s, the virtual one 5 after")
+    told(page, "Line 5: the robot reported 6 after 0.5 s, the virtual robot 5 after")
     names = kept(page)
     assert names[0].startswith("Run ") and "real robot" in names[0]
     assert [row.event for row in decode(saved(page, 0)).rows] == [event for _, event in changed]
@@ -204,7 +204,7 @@ def test_a_file_that_is_dropped_is_opened(page: Page) -> None:
     }"""
     page.evaluate(drop, ["x.png", "no"])
     page.locator(
-        "#note", has_text="x.png was not opened. A saved run's file name ends in .tsr."
+        "#note", has_text="x.png was not opened. The file name of a saved run ends in .tsr."
     ).wait_for()
     page.evaluate(drop, ["mine.tsr", real(*rows)])
     told(page, "Both did the same. Values compared: 4.")

@@ -170,7 +170,7 @@ def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page)
     assert page.evaluate(noted) == [1, 1, 1]
     assert count(page, "ffd84d") > 20  # the star where it touches the box
     first, *_, last = page.evaluate("window.told")
-    assert first.startswith("It bumps into something. The robot is ")
+    assert first.startswith("The robot has bumped into something. The robot is ")
     assert last.startswith("Collisions: 1. The robot is ") and last.endswith("to the right.")
     run(page, "W(1)")
     assert page.evaluate(noted) == [1, 1, 1]
@@ -232,6 +232,6 @@ def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
     assert count(page, "2a9d6f") > 100  # the flags that were taken
     heard = page.locator("#where").inner_text()
     assert "Flags: 2 of 2. Points: 230. Stars: 3 of 3." in heard
-    assert "cm from the left and 50 cm from the bottom, and faces to the right." in heard
+    assert "cm from the left and 50 cm from the bottom, and is facing to the right." in heard
     page.select_option("#world", "obstacles")
     assert not page.locator("#score").is_visible()
