@@ -69,7 +69,7 @@ def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
 
     now = images()
     assert sum(map(bool, now)) > 300
-    monkeypatch.setattr(kits, "OWN_BESIDE_REMOTE", -1)
+    monkeypatch.setattr(kits, "MOST_SENSORS_BESIDE_REMOTE", -1)
     assert TINIBOT.readings == TINIBOT.sensors
     assert images() == now
 

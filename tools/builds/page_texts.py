@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.base.languages import Texts, about, texts
+from tiniscript.base.languages import Texts, language_info, texts
 
 # Of what the page's Python says; the sentences of lessons come with these.
 MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names", "foreign")
@@ -27,7 +27,7 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
 
     The one without a key has which form is for which number, from 0 to 199.
     """
-    own = about(language)
+    own = language_info(language)
     text = texts("command", language)
     result = texts("studio", language) | {key: text[value] for key, value in OF_COMMAND.items()}
     return {

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.base import limits
-from tiniscript.base.kit import DEVICES, Kit
+from tiniscript.base.kit import MOST_DEVICES, Kit
 from tiniscript.bytecode import image, opcodes, verify
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import ProfileRefused, Robot
@@ -154,7 +154,12 @@ def limit_table() -> str:
         ("nested blocks in a text, including those around a call", limits.BLOCKS, "", compiler),
         ("stack", limits.STACK_VALUES, "values", both.format("STACK_OVERFLOW")),
         ("variables", limits.VARIABLES, "", f"{compiler}, and {operand}"),
-        ("sensors of a kit, and actuators", DEVICES, "", f"the robot's profile, and {operand}"),
+        (
+            "sensors of a kit, and actuators",
+            MOST_DEVICES,
+            "",
+            f"the robot's profile, and {operand}",
+        ),
         ("tasks beside the main one", limits.TASKS, "", both.format("TOO_MANY_TASKS")),
         (f"{counted}, in all tasks together", limits.COUNTERS, "", deep),
         ("calls open at once, in all tasks together", limits.CALLS, "", both.format("TOO_DEEP")),

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
-from tiniscript.base.languages import SOURCE, languages, text
+from tiniscript.base.languages import SOURCE_LANGUAGE, languages, text
 from tiniscript.base.words import WORDS
 from tiniscript.lessons.lesson import AREA, KINDS, WHATS, Kind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
@@ -116,7 +116,9 @@ def language_document(document: str, language: str) -> str:
 
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: title and first sentence of each, in all languages side by side."""
-    matches = [document for document in documents(ROOT) if document.sources.get(SOURCE) != LIST]
+    matches = [
+        document for document in documents(ROOT) if document.sources.get(SOURCE_LANGUAGE) != LIST
+    ]
     shown = [
         language for language in languages() if any(language in one.sources for one in matches)
     ]

@@ -26,7 +26,7 @@ from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.support.random_programs import random_program
 from tiniscript import compile_text, robots
-from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
+from tiniscript.base.kit import MOST_DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import assemble
 from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused, pack, unpack, with_checksum
@@ -303,12 +303,12 @@ def devices() -> Iterator[Run]:
     """Return a run with as many devices as a kit may have, by each way to name one."""
     kinds = ((NUMBER, "cm", -1000, 400_000), (YES_NO, "", 0, 1))
     kit = Kit(
-        tuple(Device(f"S{k}", *kinds[k % 3 == 1]) for k in range(DEVICES)),
-        tuple(Device(f"A{k}", *kinds[k % 3 == 2]) for k in range(DEVICES)),
+        tuple(Device(f"S{k}", *kinds[k % 3 == 1]) for k in range(MOST_DEVICES)),
+        tuple(Device(f"A{k}", *kinds[k % 3 == 2]) for k in range(MOST_DEVICES)),
     )
     code = b""
     for sensor, actuator in chain(
-        ((f" s{k}", f" a{DEVICES - 1 - k}") for k in range(DEVICES)),
+        ((f" s{k}", f" a{MOST_DEVICES - 1 - k}") for k in range(MOST_DEVICES)),
         ((f"_{k}", f"_{k}") for k in range(SHORTS)),
     ):
         for name in (f"READ{sensor}", f"PUSH_SENSOR{sensor}", f"SET{actuator}"):

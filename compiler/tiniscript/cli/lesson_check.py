@@ -22,7 +22,7 @@ from typing import NamedTuple
 from rich.cells import cell_len, set_cell_size
 
 from tiniscript import robots
-from tiniscript.base.source import PROGRAM_ENDS, Unreadable, decode, printable
+from tiniscript.base.source import PROGRAM_ENDINGS, Unreadable, decode, printable
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError, missing_package_error
 from tiniscript.cli.options import whole_number
@@ -44,7 +44,7 @@ from tiniscript.virtual.world import WorldRefused
 
 PROGRAMS = 200  # of a folder
 LEAST_COLUMNS = 24  # of a sentence beside its program; below that it stands under it
-TEXTS = (*PROGRAM_ENDS, ".txt")
+TEXTS = (*PROGRAM_ENDINGS, ".txt")
 LIKE_NOTES = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
 # A line of a program begins so, also a wrong one: `SI|`, `SI`, `F 2`, `ADELANTE (2)`, `x = 3`.
 LIKE_A_PROGRAM = re.compile(
@@ -215,7 +215,7 @@ def _is_note(file: ProgramFile) -> bool:
 
     In doubt it is a program: what a pupil has handed in is marked, however wrong it is.
     """
-    if file.name.lower().endswith(PROGRAM_ENDS) or file.problem is not None:
+    if file.name.lower().endswith(PROGRAM_ENDINGS) or file.problem is not None:
         return False
     letters = unicodedata.normalize("NFD", Path(file.name).name)
     plain = "".join(letter for letter in letters if not unicodedata.combining(letter))

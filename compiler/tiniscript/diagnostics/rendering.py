@@ -162,7 +162,7 @@ def _texts(key: str, lang: str) -> Iterator[str]:
 def names_found(diagnostic: Diagnostic) -> bool:
     """Whether a message says what was found, as it stands in the text."""
     key = f"{diagnostic.code.number}/message"
-    chosen = _first_filled_text(key, diagnostic.values, languages.SOURCE)
+    chosen = _first_filled_text(key, diagnostic.values, languages.SOURCE_LANGUAGE)
     return ("", "found") in _GAP.findall(chosen)
 
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import REMOTE
-from tiniscript.base.languages import SOURCE, ByLanguage, languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, ByLanguage, languages
 from tiniscript.base.languages import find_text as text_of
 from tiniscript.base.languages import text as said_in
 from tiniscript.base.spelling import nearest
@@ -113,12 +113,16 @@ def _sentences(says: Table) -> dict[str, str]:
     That one is `place`, or a text in each language.
     """
     key = says.text("key", 'key = "still"') or "still"
-    texts = (text_of("lessons", f"said/{item}", SOURCE) for item in (key, key.partition("/")[0]))
+    texts = (
+        text_of("lessons", f"said/{item}", SOURCE_LANGUAGE) for item in (key, key.partition("/")[0])
+    )
     gaps = GAP.findall(next(filter(None, texts), ""))
     names = dict.fromkeys([*gaps, "place", *languages(), *OF_SENTENCES])
     values = {name: says.text(name) or "" for name in names if says.has(name)}
     places = {language: values[language] for language in languages() if language in values}
-    finding = Finding("", key, values, ByLanguage({SOURCE: values.get("place", ""), **places}))
+    finding = Finding(
+        "", key, values, ByLanguage({SOURCE_LANGUAGE: values.get("place", ""), **places})
+    )
     says.finish()
     try:
         return {language: sentence(finding, language) for language in languages()}
@@ -134,7 +138,9 @@ def _sentences(says: Table) -> dict[str, str]:
 def _labels(table: Table) -> dict[str, str]:
     """Return a text in each language that it is there in; one must be."""
     labels: ByLanguage[str] = ByLanguage()
-    for language in [language for language in languages() if table.has(language)] or [SOURCE]:
+    for language in [language for language in languages() if table.has(language)] or [
+        SOURCE_LANGUAGE
+    ]:
         labels[language] = table.label(language, LABEL_CHARACTERS, f'{language} = "…"') or ""
     return labels
 

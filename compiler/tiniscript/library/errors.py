@@ -21,7 +21,7 @@ def sentence(reason: str, language: str, values: Mapping[str, str]) -> str:
     The command has sentences of its own, which name its options; where they do not, they are those
     of the library, too.
     """
-    if languages.find_text("library", reason, languages.SOURCE) is not None:
+    if languages.find_text("library", reason, languages.SOURCE_LANGUAGE) is not None:
         return languages.text("library", reason, language).format(**values)
     text = languages.text("command", reason, language).removeprefix("tsc: ")
     return f"{text[:1].upper()}{text[1:]}".format(**values)

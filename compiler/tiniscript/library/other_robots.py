@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from tiniscript import robots
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span
-from tiniscript.base.words import said_of
+from tiniscript.base.words import lexicon_meaning
 from tiniscript.diagnostics.codes import (
     NO_BUTTON,
     OTHER_ROBOT,
@@ -18,7 +18,7 @@ from tiniscript.diagnostics.codes import (
     Repair,
 )
 from tiniscript.library.named_robot import named_robot
-from tiniscript.recovery.meanings import concept_of
+from tiniscript.recovery.meanings import lexicon_concept
 from tiniscript.robots import given
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.lexer import WORD, scan
@@ -65,7 +65,7 @@ def hints_among(
     known = {robot: set(own_kit.names) for robot, own_kit in others.items() if robot != name}
     of_kits = own.union(*known.values())
     texts = {token.text for token in scan(text).tokens if token.kind is WORD}
-    used = {word if word in of_kits else concept_of(word) for word in texts} & of_kits
+    used = {word if word in of_kits else lexicon_concept(word) for word in texts} & of_kits
     whole = [robot for robot, own_kit in known.items() if used <= own_kit]
     named: list[Diagnostic] = []
     messages: list[set[str]] = []  # robots that words have led to
@@ -73,8 +73,9 @@ def hints_among(
     for diagnostic in diagnostics:
         word = diagnostic.values.get("found", "").upper()
         word = BUTTON if diagnostic.code is NO_BUTTON else word
-        word = word if word in of_kits else concept_of(word) or word
-        side = f"{''.join(said_of(word, 'stem')) or word}_L"  # `LINEA`, where others have LINE_L
+        word = word if word in of_kits else lexicon_concept(word) or word
+        stem = "".join(lexicon_meaning(word, "stem"))
+        side = f"{stem or word}_L"  # `LINEA`, where others have LINE_L
         word = side if side in of_kits - own else word
         having = [robot for robot, own_kit in known.items() if word in own_kit - own]
         if diagnostic.code in codes and having:

@@ -8,7 +8,7 @@ from pathlib import Path
 from tiniscript import robots
 from tiniscript.base.files import contents
 from tiniscript.base.languages import languages
-from tiniscript.base.source import PROGRAM_ENDS, printable
+from tiniscript.base.source import PROGRAM_ENDINGS, printable
 from tiniscript.bytecode import verify
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
@@ -28,7 +28,7 @@ Language = str  # the code of one, such as "en"
 SHOWN = 200  # characters of a name or a value in a sentence
 REMARK = 60  # characters of a line in a disassembly
 MOST_BYTES = 1_000_000  # of a file
-FILES = (*PROGRAM_ENDS, ".bin")
+FILES = (*PROGRAM_ENDINGS, ".bin")
 
 
 class Program:

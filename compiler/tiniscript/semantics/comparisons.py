@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from tiniscript.base.fixed_point import HIGHEST, as_text
 from tiniscript.base.kit import NUMBER, REMOTE, Device, Kit
-from tiniscript.base.words import OTHER_WAY, concept_of
+from tiniscript.base.words import OPPOSITE_MOVES, lexicon_concept
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.syntax.operators import SIGN_OF
 
@@ -60,8 +60,8 @@ def looks_ahead(device: Device) -> bool:
 
 def is_aside(way: str) -> bool:
     """Whether a word is no way ahead: R, LEFT, ATRAS."""
-    words = (way, concept_of(way)) if way else ()
-    return not OTHER_WAY.keys().isdisjoint({*words} - {"F", None})
+    words = (way, lexicon_concept(way)) if way else ()
+    return not OPPOSITE_MOVES.keys().isdisjoint({*words} - {"F", None})
 
 
 def is_between(device: Device, number: int) -> bool:

@@ -14,10 +14,10 @@ from tiniscript.base.words import (
     BLOCK_ENDS,
     WORDS,
     Word,
-    concept_of,
     expand_short,
+    lexicon_concept,
+    lexicon_meaning,
     names_argument,
-    said_of,
 )
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.named_values import value_of, yes_no_of
@@ -53,8 +53,10 @@ def _report_lamp(scope: Scope, node: ast.Command) -> bool:
     word, arguments = node.word, node.arguments or ()
     given = [scope.source[argument.span].upper() for argument in arguments]
     answers = [yes_no_of(each) or _SWITCHED.get(each, "") for each in given]
-    is_light = said_of(word, "stem")[:1] == ("LIGHT",) and len(answers) == 1 and bool(answers[0])
-    if word == _LAMP or not (concept_of(word) == _LAMP or is_light):
+    is_light = (
+        lexicon_meaning(word, "stem")[:1] == ("LIGHT",) and len(answers) == 1 and bool(answers[0])
+    )
+    if word == _LAMP or not (lexicon_concept(word) == _LAMP or is_light):
         return False
     said = {"lamp": word}
     if any(device.name == _LAMP and device.is_yes_no for device in scope.kit.actuators):

@@ -16,7 +16,7 @@ from tiniscript.base.fixed_point import HIGHEST, as_text
 from tiniscript.base.kit import Device
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import (
-    OTHER_WAY,
+    OPPOSITE_MOVES,
     POWER,
     TIME,
     UNIT_OF,
@@ -369,10 +369,10 @@ def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, st
             values |= {"fix": f"{word.text}({second}, {first})", "usage": word.usage}
         elif is_short:
             values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
-    elif word.text in OTHER_WAY:
+    elif word.text in OPPOSITE_MOVES:
         if sum(text.startswith("-") for text in texts) == 1:
             shown = ", ".join(text.lstrip("- ") for text in texts)
-            values["fix"] = f"{OTHER_WAY[word.text]}({shown})"
+            values["fix"] = f"{OPPOSITE_MOVES[word.text]}({shown})"
         elif word.text == "B" and is_short and _is_note(second):
             values["sound"] = f"BEEP({first}, {second})"
         elif is_short:

@@ -10,7 +10,7 @@ import math
 from typing import Any
 
 from tiniscript.base.fixed_point import ONE
-from tiniscript.base.languages import SOURCE, ByLanguage, languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, ByLanguage, languages
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
 from tiniscript.virtual.worlds import LARGEST_CM, MOST_S, PARTS, POINTS
@@ -54,8 +54,8 @@ def toml_of(form: Form) -> str:
     labels = form["labels"]
     if set(labels.values()) == {form["name"]}:
         labels = {}  # the name of a file, which the next one may have differently
-    elif SOURCE in labels:  # without what the catalogue of names says of it
-        by_language = ByLanguage({SOURCE: labels[SOURCE]})
+    elif SOURCE_LANGUAGE in labels:  # without what the catalogue of names says of it
+        by_language = ByLanguage({SOURCE_LANGUAGE: labels[SOURCE_LANGUAGE]})
         labels = {
             **by_language,
             **{value: name for value, name in labels.items() if name != by_language[value]},

@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.base.source import Edit, Span
-from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word, said_of
+from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.syntax.ast import Argument, Part
@@ -310,7 +310,7 @@ class ExpressionParser:
             if cursor.token.kind in AT_END:
                 break
             cursor.i += 1
-        is_unit = len(first.text) > 1 and bool(said_of(first.text, "unit"))
+        is_unit = len(first.text) > 1 and bool(lexicon_meaning(first.text, "unit"))
         is_name = first.kind is WORD and not is_unit
         return first if first.kind in SIGNS or is_name else None
 

@@ -6,7 +6,7 @@ import os.path
 from argparse import Namespace
 from pathlib import Path
 
-from tiniscript.base.kit import OWN_BESIDE_REMOTE
+from tiniscript.base.kit import MOST_SENSORS_BESIDE_REMOTE
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.robots import firmware
@@ -17,7 +17,9 @@ SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the plac
 def run(options: Namespace, language: str) -> int:
     robot = inputs.wired_robot(options, language).with_language(language)
     if not robot.kit.has_remote:
-        say_aside("board_no_remote", language, robot=robot.name, most=str(OWN_BESIDE_REMOTE))
+        say_aside(
+            "board_no_remote", language, robot=robot.name, most=str(MOST_SENSORS_BESIDE_REMOTE)
+        )
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
     if not outputs.put(options.output, header.encode()):
         return 0

@@ -9,7 +9,7 @@ from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator
 
 from tiniscript.base import files
-from tiniscript.base.words import WORDS, said_of
+from tiniscript.base.words import WORDS, lexicon_meaning
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit, remote_keys
@@ -289,7 +289,11 @@ def requested_command(line: str, known: LiveState) -> str:
     word = re.sub(r"\s*(\(\s*\))?[\s;]*$", "", line.lstrip()).upper()
     if word in (*known.defs, *known.kit.names):
         return ""
-    return HELP_ME if word == "?" else "".join(said_of(word, LEAVE) or said_of(word, HELP_ME))
+    return (
+        HELP_ME
+        if word == "?"
+        else "".join(lexicon_meaning(word, LEAVE) or lexicon_meaning(word, HELP_ME))
+    )
 
 
 class Catch:

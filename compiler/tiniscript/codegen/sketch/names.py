@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.base.languages import find_text, keys, languages, text
+from tiniscript.base.languages import find_text, languages, plain_text_keys, text
 
 # What has a name of its own in each language, and the parameters and variables of helpers.
 IDENTIFIERS, LOCALS = (
-    [key.partition("/")[2] for key in keys("sketch") if key.startswith(kind)]
+    [key.partition("/")[2] for key in plain_text_keys("sketch") if key.startswith(kind)]
     for kind in ("name/", "local/")
 )
 _LOCAL = re.compile(rf"(?<![$\w.])({'|'.join(LOCALS)})(?!\w)")

@@ -83,7 +83,7 @@ def _remove(path: Path, is_meant: Callable[[Registration | None], bool]) -> None
     """
     if not is_meant(_read(path)):
         return
-    aside = path.with_name(f".{path.name}.{os.urandom(8).hex()}{files.NEW}")
+    aside = path.with_name(f".{path.name}.{os.urandom(8).hex()}{files.NEW_ENDING}")
     with suppress(OSError):
         path.rename(aside)
         if not is_meant(_read(aside)) and not path.exists():

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from itertools import pairwise, takewhile
 
 from tiniscript.base.source import Source, Span
-from tiniscript.base.words import BLOCK_ENDS, WORDS, said_of
+from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.lint.look import Around, Look
@@ -213,7 +213,7 @@ def report_unused_variables(look: Look) -> None:
         if isinstance(statement, ir.Assign) and statement.variable not in used:
             used.add(statement.variable)  # said once
             name = program.variables[statement.variable]
-            device = name if said_of(name, "device") else ""
+            device = name if lexicon_meaning(name, "device") else ""
             values = {"name": name, "device": device, "example": use_of(name)}
             if statement.variable in owners:
                 values["own"] = owners[statement.variable].name
