@@ -175,7 +175,7 @@ def _compile(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
         from tiniscript.semantics.task_copies import copy_defs_per_task
 
         program = copy_defs_per_task(program)
-    yes_no = tuple(ir.are_yes_no(program, kit))
+    yes_no = tuple(ir.yes_no_variables(program, kit))
     program = optimize_program(program) if optimize else program
     lowered = lower(program)
     if len(lowered.code) > CODE_BYTES:

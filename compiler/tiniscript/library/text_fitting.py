@@ -14,8 +14,8 @@ from tiniscript.codegen.text.memory import MOST_BRACKETS, Reader
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.robots.text_levels import CODE_BYTES, LONGEST_WORD, Level
-from tiniscript.semantics.ir import Program, are_yes_no
-from tiniscript.semantics.task_copies import users
+from tiniscript.semantics.ir import Program, yes_no_variables
+from tiniscript.semantics.task_copies import count_tasks_by_def
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
 
@@ -55,8 +55,8 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
 
 def _values(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return each DEF that has a value other than a number, or values for several tasks."""
-    values, yes_no = [], are_yes_no(program, kit)
-    for procedure, tasks in zip(program.procedures, users(program), strict=True):
+    values, yes_no = [], yes_no_variables(program, kit)
+    for procedure, tasks in zip(program.procedures, count_tasks_by_def(program), strict=True):
         said = {"level": level.name, "name": procedure.name}
         place = Span(procedure.span.start, procedure.span.start + len("DEF"))
         for name in (program.variables[k] for k in procedure.values if yes_no[k]):

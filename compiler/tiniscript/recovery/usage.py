@@ -62,7 +62,7 @@ from tiniscript.recovery.writing import (
     tokens_of,
     without_note,
 )
-from tiniscript.syntax.free_names import in_place_of
+from tiniscript.syntax.free_names import free_word_name
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD, Token, scan
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
@@ -581,7 +581,7 @@ class Usage:
         word, text, start = self.found.values["word"], self.text, self.found.span.start
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
         is_taught = _TAUGHT.search(text[max(0, start - _LONG_HEAD) : start])
-        right = in_place_of(text, word) if is_set or is_taught else ""
+        right = free_word_name(text, word) if is_set or is_taught else ""
         suggestion = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
         is_clock = bool(is_set and word == "TIME" and not is_set[1])
         is_everywhere = bool(right) and (word in VERSION_OF_WORD or not (suggestion or is_clock))

@@ -15,16 +15,18 @@ from tiniscript.recovery.amounts import is_amount, with_number
 from tiniscript.recovery.meanings import lexicon_meaning, meant_by
 from tiniscript.semantics.comparisons import is_aside
 from tiniscript.semantics.named_values import value_of, yes_no_of
-from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
+from tiniscript.semantics.symbols import MOST_SUGGESTIONS, NUMBER, Operand, Scope
 from tiniscript.semantics.unknown_words import whole_name
 from tiniscript.syntax.ast import Def, Part
 from tiniscript.syntax.operators import SIGN_OF
 
-_EQUAL = frozenset(("EQ", "NE"))
-_COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
-_COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
-_NEAR = 20  # characters before a name in which its word is looked for
-_COMPARED_WITH = re.compile(r"(\w+)\s*(?:=|<>)\s*$")  # `BUTTON = ` of `BUTTON = HIGH`
+_EQUALITY_OPS = frozenset(("EQ", "NE"))
+_COMPARISON = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
+_COMPARISON_BEFORE = re.compile(
+    r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)"
+)  # `X =` of `X = 5`
+_CHARACTERS_BEFORE = 20  # characters before a name in which its word is looked for
+_EQUALITY_BEFORE = re.compile(r"(\w+)\s*(?:=|<>)\s*$")  # `BUTTON = ` of `BUTTON = HIGH`
 _TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
 _TONE_BEFORE = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
 _DIGITS = "0123456789"
@@ -41,7 +43,7 @@ class WrongValues:
             scope.report(codes.NO_VALUE, span, word=name)
             return
         meant = meant_by(name) or ""
-        before = scope.source.text[max(0, span.start - _NEAR) : span.start]
+        before = scope.source.text[max(0, span.start - _CHARACTERS_BEFORE) : span.start]
         is_variable = meant == "TIME" and _TIME_BEFORE.search(before) is not None
         if meant == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
@@ -52,7 +54,7 @@ class WrongValues:
             if not self._is_said(span):
                 scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
             return
-        names = scope.names.items() if len(scope.diagnostics) < ENOUGH else ()
+        names = scope.names.items() if len(scope.diagnostics) < MOST_SUGGESTIONS else ()
         known = [each for each, meaning in names if meaning.what in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
         known += ["FOREVER"] if is_forever else []
@@ -61,7 +63,7 @@ class WrongValues:
             "".join(lexicon_meaning(name, "power")) if before.rstrip().endswith("=") else ""
         )
         suggestion = suggestion or whole_name(scope, name, scope.set_somewhere)
-        if (match := _COMPARED_WITH.search(before)) and scope.is_yes_no_sensor(match[1].upper()):
+        if (match := _EQUALITY_BEFORE.search(before)) and scope.is_yes_no_sensor(match[1].upper()):
             suggestion = yes_no_of(name) or suggestion
         base = name.rstrip(_DIGITS).rstrip("_")  # DISTANCE, of DISTANCE2
         stem = (
@@ -72,7 +74,7 @@ class WrongValues:
         sensors = [each for each, meaning in names if meaning.what == "sensor"]
         if name == target or name in scope.set_somewhere:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
-                   for diagnostic in scope.diagnostics[-ENOUGH:]):  # fmt: skip
+                   for diagnostic in scope.diagnostics[-MOST_SUGGESTIONS:]):  # fmt: skip
                 return  # said once
             scope.report_used(name, span, suggestion)
         else:
@@ -156,7 +158,7 @@ class WrongValues:
             values = {**values, "example": f"{result.upper()} > 0"}
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
-            before, after = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
+            before, after = _COMPARISON_BEFORE.match(asked), _COMPARISON.fullmatch(asked)
             is_sensor = result.upper() in (reading.name for reading in self.scope.kit.readings)
             if other.start < operand.start and before and not is_sensor:
                 values = {"fix": f"{before[0]} {result}"}
@@ -183,7 +185,7 @@ class WrongValues:
         number, answer = (left, right) if left.type == NUMBER else (right, left)
         digit = self.scope.source[Span(number.start, number.end)]
         result = self.scope.source[Span(answer.start, answer.end)]
-        if digit not in ("0", "1") or op not in _EQUAL or not result.isidentifier():
+        if digit not in ("0", "1") or op not in _EQUALITY_OPS or not result.isidentifier():
             return ""
         return result.upper() if (digit == "1") == (op == "EQ") else f"NOT {result.upper()}"
 

@@ -85,7 +85,7 @@ def missing_feature(program: ir.Program, kit: Kit) -> str | None:
     read = {statement.sensor for statement in statements if isinstance(statement, ir.Read)}
     if program.tasks:
         return "tasks"
-    if any(k >= len(kit.sensors) for k in read | ir.referenced("SENSOR", statements)):
+    if any(k >= len(kit.sensors) for k in read | ir.referenced_numbers("SENSOR", statements)):
         return "remote"
     return "ways" if any(map(is_open_way, statements)) else None
 
@@ -102,7 +102,7 @@ class _Sketch:
     def __init__(self, source: Source, program: ir.Program, robot: Robot, language: str) -> None:
         self.source, self.program, self.robot, self.language = source, program, robot, language
         self.is_exact = needs_numbers(program, robot)
-        self.yes_no = ir.are_yes_no(program, robot.kit)  # of each variable
+        self.yes_no = ir.yes_no_variables(program, robot.kit)  # of each variable
         self.arguments = frozenset(k for procedure in program.procedures for k in procedure.values)
         self.needed: dict[str, None] = {}  # helpers, in the order in which they are met
         names = Names(language)
@@ -193,7 +193,7 @@ class _Sketch:
         name = self.named.procedures[self.program.procedures.index(procedure)]
         head, rows.lines = rows.lines, []
         rows.given = self.arguments - {*procedure.values}  # those of this DEF it sets itself
-        read = ir.referenced("VARIABLE", ir.walk(procedure.body))
+        read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
         for k in procedure.values:
             if k not in read:  # or a compiler warns
                 rows.line(f"(void){self.named.variables[k]};")
@@ -350,7 +350,7 @@ class _Sketch:
         for k, name in enumerate(self.named.variables):
             if k not in self.arguments:
                 lines.append(f"bool {name} = false;" if self.yes_no[k] else f"$N {name} = 0;")
-        named = ir.referenced("SENSOR", ir.all_statements(self.program))  # read or not
+        named = ir.referenced_numbers("SENSOR", ir.all_statements(self.program))  # read or not
         for k in sorted(rows.read_sensors | named):
             kind = self.plan.kind(k)
             lines.append(f"{kind} {self.named.sensors[k]} = {'false' if kind == 'bool' else '0'};")

@@ -18,7 +18,7 @@ from tiniscript.base.words import FUNCTIONS, TASKS, WAYS, WORDS, Word
 from tiniscript.bytecode.opcodes import SHORTS
 from tiniscript.codegen.lower_expression import push_bytes
 from tiniscript.syntax.blocks import ENDS
-from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.cursor import INSTRUCTION_ENDS
 from tiniscript.syntax.later_words import kit_for_tokens
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
@@ -148,7 +148,7 @@ class Reader:
 
     def program(self) -> None:
         while self.token.kind is not END:
-            if self.token.kind in AT_END or self.token.kind == "|":
+            if self.token.kind in INSTRUCTION_ENDS or self.token.kind == "|":
                 self.i += 1
             else:
                 self.instruction()
