@@ -139,7 +139,7 @@ def role_table() -> str:
 def fault_table() -> str:
     rows = []
     for number, name, what in opcodes.FAULTS:
-        faulting = ", ".join(f"`{item}`" for item in opcodes.FAULTING[name])
+        faulting = ", ".join(f"`{item}`" for item in opcodes.FAULTING_OPS[name])
         rows.append((number, f"`{name}`", what, faulting or "none, in verified code"))
     return table(("number", "fault", "when", "instructions"), rows)
 

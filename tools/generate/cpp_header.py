@@ -144,7 +144,7 @@ def enumeration(name: str, rows: Sequence[tuple[str, int, str]]) -> str:
 def ways() -> str:
     """Return what says which second bytes there are: those of a MOVE and of a WATCH of its own."""
     same = {"GO": "MOVE", "WATCH_GO": "WATCH"}
-    for code, op in opcodes.ESCAPED.items():
+    for code, op in opcodes.ESCAPED_OPS.items():
         base, _, direction = op.name.rpartition("_")
         twin = opcodes.BY_NAME[f"{same[base]}_{direction}"]
         assert (twin.code, twin.control_role, twin.pops) == (
@@ -152,8 +152,8 @@ def ways() -> str:
             op.control_role,
             op.pops,
         ) and not op.operands
-    mask, value = 0xF4, min(opcodes.ESCAPED)
-    assert {code for code in range(256) if code & mask == value} == set(opcodes.ESCAPED)
+    mask, value = 0xF4, min(opcodes.ESCAPED_OPS)
+    assert {code for code in range(256) if code & mask == value} == set(opcodes.ESCAPED_OPS)
     return (
         "// Whether a second byte is that of GO or of WATCH_GO: the code of MOVE or of WATCH.\n"
         "constexpr bool is_way(uint8_t code) {"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.codegen.text.problems import OF_DEFS, PROBLEMS, REMARKS, problem_text
+from tiniscript.codegen.text.problems import DEF_PROBLEMS, PROBLEMS, REMARKS, problem_text
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answer_languages, language_number
 from tiniscript.robots.text_levels import LEVELS
@@ -87,7 +87,7 @@ def _unused_remarks() -> set[tuple[str, str]]:
     """
     levels = {("remark", f"LEVEL_{name.upper()}") for name in LEVELS if name != SMALLEST}
     assert "DEF" in LEVELS[SMALLEST].lacks
-    words = {("problem", name) for name in OF_DEFS}
+    words = {("problem", name) for name in DEF_PROBLEMS}
     faults = {("fault", name) for _, name, _ in FAULTS if name.startswith("STUCK")}
     return levels | words | faults | {("remark", "NO_KEYS")}
 

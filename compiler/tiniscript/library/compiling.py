@@ -14,7 +14,7 @@ from typing import NamedTuple
 from tiniscript.base.kit import KIT_WORDS_SINCE, Kit
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Source, Span, Unreadable, decode
-from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
+from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_for_needs, pack
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import SourceLocation, lower
 from tiniscript.diagnostics import codes
@@ -240,7 +240,7 @@ def image_of(compiled: Compiled, robot: Robot) -> Image:
     assert compiled.program is not None and compiled.verdict is not None
     devices, needs = robot.kit.hash_of_used(compiled.verdict.uses), compiled.verdict.needs
     return Image(compiled.program.start, devices, compiled.code,
-                 checksum(compiled.image), isa_of(needs), needs=needs)  # fmt: skip
+                 checksum(compiled.image), isa_for_needs(needs), needs=needs)  # fmt: skip
 
 
 def image_maker(robot: Robot) -> Callable[[str], Image | None]:

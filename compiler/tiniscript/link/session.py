@@ -16,7 +16,7 @@ from functools import partial
 from itertools import takewhile
 from typing import Any, NamedTuple, TypeVar
 
-from tiniscript.bytecode.image import isa_of
+from tiniscript.bytecode.image import isa_for_needs
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest, Requester
 from tiniscript.link.frames import Frame, decode_frame
@@ -153,7 +153,7 @@ class Session(Requester):
         nonce: int,
         baud: int = 9600,
         kit: int = 0,
-        isa: tuple[int, int] = isa_of(0),
+        isa: tuple[int, int] = isa_for_needs(0),
         keys: KeyRing | None = None,
         place: str = "",
     ) -> None:
