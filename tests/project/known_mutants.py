@@ -46,7 +46,7 @@ KNOWN: tuple[Known, ...] = (
           "self.blocks[-1].has_else = True", "self.blocks[-1].has_else = False",
           "tests/text/test_levels.py::test_what_each_arm_has_read_is_not_read_again"),
     Known("a comment as wide as a line", "compiler/tiniscript/codegen/sketch/statements.py",
-          "WIDEST - 2 * self.depth - 3)", "WIDEST - 2 * self.depth - 4)",
+          "MOST_COLUMNS - 2 * self.depth - 3)", "MOST_COLUMNS - 2 * self.depth - 4)",
           "tests/sketch/test_writing.py::test_a_long_comment_is_broken_where_the_line_ends"),
     Known("an end that is nobody's", "compiler/tiniscript/link/sharing/peers.py",
           "        raise OSError(number, os.strerror(number))", "        pass",
