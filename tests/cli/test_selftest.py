@@ -175,7 +175,7 @@ def test_only_the_port_of_the_self_test_is_opened(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The board of another group may be on the only other port: nobody has chosen it."""
-    monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO", ())
+    monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO_TERMINALS", ())
     monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
     with PtyEnd(Firmware()) as end:
         monkeypatch.setattr("tiniscript.doctor.diagnosis._only_port", lambda *_: end.port)

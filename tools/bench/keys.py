@@ -15,7 +15,7 @@ from pathlib import Path
 from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.link.messages import HOLD_MS
-from tiniscript.link.remote import GAP_MS, NOTHING, Pressed
+from tiniscript.link.remote import GAP_MS, NOTHING_PRESSED, Pressed
 from tools import ROOT
 from tools.bench import page
 from tools.bench.firmware_stack import connect, require_ok
@@ -66,7 +66,7 @@ class Hand:
         """Return the ms from a change of what is held to the last of the pins that it changes."""
         begun, told = self._begin()
         self._hold(held)
-        return self._ms_from(begun, told, held != NOTHING)
+        return self._ms_from(begun, told, held != NOTHING_PRESSED)
 
     def lose(self) -> float:
         """Return the ms from where a line is lost, over which somebody drives, to motors off."""
@@ -105,10 +105,10 @@ class Hand:
 def measure(firmware: Path, baud: int) -> list[list[float]]:
     """Return the ms of each try, by row."""
     with Hand(firmware, baud, AT_ONCE) as hand:
-        changes = [(hand.change(AHEAD), hand.change(NOTHING)) for _ in range(TRIES)]
+        changes = [(hand.change(AHEAD), hand.change(NOTHING_PRESSED)) for _ in range(TRIES)]
         losses = [hand.lose() for _ in range(TRIES)]
     with Hand(firmware, baud, EXAMPLE.read_text(encoding="utf-8")) as hand:
-        seldom = [(hand.change(AHEAD), hand.change(NOTHING))[0] for _ in range(TRIES)]
+        seldom = [(hand.change(AHEAD), hand.change(NOTHING_PRESSED))[0] for _ in range(TRIES)]
     return [*map(list, zip(*changes, strict=True)), seldom, losses]
 
 

@@ -32,7 +32,7 @@ from tiniscript.link.connection import LinkConnection, stranger
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED
 from tiniscript.link.outcomes import ConnectionLost
-from tiniscript.link.port_names import PSEUDO, is_address, same_for_all
+from tiniscript.link.port_names import PSEUDO_TERMINALS, canonical_port, is_address
 from tiniscript.link.sharing.shared_connection import OtherVersion
 from tiniscript.link.wire import Wire
 
@@ -118,7 +118,7 @@ def diagnose(doors: Doors, question: Question) -> Diagnosis:
     held = _port_in_use(doors.system, computer, port)
     if held is not None:
         return Diagnosis(port, (held,), computer, False)
-    is_radio = doors.is_radio(port) or port.startswith(PSEUDO)
+    is_radio = doors.is_radio(port) or port.startswith(PSEUDO_TERMINALS)
     if not is_radio and _is_listed(doors.system, computer, port) and not doors.may_open(port):
         return Diagnosis(port, (sure("not_opened"),), computer, False)
     return _diagnose_open_port(doors, question, computer, port, is_radio)
@@ -133,7 +133,7 @@ def _diagnose_open_port(
         return Diagnosis(
             port, (_open_failure(failure, computer, port, doors.system),), computer, False
         )
-    is_radio = is_radio and not port.startswith(PSEUDO)
+    is_radio = is_radio and not port.startswith(PSEUDO_TERMINALS)
     asked = Line(question.baud, is_radio, question.nonce)
     expected, heard = question.expected, list[RobotAnswers]()
 
@@ -208,12 +208,12 @@ def _diagnose_shared(
 
 def _port_in_use(system: System, computer: Computer, port: str) -> Finding | None:
     """Return why this user cannot have the port now, as far as it is known without opening it."""
-    who = access(system, same_for_all(port))
+    who = access(system, canonical_port(port))
     if not who.may_use and who.is_joined:
         return sure("login_again", group=who.group)
     if not who.may_use:
         return sure("no_permission", group=who.group)
-    if port.startswith(PSEUDO):
+    if port.startswith(PSEUDO_TERMINALS):
         return None  # whoever has made it has it open, too
     if "ModemManager" in who.users:
         return sure("modem_manager")

@@ -16,7 +16,7 @@ from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
 from tiniscript.flash.bootloaders import MEGA, NANO_OLD, UNO, Bootloader
 from tiniscript.link import foreign
-from tiniscript.link.foreign import ECHO, Foreign
+from tiniscript.link.foreign import ECHO_SKETCH, Foreign
 from tiniscript.link.modules import dialects, talk
 from tiniscript.link.wire import Wire
 
@@ -40,7 +40,7 @@ def answers(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool
     """
     for line, greeting, answer in GREETINGS:
         wire.set_baud(line.baud)
-        wire.restart()
+        wire.reset_board()
         said = wire.receive(BLINK_MS, BLINK_MS)
         is_there = False
         for _ in range(TRIES):
@@ -136,7 +136,7 @@ class _Others:
             found = self.ask(heard, not is_echo)
         if found is None and is_echo:
             said = _text_beside(heard, spoken)
-            found = sure(ECHO, said=said) if said else echo()
+            found = sure(ECHO_SKETCH, said=said) if said else echo()
         return found
 
     def look(self, heard: bytes) -> Finding | None:
@@ -144,7 +144,9 @@ class _Others:
         if foreign.is_robot(heard):
             return probably("one_way")
         found = foreign.identify_board(heard)
-        return None if found is not None and found.name in foreign.GENERAL else self._judge(found)
+        return (
+            None if found is not None and found.name in foreign.GENERAL_ROWS else self._judge(found)
+        )
 
     def ask(self, heard: bytes, may_be_text: bool) -> Finding | None:
         """Send the probes, and return what surely answers, or is surely text without them.
@@ -161,13 +163,13 @@ class _Others:
                 if found is not None:
                     return found
         if (best := self.best_finding()) is not None and best.cause == "at_firmware":
-            self._wire.send(foreign.ASKS_AT)
+            self._wire.send(foreign.AT_VERSION_QUESTION)
             found = self._judge(
                 foreign.identify_board(heard + self._wire.receive(dialects.ANSWER_MS))
             )
             if found is not None:
                 return found
-        return self._judge(foreign.stranger(heard)) if may_be_text else None
+        return self._judge(foreign.identify_stranger(heard)) if may_be_text else None
 
     def settle(self, heard: bytes) -> Finding | None:
         """Return what has sent these bytes, where no question would help."""
@@ -202,14 +204,14 @@ def _echo(wire: Wire, line: Line, expected: Expectations) -> Finding:
 
 def _echo_of_one_speed(wire: Wire, baud: int) -> Finding:
     """Return what sends back at this speed only: what takes commands may do so, too."""
-    return _module(wire, (baud,)) or sure(ECHO, said="")
+    return _module(wire, (baud,)) or sure(ECHO_SKETCH, said="")
 
 
 def _text_beside(heard: bytes, spoken: bytes) -> str:
     """Return the text that came with what was sent and came back, if any did."""
     for frame in spoken.split(b"\0"):
         heard = heard.replace(frame, b"") if frame else heard
-    return foreign.readable(heard.replace(b"\0", b""))
+    return foreign.readable_line(heard.replace(b"\0", b""))
 
 
 def _module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
@@ -218,7 +220,7 @@ def _module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
     if module is None:
         return None
     if not module.version:  # no module has told which one it is
-        wire.send(foreign.ASKS_AT)
+        wire.send(foreign.AT_VERSION_QUESTION)
         found = foreign.identify_board(wire.receive(dialects.ANSWER_MS))
         if found is not None:
             return Finding(found.name, found.is_sure, {"said": found.said})

@@ -13,7 +13,7 @@ from tiniscript.base.trace import Event
 from tiniscript.bytecode.image import Image
 from tiniscript.lessons.lesson import Lesson, Press
 from tiniscript.lessons.variation import presses_of, vary
-from tiniscript.link.remote import NOTHING
+from tiniscript.link.remote import NOTHING_PRESSED
 from tiniscript.link.remote import pressed_of as held
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
@@ -158,7 +158,9 @@ class Trial:
             press.key for press in self._presses if press.at_seconds <= seconds < press.end_seconds
         )
         key = next(keys, "")
-        self._computer.session.press(*(held([key.removeprefix("KEY_")]) if key else NOTHING))
+        self._computer.session.press(
+            *(held([key.removeprefix("KEY_")]) if key else NOTHING_PRESSED)
+        )
         self._computer.wait(until_ms - robot.now_ms)
 
 

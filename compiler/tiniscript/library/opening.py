@@ -20,7 +20,7 @@ from tiniscript.library.errors import RobotError
 from tiniscript.link import errors, holders, known_ports, port_names
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
-from tiniscript.link.port_names import PSEUDO, is_address, is_at_broker, is_name
+from tiniscript.link.port_names import PSEUDO_TERMINALS, is_address, is_at_broker, is_name
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.shared_connection import OtherVersion, SharedConnection, join
 from tiniscript.virtual import directory
@@ -99,7 +99,7 @@ def _connect_past_holder(
     """
     registration = registry.find_registration(address)
     path = str(registry.lock_of(address)) if is_address(address) else address
-    holder = holders.holder(path, None if registration is None else registration.pid)
+    holder = holders.find_holder(path, None if registration is None else registration.pid)
     if holder is not None and holder.is_suspended:
         if sys.platform == "linux" and not is_address(address):
             speed = baud if registration is None else registration.baud
@@ -141,7 +141,7 @@ def _open_line(
             raise RobotError("port_of_another", language, {"port": printable_name(port)})
         # who claims a robot has it before them: one of many, perhaps, at the same cable
         keys = KeyFile(is_for_virtual=is_virtual(address), accepts_all=verb == "set owner")
-        place = port_names.same_for_all(port)  # an address may be another robot's tomorrow
+        place = port_names.canonical_port(port)  # an address may be another robot's tomorrow
         nonce = int.from_bytes(os.urandom(4), "little")
         session = Session(nonce, baud, kit, keys=keys, place=place)
         line = PortConnection(device, session, lock, address)
@@ -188,7 +188,7 @@ def last_port() -> str | None:
 
 
 def is_virtual(port: str) -> bool:
-    if not is_address(port) and not port.startswith(PSEUDO):
+    if not is_address(port) and not port.startswith(PSEUDO_TERMINALS):
         return False
     return directory.is_virtual(port)
 

@@ -11,7 +11,7 @@ from ipaddress import ip_address
 from zeroconf import Error, NonUniqueNameException, ServiceInfo, Zeroconf
 
 from tiniscript.link.port_names import TCP
-from tiniscript.link.transports.network import LONGEST, SERVICE, query_service
+from tiniscript.link.transports.network import MOST_NAME_BYTES, SERVICE, query_service
 from tiniscript.virtual.directory import LOCAL
 
 ASK_MS = 2500  # timeout for a robot that has the name: for a second it may say nothing twice
@@ -26,7 +26,7 @@ class Announcement:
 
     def __init__(self, name: str, number: int) -> None:
         """`number` is the robot's TCP port. Raises NameTaken, and OSError without multicast."""
-        if not 0 < len(name.encode()) <= LONGEST:
+        if not 0 < len(name.encode()) <= MOST_NAME_BYTES:
             raise NameTaken
         self.port = TCP + name
         self._network = Zeroconf(interfaces=[LOCAL])

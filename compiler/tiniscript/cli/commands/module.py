@@ -21,7 +21,7 @@ from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
 from tiniscript.link.modules.set_up import (
     BAUD,
     DONE,
-    GOOD,
+    GOOD_OUTCOMES,
     NAME,
     PIN,
     Outcome,
@@ -144,7 +144,7 @@ class _SetUp:
             outcomes = set_up.apply_steps(self.wire, module, plan, self._print_outcome)
         else:
             self._show(plan)
-        is_done = all(outcome.how in GOOD for outcome in outcomes)
+        is_done = all(outcome.how in GOOD_OUTCOMES for outcome in outcomes)
         if not plan:
             pin = "123456"[: module.dialect.pin_digits]
             print(self._text("module_nothing", port=self.port, pin=pin))

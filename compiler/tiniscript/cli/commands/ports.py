@@ -23,7 +23,7 @@ from tiniscript.link.authority import ownership_of
 from tiniscript.link.connection import stranger
 from tiniscript.link.foreign import explain
 from tiniscript.link.requests import OK
-from tiniscript.link.sharing.protocol import LOOKER
+from tiniscript.link.sharing.protocol import LOOKING_VERB
 from tiniscript.robots.profile import Robot
 
 OPEN_S = 12.0
@@ -59,7 +59,7 @@ def run(options: Namespace, language: str) -> int:
 def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     """Return the robot that answers on a port, or why none does."""
     try:
-        with closing(open_client(port, robot, LOOKER, baud, language, OPEN_S)) as client:
+        with closing(open_client(port, robot, LOOKING_VERB, baud, language, OPEN_S)) as client:
             reply = client.hello()
             device_info, heard = client.line.robot, client.line.heard
             found = stranger(client.line)

@@ -30,7 +30,7 @@ from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import OWNED, SEALS
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.payloads import HelloReply
-from tiniscript.link.port_names import same_for_all
+from tiniscript.link.port_names import canonical_port
 from tiniscript.link.requests import Reply, device_info_of
 from tiniscript.link.sharing.shared_connection import join
 from tiniscript.link.wire import Wire
@@ -90,7 +90,7 @@ def _has_key(robot: int) -> bool:
 def _doubt(port: str, hello: HelloReply) -> str:
     """Return the cause why this may be another robot than the one of a key of this computer."""
     keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), device_info_of(hello)
-    if is_other(keys, same_for_all(port), info):
+    if is_other(keys, canonical_port(port), info):
         return "other_robot"
     is_right = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
     return "unproven" if has_to_seal(keys, info) and not is_right else ""

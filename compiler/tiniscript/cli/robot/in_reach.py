@@ -20,10 +20,10 @@ from tiniscript.link.port_names import (
     BLE,
     TCP,
     canonical,
+    canonical_port,
     is_bluetooth,
     is_network_name,
     name_in,
-    same_for_all,
 )
 from tiniscript.link.sharing.registry import Registration, find_all
 from tiniscript.link.sharing.shared_connection import is_alive
@@ -80,8 +80,8 @@ def _by_name(known: list[str], language: str) -> InReach:
     for announced in there:
         name = TCP + announced.name if announced.name.isprintable() else announced.port
         sentence = text("announced_port", language).format(port=announced.port)
-        rows.append((name, {same_for_all(name), same_for_all(announced.port)}, sentence))
-    ours = {port: same_for_all(port) for port in known if is_network_name(port)}
+        rows.append((name, {canonical_port(name), canonical_port(announced.port)}, sentence))
+    ours = {port: canonical_port(port) for port in known if is_network_name(port)}
     reach = _rows(rows, ours)
     reach.others.extend(announced.port for announced in there if announced.port not in reach.about)
     return reach
@@ -109,7 +109,7 @@ def in_use(is_virtual: bool = False) -> list[str]:
     result = [] if is_virtual else held[:]
     for robot in directory.running_robots():
         names = [robot.address, *([robot.terminal] if robot.terminal else [])]
-        through = [port for port in names if same_for_all(port) in held]
+        through = [port for port in names if canonical_port(port) in held]
         result.append(through[0] if through else robot.address)  # one robot, one port
     return _unique_ports(result)
 
@@ -134,4 +134,4 @@ def ports_to_stop(is_virtual: bool = False) -> list[str]:
 
 
 def _unique_ports(ports: Iterable[str]) -> list[str]:
-    return list({same_for_all(port): port for port in ports}.values())
+    return list({canonical_port(port): port for port in ports}.values())

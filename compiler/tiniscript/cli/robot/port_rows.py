@@ -7,7 +7,7 @@ from tiniscript.cli.robot.connect import about_port, about_virtual
 from tiniscript.cli.robot.in_reach import InReach, alive
 from tiniscript.cli.texts import text
 from tiniscript.link import known_ports, ports
-from tiniscript.link.port_names import is_there, same_for_all
+from tiniscript.link.port_names import canonical_port, is_there
 from tiniscript.virtual import directory
 
 NOWHERE = InReach({}, [], [], [])  # nothing was searched
@@ -27,7 +27,7 @@ def list_rows(language: str, only: str | None = None, in_reach: InReach = NOWHER
         names += [port for port in known.names if port not in about and is_there(port)
                   and port not in in_reach.others and not directory.is_gone(port)]  # fmt: skip
         names += [port for port in virtual if port not in (*names, *in_reach.others)]
-        listed = {same_for_all(port) for port in names}
+        listed = {canonical_port(port) for port in names}
         names += [port for port in held if port not in listed]
     about |= {port: about_virtual(each, language) for port, each in virtual.items()}
     return [
@@ -37,7 +37,7 @@ def list_rows(language: str, only: str | None = None, in_reach: InReach = NOWHER
             "remembered": known.names.get(port),
             "is_last_used": known.last == port,
             "is_virtual": port in virtual,
-            "held_by": held.get(same_for_all(port)),
+            "held_by": held.get(canonical_port(port)),
         }
         for port in names
     ]

@@ -16,7 +16,7 @@ from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.payloads import EmptyReply
-from tiniscript.link.remote import NOTHING, Pressed, has_remote, pressed_of
+from tiniscript.link.remote import NOTHING_PRESSED, Pressed, has_remote, pressed_of
 from tiniscript.link.requests import OK, Reply
 
 FIRST_S, REPEAT_S = 0.7, 0.15  # for which a press holds a key
@@ -75,7 +75,7 @@ class TerminalRemote:
         self._connection = connection
         self._keys = Keys()
         self._held = HeldKeys()
-        self._said, self._said_s = NOTHING, 0.0
+        self._said, self._said_s = NOTHING_PRESSED, 0.0
         self._request: PendingRequest[EmptyReply] | None = None
 
     def __enter__(self) -> TerminalRemote:
@@ -95,7 +95,7 @@ class TerminalRemote:
             raise KeyboardInterrupt
         self._refuse()
         held = self._held.pressed_at(now_s)
-        if held == self._said and (held == NOTHING or now_s - self._said_s < SAY_S):
+        if held == self._said and (held == NOTHING_PRESSED or now_s - self._said_s < SAY_S):
             return
         self._said, self._said_s = held, now_s
         self._request = self._connection.begin_request(lambda session: session.press(*held))

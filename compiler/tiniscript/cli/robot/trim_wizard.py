@@ -15,7 +15,7 @@ from tiniscript.cli.texts import say_aside
 from tiniscript.cli.texts.causes import label, sentences_of
 from tiniscript.doctor.findings import Finding, sure
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
-from tiniscript.link.requests import TAKEN
+from tiniscript.link.requests import ACCEPTING_STATUSES
 from tiniscript.link.trim import MOST_PACE, Pace, Trim
 
 POWERS = 40, 80  # percent: it is seen and measured at both
@@ -56,13 +56,13 @@ def _give_back(connection: Connection, before: Trim) -> None:
     """Restore the robot's former trim, with retries: a stop may still be in progress."""
     for _ in range(TRIES - 1):
         try:
-            connection.request(lambda session: session.trim(before.data()), TAKEN)
+            connection.request(lambda session: session.trim(before.data()), ACCEPTING_STATUSES)
         except CommandError as failure:
             if not _is_there(failure):
                 raise
         else:
             return
-    connection.request(lambda session: session.trim(before.data()), TAKEN)
+    connection.request(lambda session: session.trim(before.data()), ACCEPTING_STATUSES)
 
 
 class TrimWizard(Conversation):
@@ -167,7 +167,9 @@ class TrimWizard(Conversation):
         return CommandError(3, "trim_found", part=part, found=result.what, then=result.then)
 
     def _set(self, trim: Trim) -> None:
-        self.connection.request(lambda session: session.trim(trim.data()), TAKEN)  # kept at the end
+        self.connection.request(
+            lambda session: session.trim(trim.data()), ACCEPTING_STATUSES
+        )  # kept at the end
 
 
 def parse_measure(answer: str, is_turn: bool) -> float | None:
