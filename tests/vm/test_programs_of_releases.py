@@ -25,7 +25,7 @@ from tiniscript import ProgramError, __version__, check, robots, run
 from tiniscript.base.kit import KIT_WORDS_SINCE
 from tiniscript.base.words import VERSION_OF_WORD, WORDS
 from tiniscript.lessons import catalogue
-from tiniscript.library.named_robot import name_in
+from tiniscript.library.named_robot import shipped_name_in
 
 FOLDER = Path(__file__).parent
 FIRST = "0.2.0"
@@ -95,7 +95,7 @@ def written() -> str:
     parts: dict[tuple[str, str], str] = {}
     for old in of_this_version():
         text = old.text.rstrip("\n") + "\n"
-        robot = name_in(text.encode()) or old.robot
+        robot = shipped_name_in(text.encode()) or old.robot
         is_plain = text.strip() and not re.search("(?m)^[=>] ", text)
         if is_plain and (robot, text) not in earlier and robot in robots.names():
             with suppress(ProgramError):

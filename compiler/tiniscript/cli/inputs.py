@@ -125,7 +125,7 @@ def robot_for(given: Input, options: Namespace, language: str) -> Robot:
 
     What the program names counts from now on as if `--robot` had named it.
     """
-    named = named_robot.name_in(given.data)
+    named = named_robot.shipped_name_in(given.data)
     if options.robot is None:
         options.robot = named
     result = robot(options, language)

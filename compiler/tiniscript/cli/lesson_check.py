@@ -36,8 +36,8 @@ from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.marking import Marking
 from tiniscript.lessons.running import Run
 from tiniscript.lessons.sentences import sentence
-from tiniscript.library.compiling import Compiled, for_robot, image_maker
-from tiniscript.library.named_robot import name_in, robot_of
+from tiniscript.library.compiling import Compiled, fit_to_robot, image_maker
+from tiniscript.library.named_robot import robot_of, shipped_name_in
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused
@@ -133,13 +133,13 @@ class _Marker:
             )
         robot = robot_of(given.data, self.robot)
         compiled = compiling.compile_input(given, robot, is_strict=True, names_robots=False)
-        return for_robot(compiled, robot)
+        return fit_to_robot(compiled, robot)
 
     def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:
         if not compiled.is_right:
             return Mark(given.name, MISTAKES, 0, tuple(self._mistakes(compiled)))
         robot = robot_of(given.data, self.robot)
-        lesson = self.lesson._replace(robot=name_in(given.data) or self.lesson.robot)
+        lesson = self.lesson._replace(robot=shipped_name_in(given.data) or self.lesson.robot)
         marking = Marking(compiled.source.text, image_maker(robot), robot, lesson, self.seeds)
         try:
             outcome = marking.run_to_end()

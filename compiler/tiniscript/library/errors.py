@@ -27,7 +27,7 @@ def sentence(reason: str, language: str, values: Mapping[str, str]) -> str:
     return f"{text[:1].upper()}{text[1:]}".format(**values)
 
 
-_SAME = {
+_REASON_WITHOUT_HINT = {
     "port_missing_but": "port_missing",
     "port_not_found_but": "port_not_found",
     "port_forbidden_linux": "port_forbidden",
@@ -43,7 +43,7 @@ class TiniScriptError(Exception):
     ) -> None:  # fmt: skip
         """`said` replaces the sentence that `reason` has in the catalogue `library`."""
         self.key = reason  # of its sentence, which may say more than the reason
-        self.reason = _SAME.get(reason, reason)
+        self.reason = _REASON_WITHOUT_HINT.get(reason, reason)
         self.values = dict(values or {})
         super().__init__(sentence(reason, language, self.values) if said is None else said)
 

@@ -72,7 +72,7 @@ def _robot(profile: Robot) -> dict[str, Any]:
         "baud": profile.board.baud,
         "speed_cm_s": profile.body.speed_cm_s,
         "wheel_base_cm": profile.body.wheel_base_cm,
-        "quiet_ms": round(opening.QUIET_S.get(profile.board.chip, 0) * 1000),
+        "quiet_ms": round(opening.QUIET_S_BY_BOARD.get(profile.board.chip, 0) * 1000),
         "outline": [[point.x, point.y] for point in Hull(profile.body).outline(Pose(0, 0, 0))],
         "places": {name: place._asdict() for name, place in profile.body.places.items()},
         "devices": [

@@ -22,7 +22,7 @@ from tiniscript.cli.robot.remote_keys import TerminalRemote
 from tiniscript.cli.robot.run_monitor import INTERRUPTED, RunMonitor, stop_and_say
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.library import source_map
-from tiniscript.library.compiling import kit_of, with_robot_hints
+from tiniscript.library.compiling import add_robot_hints, kit_of
 from tiniscript.library.known_kits import missing_need
 from tiniscript.library.other_robots import is_other_robots
 from tiniscript.library.refusing import lacks_remote
@@ -63,7 +63,7 @@ def _is_runnable(line: str, known: LiveState, robot: Robot, options: Namespace) 
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
     language: str = options.language
     if options.robot is None:
-        compiled = with_robot_hints(known.line(line, 0).compiled, robot, is_chosen=True)
+        compiled = add_robot_hints(known.line(line, 0).compiled, robot, is_chosen=True)
         if is_other_robots(compiled.diagnostics):
             result = own_kit.find_answering_robot(options, robot, language)
             if result is not None:
@@ -84,9 +84,7 @@ def _compile(
         raise CommandError(1, "live_button")
     result = known.line(line, 0 if is_last else room)
     if warns or not result.compiled.is_right:
-        outputs.print_diagnostics(
-            with_robot_hints(result.compiled, robot, is_chosen=True), language
-        )
+        outputs.print_diagnostics(add_robot_hints(result.compiled, robot, is_chosen=True), language)
     if not result.compiled.is_right:
         return None
     assert result.compiled.verdict is not None

@@ -17,7 +17,7 @@ from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, list_rows
 from tiniscript.cli.texts import Sentence, text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
-from tiniscript.library.known_kits import shipped_of_kit
+from tiniscript.library.known_kits import shipped_name_of_kit
 from tiniscript.link import known_ports
 from tiniscript.link.authority import ownership_of
 from tiniscript.link.connection import stranger
@@ -71,7 +71,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
         opening.remember(port, device_info.name, is_used=False)
         called = (
             printable_name(device_info.name)
-            or shipped_of_kit(device_info.kit)
+            or shipped_name_of_kit(device_info.kit)
             or f"{device_info.id:08x}"
         )
         owner = ownership_of(device_info)

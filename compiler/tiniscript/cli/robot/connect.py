@@ -25,7 +25,7 @@ from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
-from tiniscript.library.known_kits import shipped_of_kit
+from tiniscript.library.known_kits import shipped_name_of_kit
 from tiniscript.link import known_ports
 from tiniscript.link.connection import FOREIGN, PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
@@ -302,7 +302,7 @@ class Connection(Client):
         """Return the meaning of a robot's refusal, and what to do."""
         said, advice = sentence(reply.status, reply.detail, self.language)
         if reply.status == STATUSES["WRONG_KIT"]:
-            name = shipped_of_kit(reply.detail)
+            name = shipped_name_of_kit(reply.detail)
             if name is not None:
                 advice = text("choose_kit", self.language).format(robot=name)
         return f"{said} {advice}".strip()
@@ -315,7 +315,7 @@ class Connection(Client):
 
 def name_of(info: DeviceInfo, language: str) -> str:
     """Return the name of a robot for messages: its own, else that of its profile."""
-    return printable_name(info.name) or shipped_of_kit(info.kit) or text("robot", language)
+    return printable_name(info.name) or shipped_name_of_kit(info.kit) or text("robot", language)
 
 
 @contextmanager

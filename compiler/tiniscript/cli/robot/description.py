@@ -16,7 +16,7 @@ from tiniscript.cli.texts import text
 from tiniscript.doctor.examination import trips_of
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.library import source_map
-from tiniscript.library.known_kits import shipped_of_kit
+from tiniscript.library.known_kits import shipped_name_of_kit
 from tiniscript.link.authority import OF_ANOTHER, ownership_of
 from tiniscript.link.messages import (
     RESETS,
@@ -63,7 +63,7 @@ class Description(NamedTuple):
             "port": self.port,
             "owner": self.owner,
             "kit": f"{self.device_info.kit:04x}",
-            "robot": shipped_of_kit(self.device_info.kit),
+            "robot": shipped_name_of_kit(self.device_info.kit),
             "link": f"{hello.major}.{hello.minor}",
             "isa": f"{self.device_info.isa[0]}.{self.device_info.isa[1]}",
             "room": self.device_info.room,

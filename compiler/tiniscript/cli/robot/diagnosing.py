@@ -22,7 +22,7 @@ from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
 from tiniscript.library import opening
-from tiniscript.library.known_kits import name_of
+from tiniscript.library.known_kits import robot_name_of_kit
 from tiniscript.link import ports
 from tiniscript.link.authority import has_to_seal, is_other
 from tiniscript.link.connection import LinkConnection
@@ -66,7 +66,7 @@ def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expect
     """Return the robot that the options name, and what this computer knows of all."""
     robot = inputs.robot(options, language)
     kit = None if options.robot is None else robot.kit.fingerprint
-    return Expectations(kit, robot.name, name_of, _has_key, _doubt, pings=pings)
+    return Expectations(kit, robot.name, robot_name_of_kit, _has_key, _doubt, pings=pings)
 
 
 def examination_of(
