@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tiniscript.base.languages import SOURCE_LANGUAGE, languages, text
 from tiniscript.base.words import WORDS
-from tiniscript.lessons.lesson import AREA, KINDS, WHATS, Kind
+from tiniscript.lessons.lesson import AREA_KEYS, DEVICE_KINDS, KINDS, Kind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools import ROOT, measures
 from tools.generate.poster import as_block
@@ -211,9 +211,9 @@ def _key_list(kind: Kind) -> list[str]:
     """Return the keys, with their defaults where these say something."""
     result = ["`at`"] if kind.places else []
     if kind.words:
-        result.append("`what`" if kind.words in WHATS else "`words`")
+        result.append("`what`" if kind.words in DEVICE_KINDS else "`words`")
     for number in kind.numbers:
         is_said = number.default is not None and number.default < number.high
         result.append(f"`{number.key}`" + (f" ({number.default:g})" if is_said else ""))
-    result += [f"`{item}`" for item in (*kind.flags, *(AREA if kind.has_area else ()))]
+    result += [f"`{item}`" for item in (*kind.flags, *(AREA_KEYS if kind.has_area else ()))]
     return result

@@ -32,7 +32,7 @@ from tiniscript.bytecode.disassembly import assemble
 from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused, pack, unpack, with_checksum
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ISA_MAJOR, ISA_MINOR, SHORTS, Op
 from tiniscript.bytecode.verify import Refused, load_image
-from tiniscript.conformance.kit import FORM, VERSION
+from tiniscript.conformance.kit import MACHINE_FORM, MACHINE_VERSION
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, RUNNING, Robot
 from tiniscript.vm.tasks import machine_of
@@ -106,8 +106,8 @@ def machine_kit(command: str) -> str:
             kits.append(run.kit)
         rows.append(json.dumps(case_of(run, kits.index(run.kit), answer), ensure_ascii=False))
     head = {
-        "form": FORM,
-        "version": VERSION,
+        "form": MACHINE_FORM,
+        "version": MACHINE_VERSION,
         "made_by": command,
         "isa": [ISA_MAJOR, ISA_MINOR],
         "kits": [[line.removesuffix("\n") for line in lines_of(kit)] for kit in kits],

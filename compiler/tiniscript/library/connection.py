@@ -382,7 +382,7 @@ def _usual_port(language: Language) -> str:
     if (there := opening.last_port()) is not None:
         return there
     last = known_ports.remembered_ports().last
-    running = directory.for_all()
+    running = directory.unclaimed_robots()
     if len(running) == 1:
         return running[0].address
     listed = [item.port for item in ports.list_ports()]

@@ -161,7 +161,7 @@ def list_ports() -> list[Json]:
     `name` is that of the robot that had answered there, `virtual` the profile of a virtual robot.
     """
     known = known_ports.remembered_ports()
-    virtual = {item.address: item for item in directory.for_all()}
+    virtual = {item.address: item for item in directory.unclaimed_robots()}
     about = {item.port: item.description for item in ports.list_ports()}
     names = [*about, *(port for port in virtual if port not in about)]
     names += [port for port in known.names

@@ -17,8 +17,8 @@ from tiniscript.link.sharing import peers
 from tiniscript.link.sharing.registry import is_taken
 
 FILE_BYTES = 10_000
-LOCAL = "127.0.0.1"
-PREFIX = f"socket://{LOCAL}:"
+LOCAL_HOST = "127.0.0.1"
+PREFIX = f"socket://{LOCAL_HOST}:"
 
 
 class RunningRobot(NamedTuple):
@@ -76,7 +76,7 @@ def is_of_another(port: str) -> bool:
     return _read(_path(address)) is not None and peers.is_of_another(_number_of(address))
 
 
-def for_all() -> list[RunningRobot]:
+def unclaimed_robots() -> list[RunningRobot]:
     """Return the robots to which any command may upload a program."""
     return [item for item in running_robots() if item.verb == "robot"]
 

@@ -22,7 +22,7 @@ from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, Verdict, ve
 from tiniscript.conformance.kit import (
     FOLDER,
     LINK_VERSION,
-    VERSION,
+    MACHINE_VERSION,
     NotMade,
     link_test_suite,
     machine_cases,
@@ -78,7 +78,7 @@ def _machine(options: Namespace, timeout_s: int, language: str) -> int:
         ) from None
     finally:
         process.close()
-    facts = {"version": str(VERSION), "isa": ISA}
+    facts = {"version": str(MACHINE_VERSION), "isa": ISA}
     return report(result, len(cases), facts, "conform_machine_end", timeout_s, options, language)
 
 

@@ -168,7 +168,7 @@ def _form(told: Mapping[str, str], language: str) -> list[str]:
 
 def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> list[str]:
     """Return the lines of a report."""
-    rows = report.head(report.MARK, text("report_about", language),
+    rows = report.head(report.REPORT_MARK, text("report_about", language),
                        report.facts(diagnosis.computer), diagnosis.port)  # fmt: skip
     rows += [
         f"{finding.cause} {'sure' if finding.is_sure else 'probably'}"

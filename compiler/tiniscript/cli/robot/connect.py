@@ -383,7 +383,7 @@ def _select_port(options: Namespace, language: str) -> str:
     if (there := opening.last_port()) is not None:
         return there
     last = known_ports.remembered_ports().last
-    virtual = directory.for_all() if can_bring else directory.running_robots()
+    virtual = directory.unclaimed_robots() if can_bring else directory.running_robots()
     if len(virtual) == 1:
         return virtual[0].address
     if not asking.can_ask() or getattr(options, "asks_nothing", False):

@@ -53,7 +53,7 @@ def diagnosis_of(
         expected,
         int.from_bytes(os.urandom(4), "little"),
         watch_ms,
-        tuple(item.address for item in directory.for_all()),
+        tuple(item.address for item in directory.unclaimed_robots()),
     )
     doing = Doing(not options.json)
     try:

@@ -40,7 +40,7 @@ def running_address(options: Namespace) -> str | None:
     can_bring = hasattr(options, "world")
     if can_bring and simulator_options.wants_own(options):
         return None
-    result = directory.for_all() if can_bring else directory.running_robots()
+    result = directory.unclaimed_robots() if can_bring else directory.running_robots()
     if not result and not can_bring:
         raise CommandError(3, "no_virtual")
     if len(result) > 1:
