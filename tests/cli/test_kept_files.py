@@ -110,7 +110,7 @@ KEPT = {
         source_map,
     ),
     "a program": Kept(
-        lambda number: outputs.put(str(output()), bytes((number,)) * len(LONG)),
+        lambda number: outputs.write_output(str(output()), bytes((number,)) * len(LONG)),
         found_output,
         outputs,
         is_alone=True,

@@ -29,7 +29,7 @@ from tiniscript import robots
 from tiniscript.cli import main
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.conversation import AGAIN, Conversation, NoPerson
+from tiniscript.cli.robot.conversation import ANSWER_AGAIN, Conversation, NoPerson
 from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.doctor import report
 from tiniscript.library.simulated import Simulated
@@ -437,7 +437,7 @@ def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
         lambda talk: talk.answer("ask_free", name="X", values=""),
         lambda talk: talk.choice("ask_learn", 2),
         lambda talk: talk.turn_motor("left"),
-        lambda talk: talk.ask_what_was_seen("BEEP(1, 440)", "ask_buzzer", AGAIN),
+        lambda talk: talk.ask_what_was_seen("BEEP(1, 440)", "ask_buzzer", ANSWER_AGAIN),
     ]
     for last in ways:
         typed = iter(["1\n"] * answers)

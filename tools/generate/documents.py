@@ -79,13 +79,13 @@ def lessons_document() -> str:
 
 def bring_up_document(document: str, language: str) -> str:
     """Return a list for a real board, with the steps of the form that `tsc doctor` writes."""
-    from tiniscript.cli.commands.doctor import STEPS
+    from tiniscript.cli.commands.doctor import FORM_STEPS
     from tiniscript.cli.texts import text
 
     kinds = ("step", "do", "see")
     rows = [
         [number, *(text(f"{kind}_{step}", language) for kind in kinds)]
-        for number, step in enumerate(STEPS, 1)
+        for number, step in enumerate(FORM_STEPS, 1)
     ]
     head = [text(f"head_{kind}", language) for kind in kinds]
     return splice(_text(document), "steps", table(["", *head], rows))

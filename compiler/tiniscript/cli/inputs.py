@@ -17,7 +17,7 @@ from tiniscript.cli.texts import Sentence, say_aside
 from tiniscript.library import named_robot
 from tiniscript.robots.profile import ProfileRefused, Robot
 
-SHOWN = 200  # characters of a file's name
+MOST_NAME_CHARACTERS = 200  # characters of a file's name
 
 
 class Input(NamedTuple):
@@ -96,7 +96,7 @@ def port(name: str) -> str:
 
 def printable_name(name: str) -> str:
     """Return a file's name as a message can print it."""
-    return printable(name, SHOWN)
+    return printable(name, MOST_NAME_CHARACTERS)
 
 
 def robot(options: Namespace, language: str) -> Robot:

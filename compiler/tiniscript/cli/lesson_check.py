@@ -42,12 +42,12 @@ from tiniscript.robots.profile import Robot
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused
 
-PROGRAMS = 200  # of a folder
+MOST_PROGRAMS = 200  # of a folder
 LEAST_COLUMNS = 24  # of a sentence beside its program; below that it stands under it
-TEXTS = (*PROGRAM_ENDINGS, ".txt")
-LIKE_NOTES = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
+TEXT_ENDINGS = (*PROGRAM_ENDINGS, ".txt")
+NOTES_NAME = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
 # A line of a program begins so, also a wrong one: `SI|`, `SI`, `F 2`, `ADELANTE (2)`, `x = 3`.
-LIKE_A_PROGRAM = re.compile(
+PROGRAM_LINE = re.compile(
     r"[ \t]*(?:\w+(?:[ \t]*[|=]|\(|[ \t]+\([ \t]*\d)|S[IB][ \t]*(?:[;:,.]|$)|[A-Z][ \t]*\d)",
     re.IGNORECASE,
 )
@@ -192,9 +192,11 @@ def _programs(options: Namespace) -> Iterator[tuple[str, ProgramFile]]:
         raise CommandError(
             2, "lesson_folder", file=inputs.printable_name(folder), why=why
         ) from None
-    names = list(islice(in_folder(folder, TEXTS), PROGRAMS + 1))
-    if len(names) > PROGRAMS:
-        raise CommandError(2, "lesson_many", file=inputs.printable_name(folder), most=str(PROGRAMS))
+    names = list(islice(in_folder(folder, TEXT_ENDINGS), MOST_PROGRAMS + 1))
+    if len(names) > MOST_PROGRAMS:
+        raise CommandError(
+            2, "lesson_many", file=inputs.printable_name(folder), most=str(MOST_PROGRAMS)
+        )
     for name in names:
         yield os.path.relpath(name, folder), read(name)
 
@@ -219,14 +221,14 @@ def _is_note(file: ProgramFile) -> bool:
         return False
     letters = unicodedata.normalize("NFD", Path(file.name).name)
     plain = "".join(letter for letter in letters if not unicodedata.combining(letter))
-    if LIKE_NOTES.match(plain) is None:
+    if NOTES_NAME.match(plain) is None:
         return False
 
     try:
         text = decode(file.data)
     except Unreadable:
         return False
-    return bool(text.strip()) and not any(map(LIKE_A_PROGRAM.match, text.splitlines()))
+    return bool(text.strip()) and not any(map(PROGRAM_LINE.match, text.splitlines()))
 
 
 def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: str) -> None:

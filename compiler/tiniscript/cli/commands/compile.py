@@ -34,7 +34,7 @@ def run(options: Namespace, language: str) -> int:
     if not compiled.is_right:
         return 1
     places = source_map.map_of_compiled(compiled)
-    outputs.put(target, compiled.image)
+    outputs.write_output(target, compiled.image)
     if options.map is not None:
         data = (source_map.as_json(places) + "\n").encode(errors="backslashreplace")
         outputs.write(Path(options.map), data, "unwritable_at --map")
@@ -67,7 +67,7 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
 
     assert compiled.program is not None
     line = (line_of(compiled.source) + "\n").encode()
-    is_printed = not outputs.put(options.output, line)
+    is_printed = not outputs.write_output(options.output, line)
     sentence = text("compiled_text", language).format(
         source=inputs.printable_name(given.name),
         target="-" if is_printed else inputs.printable_name(options.output),

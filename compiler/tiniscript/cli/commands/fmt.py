@@ -30,7 +30,7 @@ def run(options: Namespace, language: str) -> int:
         print(text(key, language).format(file=name), file=sys.stdout if is_same else sys.stderr)
         return 0 if is_same else 1
     if given.path is None:
-        outputs.put(None, laid_out.encode())
+        outputs.write_output(None, laid_out.encode())
     elif not is_same:
         outputs.write(given.path, laid_out.encode(), "unwritable_source")
         say("formatted", language, file=name)

@@ -13,7 +13,7 @@ from tiniscript.base.words import WORDS, lexicon_meaning
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit, remote_keys
-from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
+from tiniscript.cli.robot.bookkeeping import BOOKKEEPING_MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.description import introduce
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
@@ -109,7 +109,7 @@ class Repl:
     def meet(self) -> None:
         """Send HELLO to the robot, and use its kit. Raises CommandError if none answers."""
         self.connection.meet()
-        if own_kit.take(self.connection, self.options):
+        if own_kit.use_answering_profile(self.connection, self.options):
             self.known.kit = self.connection.profile.kit
 
     def run_line(self, line: str, is_last: bool = False) -> int:
@@ -338,7 +338,7 @@ class Catch:
 
 
 def _is_mark(event: ShownEvent) -> bool:
-    return event.value == MARK and not event.is_yes_no
+    return event.value == BOOKKEEPING_MARK and not event.is_yes_no
 
 
 @contextlib.contextmanager

@@ -12,8 +12,8 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import baud_of, open_client
-from tiniscript.cli.robot.in_reach import AT_ONCE, find_robots
-from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, list_rows
+from tiniscript.cli.robot.in_reach import MOST_CHECKS_AT_ONCE, find_robots
+from tiniscript.cli.robot.port_rows import EMPTY_REACH, Row, lines, list_rows
 from tiniscript.cli.texts import Sentence, text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
@@ -32,7 +32,7 @@ OPEN_S = 12.0
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     baud = None if options.baud is None else baud_of(options, robot, language)
-    in_reach = NOWHERE
+    in_reach = EMPTY_REACH
     if options.ask and options.port is None:
         in_reach = find_robots(list(known_ports.remembered_ports().names), language)
         for note in in_reach.notes:  # what could not be searched
@@ -46,7 +46,7 @@ def run(options: Namespace, language: str) -> int:
             is_absent = port in in_reach.absent and row["held_by"] is None
             return absent if is_absent else _ask(port, baud, robot, language)
 
-        with ThreadPoolExecutor(AT_ONCE) as pool:
+        with ThreadPoolExecutor(MOST_CHECKS_AT_ONCE) as pool:
             for row, answer in zip(rows, pool.map(ask, rows), strict=True):
                 row.update(answer)
     if options.json:

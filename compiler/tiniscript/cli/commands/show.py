@@ -47,7 +47,7 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if missing := missing_feature(compiled.program, robot.kit):
         raise CommandError(2, f"sketch_no_{missing}", file=inputs.printable_name(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
-    if outputs.put(options.output, sketch):
+    if outputs.write_output(options.output, sketch):
         name = inputs.printable_name(robot.labels[language]["robot"])
         say("sketch", language, file=inputs.printable_name(options.output), robot=name)
     return 0

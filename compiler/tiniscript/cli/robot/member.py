@@ -32,7 +32,7 @@ class Target(NamedTuple):
     is_known: bool
 
 
-def are_many(options: Namespace) -> bool:
+def select_port(options: Namespace) -> bool:
     """Whether the options name many robots; if not, `port` becomes the only port."""
     options.port = options.ports[0] if options.ports else None
     if options.virtual and (options.all or options.ports):

@@ -17,7 +17,7 @@ LONGEST = 2000  # characters of what is put into a sentence
 # What is counted, right after its number: catalogues have how one of it is called, and several.
 # Other words have a sentence of their own for one.
 COUNTED = ("counted_bytes", "counted_checks")
-SEVERAL = 5  # as sentences have it
+SEVERAL_COUNT = 5  # as sentences have it
 
 
 class Sentence(str):
@@ -41,7 +41,7 @@ class Sentence(str):
                 for counted in COUNTED:
                     several, form = (
                         f"{{{key}}} {languages.plural_text(CATALOGUE, counted, n, self.language)}"
-                        for n in (SEVERAL, int(value))
+                        for n in (SEVERAL_COUNT, int(value))
                     )
                     template = template.replace(several, form)
         return Sentence(template.format(*map(_printable, values), **plain))
