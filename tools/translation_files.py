@@ -23,7 +23,7 @@ from tiniscript.base.translations import (
     without_translation,
 )
 
-WIDTH = 100  # of a list in one row
+LIST_COLUMNS = 100  # of a list in one row
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _SIGNS = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
 SEEN_NOTE = "# Of which English text each is a translation: python -m tools.languages --seen {}\n"
@@ -189,7 +189,7 @@ def format_rows(key: str, texts: list[Forms], is_list: bool) -> str:
     if is_list:
         parts = [quote(text.get("", "")) for text in texts]
         row = f"{head} = [{', '.join(parts)}]\n"
-        if len(row) <= WIDTH and row.count("\n") == 1:
+        if len(row) <= LIST_COLUMNS and row.count("\n") == 1:
             return row
         return f"{head} = [\n" + "".join(f"  {part},\n" for part in parts) + "]\n"
     return "".join(f"{head}{'.' * bool(name)}{name} = {quote(form)}\n"

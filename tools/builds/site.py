@@ -27,7 +27,7 @@ from tools import ROOT, CannotMake
 from tools.builds import studio
 from tools.generate.built import build_all
 from tools.site import links, theme
-from tools.site.documents import FRONT, PARTS, Document, documents, sources
+from tools.site.documents import FRONT_PAGE, PARTS, Document, documents, sources
 from tools.site.pages import FILES, Place, Shelf, page, shelf
 
 SITE = ROOT / "tools" / "site"
@@ -119,8 +119,8 @@ def stage(half: Path, documents: list[Document], on: Shelf, language: str) -> No
         for document in documents
         if language in document.sources
     }
-    front = sources(on.root, FRONT)
-    front_page = page(front.get(language, FRONT), on, Place(language, "index"))
+    front = sources(on.root, FRONT_PAGE)
+    front_page = page(front.get(language, FRONT_PAGE), on, Place(language, "index"))
     for name, said in {**pages, "index": front_page + contents(documents, language)}.items():
         target = half / f"{name}.md"
         target.parent.mkdir(parents=True, exist_ok=True)

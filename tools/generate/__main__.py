@@ -30,7 +30,7 @@ from tools.generate.front import fronts
 from tools.generate.guide_pictures import guide_pictures
 from tools.generate.link_header import payloads
 from tools.generate.poster import posters
-from tools.site.documents import LIST
+from tools.site.documents import INDEX_PAGE
 
 COMMAND = "python -m tools.generate"
 KITS = ("tinibot", "liner", "grabber")  # that differ
@@ -240,7 +240,10 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     *((PICTURES / name, make) for name, make in fronts(COMMAND).items()),
     (PICTURES / "worlds.svg", partial(world_picture, COMMAND)),
     *((PICTURES / name, make) for name, make in guide_pictures(COMMAND).items()),
-    (ROOT / LIST, partial(list_of_documents, COMMAND)),  # which reads the other documents' titles
+    (
+        ROOT / INDEX_PAGE,
+        partial(list_of_documents, COMMAND),
+    ),  # which reads the other documents' titles
     (ROOT / "vm_arduino" / "test" / "cases.cpp", partial(cases_table, COMMAND)),
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))

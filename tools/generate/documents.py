@@ -18,7 +18,7 @@ from tiniscript.lessons.lesson import AREA_KEYS, DEVICE_KINDS, KINDS, Kind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools import ROOT, measures
 from tools.generate.poster import as_block
-from tools.site.documents import LIST, documents, sources
+from tools.site.documents import INDEX_PAGE, documents, sources
 
 PACKAGE = ROOT / "compiler" / "tiniscript"
 
@@ -117,7 +117,9 @@ def language_document(document: str, language: str) -> str:
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: title and first sentence of each, in all languages side by side."""
     matches = [
-        document for document in documents(ROOT) if document.sources.get(SOURCE_LANGUAGE) != LIST
+        document
+        for document in documents(ROOT)
+        if document.sources.get(SOURCE_LANGUAGE) != INDEX_PAGE
     ]
     shown = [
         language for language in languages() if any(language in one.sources for one in matches)

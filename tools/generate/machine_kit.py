@@ -38,7 +38,9 @@ from tiniscript.vm.state import DONE, FAULT, RUNNING, Robot
 from tiniscript.vm.tasks import machine_of
 
 TINIBOT = robots.load("tinibot").kit
-STEPS = 100_000  # a case that runs more without a wait says nothing about its end: it is left out,
+MOST_STEPS = (
+    100_000  # a case that runs more without a wait says nothing about its end: it is left out,
+)
 CALLS = 1000  # and so is one of more calls at one time
 RANDOM_PROGRAMS = range(1000, 1030)
 TASK_PROGRAMS = range(1000, 1020)
@@ -187,7 +189,7 @@ def answer_of(
     calls = 0  # at the same time
     while calls < CALLS:
         robot.was_slow = False
-        status = machine.tick(begin + robot.now_ms, STEPS)
+        status = machine.tick(begin + robot.now_ms, MOST_STEPS)
         if status == DONE:
             robot.say("DONE", (), "DONE")
         elif status == FAULT:

@@ -9,7 +9,14 @@ from tiniscript.codegen.text.problems import DEF_PROBLEMS, PROBLEMS, REMARKS, pr
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answer_languages, language_number
 from tiniscript.robots.text_levels import LEVELS
-from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, pack
+from tools.generate.packed_texts import (
+    DEEPEST,
+    END_CODE,
+    FIRST_COMMON,
+    FIRST_LETTER,
+    letters_of,
+    pack,
+)
 from tools.generate.text_tables import bytes_of_table, file_of, numbers_of
 
 SMALLEST = "uno"
@@ -48,7 +55,7 @@ def texts_header(command: str) -> str:
             "// A code is the end of a text, a pair, or a letter from kFirstLetter on, in ASCII.",
             "// The high half of a byte comes first. A half from kFirstCommon on is a code of",
             "// packed_codes(), any other one the first half of a code.",
-            f"constexpr uint8_t kTextEnd = {END};",
+            f"constexpr uint8_t kTextEnd = {END_CODE};",
             f"constexpr uint8_t kFirstLetter = 0x{FIRST_LETTER:02x};",
             f"constexpr uint8_t kFirstCommon = {FIRST_COMMON};",
             "",
@@ -169,4 +176,4 @@ def _tables(language: str, rows: Sequence[str]) -> list[str]:
 
 
 def _c_bytes(codes: Sequence[int]) -> str:
-    return "the end, " + ", ".join(f"'{chr(code)}'" for code in codes if code != END)
+    return "the end, " + ", ".join(f"'{chr(code)}'" for code in codes if code != END_CODE)

@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 from tiniscript.base.languages import SOURCE_LANGUAGE, language_info, languages
 
-LIST = "docs/README.md"  # of all others, made from here
+INDEX_PAGE = "docs/README.md"  # of all others, made from here
 PAGES = "docs/en/"
-FRONT = "README.md"  # of each half of the site
+FRONT_PAGE = "README.md"  # of each half of the site
 PARTS = ("teach", "write", "wiring", "pupils", "teachers", "trust", "build")
 ENDING = re.compile(r"(?:\.en)?(\.\w+)$")
 
@@ -115,7 +115,7 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
         Document("library", "write", sources(root, f"{PAGES}api.md")),
         *_rows(root, "wiring", *_files(root, f"{PAGES}wiring/*.md"), folder="wiring/"),
         *_lessons(root),
-        Document("index", "trust", sources(root, FRONT)),
+        Document("index", "trust", sources(root, FRONT_PAGE)),
         *_guides(root, "trust", "comparison", "guarantees", "figures", "computer"),
         *_rows(root, "trust", "SECURITY.md", "CODE_OF_CONDUCT.md"),
         *_rows(root, "build", "CONTRIBUTING.md"),
@@ -124,7 +124,7 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
         *_pages(root, "conformance", "link", "owners", "network", "text", "store", "runs", "esp32"),
         *_guides(root, "build", "versions"),
         *_rows(root, "build", "CHANGELOG.md"),
-        Document("documents", "build", {SOURCE_LANGUAGE: LIST}),
+        Document("documents", "build", {SOURCE_LANGUAGE: INDEX_PAGE}),
     ]
     there = [
         document
