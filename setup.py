@@ -107,10 +107,10 @@ class Build(build_py):
     def _catalogues(self) -> dict[Path, bytes]:
         """Return the texts of each language as the package reads them."""
         sys.path.insert(0, str(ROOT / "compiler"))
-        from tiniscript.base.languages import kept_files
+        from tiniscript.base.languages import cache_files
 
         folder = Path(self.build_lib) / "tiniscript" / "languages"
-        return {folder / name: data for name, data in kept_files().items()}
+        return {folder / name: data for name, data in cache_files().items()}
 
     def exclude_data_files(  # type: ignore[no-untyped-def]
         self, package, src_dir, files

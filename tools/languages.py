@@ -23,8 +23,16 @@ else:
 
 
 from tiniscript.base import catalogue_source
-from tiniscript.base.catalogue_source import UNKNOWN, Catalogue, Entry, Problem
-from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SOURCE, files, languages, table
+from tiniscript.base.catalogue_source import UNKNOWN_HASH, Catalogue, Entry, Problem
+from tiniscript.base.languages import (
+    ABOUT_FILE,
+    FOLDER,
+    NAMES_CATALOGUE,
+    SOURCE_LANGUAGE,
+    files,
+    languages,
+    table,
+)
 from tiniscript.base.translations import read_language
 from tiniscript.base.words import WORDS
 from tiniscript.diagnostics.codes import CODES
@@ -42,7 +50,7 @@ def sources() -> dict[str, Catalogue]:
     Beside a message, and what to try, stands the wrong program of its code: beside the last text,
     which is the one without a special case.
     """
-    paths = [path for path in (FOLDER / SOURCE).glob("*.toml") if path.name != ITSELF]
+    paths = [path for path in (FOLDER / SOURCE_LANGUAGE).glob("*.toml") if path.name != ABOUT_FILE]
     found = {path.stem: catalogue_source.load(path) for path in paths}
     lasts = {entry.key: entry for entry in found.get("messages", Catalogue()).entries.values()}
     programs = {key: entry.english.splitlines() for key, entry in lasts.items()}
@@ -50,7 +58,7 @@ def sources() -> dict[str, Catalogue]:
         code, _, part = key.partition("/")
         if code in CODES and part in ("message", "try"):
             entry.notes = [f"wrong: {row}" for row in programs.get(f"{code}/wrong", [])]
-    return dict(sorted({**found, NAMES: names()}.items()))
+    return dict(sorted({**found, NAMES_CATALOGUE: names()}.items()))
 
 
 def names() -> Catalogue:
@@ -71,7 +79,7 @@ def _english_texts(value: object) -> Iterator[str]:
     if isinstance(value, dict):
         for key, each in value.items():
             text = each.values() if isinstance(each, dict) else [each]
-            yield from text if key == SOURCE else _english_texts(each)
+            yield from text if key == SOURCE_LANGUAGE else _english_texts(each)
     elif isinstance(value, list):
         for each in value:
             yield from _english_texts(each)
@@ -102,7 +110,7 @@ def make_pseudo(english: dict[str, Catalogue]) -> None:
     for path in folder.glob("*.*"):
         path.unlink()
     itself = heading(PSEUDO, PSEUDO, ("one", "other"), "n != 1")
-    (folder / ITSELF).write_text(itself, encoding="utf-8")
+    (folder / ABOUT_FILE).write_text(itself, encoding="utf-8")
     translation = Translation(PSEUDO, english)
     for name, source in english.items():
         translation.put_all(name, pseudo(source))
@@ -112,14 +120,14 @@ def make_pseudo(english: dict[str, Catalogue]) -> None:
 def check_robot(own: Catalogue) -> Iterator[Problem]:
     """What a robot cannot say in its few bytes."""
     for entry in own.entries.values():
-        for item in (entry.said or entry.forms).values():
+        for item in (entry.translation or entry.forms).values():
             if not item.isascii() or len(item) > ROBOT_SIGNS:
                 yield entry.line, f"a robot says at most {ROBOT_SIGNS} signs, in ASCII: {item}"
 
 
 def check_lexicon(language: str) -> Iterator[str]:
     """Rows of a lexicon without a meaning that the English one has, or with other than capitals."""
-    known = {row.split()[0] for row in _rows(SOURCE)} | {"short"} | {*WORDS}
+    known = {row.split()[0] for row in _rows(SOURCE_LANGUAGE)} | {"short"} | {*WORDS}
     for row in _rows(language):
         meaning, bar, words = row.partition("|")
         if not bar or not known.issuperset(meaning.split()[:1]) or plain(words) != words:
@@ -147,9 +155,13 @@ def main() -> int:
         make_pseudo(english)
         return 0
     wrong = sum(
-        tell(files(name, SOURCE)[0], catalogue.problems) for name, catalogue in english.items()
+        tell(files(name, SOURCE_LANGUAGE)[0], catalogue.problems)
+        for name, catalogue in english.items()
     )
-    wrong += tell(FOLDER / SOURCE / ITSELF, read_language(FOLDER / SOURCE / ITSELF).problems)
+    wrong += tell(
+        FOLDER / SOURCE_LANGUAGE / ABOUT_FILE,
+        read_language(FOLDER / SOURCE_LANGUAGE / ABOUT_FILE).problems,
+    )
     if wrong:
         return 1
     if options.po:
@@ -164,7 +176,7 @@ def main() -> int:
         if (options.check or options.seen) and language not in languages():
             print(f"{language}: no such language. Try:  python -m tools.languages {language}")
             return 1
-        if language != SOURCE:
+        if language != SOURCE_LANGUAGE:
             wrong += update_language(
                 language, english, options.check, options.seen and options.seen[1:]
             )
@@ -185,7 +197,7 @@ def update_language(
     folder = FOLDER / language
     if not folder.is_dir() and not is_check:
         folder.mkdir()
-        (folder / ITSELF).write_text(_heading(language), encoding="utf-8")
+        (folder / ABOUT_FILE).write_text(_heading(language), encoding="utf-8")
     own = Translation(language, english)
     wrong = 0
     if not is_check:
@@ -211,7 +223,7 @@ def missing_rows(entries: Iterable[Entry]) -> Iterator[tuple[int, str]]:
     """Yield what has no translation, with the line of the one before, after which it goes."""
     line = 1
     for entry in entries:
-        if entry.said:
+        if entry.translation:
             line = entry.line
         else:
             yield line, f"{entry.key} is missing: {entry.english}"
@@ -221,8 +233,8 @@ def report(own: Translation) -> int:
     """Say what is wrong with a language, and how much of it is there; return what must not be."""
     wrong = sum(tell(path, problems) for path, problems in own.problems())
     for path in sorted(own.folder.glob("*.toml")):
-        if path.name != ITSELF and path.stem not in own.english:
-            wrong += tell(path, [(1, f"there is no {SOURCE}/{path.name}")])
+        if path.name != ABOUT_FILE and path.stem not in own.english:
+            wrong += tell(path, [(1, f"there is no {SOURCE_LANGUAGE}/{path.name}")])
     entries: list[Entry] = []
     missing_count = stale_count = 0
     for name in own.english:
@@ -242,7 +254,7 @@ def report(own: Translation) -> int:
         )
         if own.language.is_complete:
             missing_count += tell(path, [*missing_rows(there)])
-    new = [entry for entry in entries if entry.seen == UNKNOWN]
+    new = [entry for entry in entries if entry.seen == UNKNOWN_HASH]
     if new:
         print(f"{own.code}: {len(new)} texts are new. Note of which English texts they are:  "
               f"python -m tools.languages --seen {own.code}")  # fmt: skip

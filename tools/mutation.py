@@ -36,7 +36,7 @@ from tiniscript.base.files import cache_folder
 from tools import ROOT
 
 LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
-WAITS_S = 1800  # for what waits and does not work
+WAIT_LIMIT_S = 1800  # for what waits and does not work
 AT_ONCE = 2
 NODE_MODULES = Path("tools/studio/node_modules")
 TEST = re.compile(r"(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*(?:\[.*?\](?= - |$))?)")
@@ -348,7 +348,7 @@ class Copy:
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         )  # fmt: skip
         try:
-            output, _ = process.communicate(timeout=WAITS_S)
+            output, _ = process.communicate(timeout=WAIT_LIMIT_S)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)  # and robots that its tests have started
             process.communicate()

@@ -11,19 +11,19 @@ from collections.abc import Iterable, Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from tiniscript.base.catalogue_source import UNKNOWN, Catalogue, Entry, Forms, Problem, Row
-from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SEEN
+from tiniscript.base.catalogue_source import UNKNOWN_HASH, Catalogue, Entry, Forms, Problem, Row
+from tiniscript.base.languages import ABOUT_FILE, FOLDER, NAMES_CATALOGUE, SEEN_FILE
 from tiniscript.base.translations import (
-    Own,
+    TranslationFile,
+    assign_translations,
     merge_translations,
-    pair,
     read_language,
-    read_own,
     read_seen,
+    read_translation_file,
     without_translation,
 )
 
-WIDTH = 100  # of a list in one row
+LIST_COLUMNS = 100  # of a list in one row
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _SIGNS = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
 SEEN_NOTE = "# Of which English text each is a translation: python -m tools.languages --seen {}\n"
@@ -37,9 +37,9 @@ class Translation:
         self.folder = FOLDER / code
         self.english = english
         self.groups = {name: catalogue.groups() for name, catalogue in english.items()}
-        self.own = {name: read_own(self.path(name)) for name in english}
-        self.seen, self.seen_problems = read_seen(self.folder / SEEN)
-        self.language = read_language(self.folder / ITSELF)
+        self.own = {name: read_translation_file(self.path(name)) for name in english}
+        self.seen, self.seen_problems = read_seen(self.folder / SEEN_FILE)
+        self.language = read_language(self.folder / ABOUT_FILE)
         self._is_seen_new = False
 
     def path(self, name: str) -> Path:
@@ -54,16 +54,16 @@ class Translation:
     def follow(self) -> Iterator[str]:
         """Put translations where their English texts are now; yield the keys of those that go."""
         for name, own in self.own.items():
-            is_left = name == NAMES or bool(own.problems or self.seen_problems)
+            is_left = name == NAMES_CATALOGUE or bool(own.problems or self.seen_problems)
             for row in own.rows[:] if not is_left else []:
                 if row.key not in self.groups[name]:
                     yield from self._follow_key(name, own, row)
                 if row.key in self.groups[name]:
                     self._follow_places(name, own, row)
 
-    def _follow_key(self, name: str, own: Own, row: Row) -> Iterator[str]:
+    def _follow_key(self, name: str, own: TranslationFile, row: Row) -> Iterator[str]:
         hashes = self.seen.get(f"{name} {row.key}", [])
-        known = {*hashes} - {UNKNOWN}
+        known = {*hashes} - {UNKNOWN_HASH}
         new = [key for key, group in self.groups[name].items()
                if key not in own.texts and known <= {entry.hash for entry in group}]  # fmt: skip
         if not known:
@@ -80,10 +80,10 @@ class Translation:
         own.texts[row.key], own.lines[row.key] = texts, row.line
         self.seen[f"{name} {row.key}"] = hashes
 
-    def _follow_places(self, name: str, own: Own, row: Row) -> None:
+    def _follow_places(self, name: str, own: TranslationFile, row: Row) -> None:
         group, texts = self.pair_texts(name, row.key), own.texts[row.key]
         if group and (len(group) > 1 or len(texts) > 1):
-            if (now := _without_end([entry.said for entry in group])) != texts:
+            if (now := _without_end([entry.translation for entry in group])) != texts:
                 own.texts[row.key] = now
                 row.text = format_rows(row.key, now, len(group) > 1)
                 self._note(name, row.key, [entry.seen for entry in group])
@@ -92,16 +92,16 @@ class Translation:
         """Return the texts of a key with their translations, none where that is not possible."""
         texts = self.own[name].texts.get(key, [])
         group = [without_translation(entry) for entry in self.groups[name].get(key, [])]
-        unknown = [UNKNOWN] * len(texts)
+        unknown = [UNKNOWN_HASH] * len(texts)
         hashes = [*self.seen.get(f"{name} {key}", []), *unknown][: len(texts)]
-        return [] if pair(group, texts, hashes) else group
+        return [] if assign_translations(group, texts, hashes) else group
 
     def _note(self, name: str, key: str, hashes: list[str]) -> None:
-        while hashes and hashes[-1] in ("", UNKNOWN):
+        while hashes and hashes[-1] in ("", UNKNOWN_HASH):
             hashes.pop()
         old = self.seen.pop(f"{name} {key}", [])
         if hashes:
-            self.seen[f"{name} {key}"] = [each or UNKNOWN for each in hashes]
+            self.seen[f"{name} {key}"] = [each or UNKNOWN_HASH for each in hashes]
         self._is_seen_new |= old != self.seen.get(f"{name} {key}", [])
 
     def see(self, patterns: list[str]) -> list[str]:
@@ -109,13 +109,13 @@ class Translation:
         the patterns that no key has. A file with a mistake in it is left alone."""
         unused = {*patterns}
         for name, own in self.own.items():
-            if name == NAMES or own.problems:
+            if name == NAMES_CATALOGUE or own.problems:
                 continue
             for key in own.texts:
                 fitting = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
                 unused -= fitting
                 if group := self.pair_texts(name, key):
-                    new = (UNKNOWN, *[entry.seen for entry in group if fitting and entry.seen])
+                    new = (UNKNOWN_HASH, *[entry.seen for entry in group if fitting and entry.seen])
                     self._note(name, key, [entry.hash if entry.seen in new else entry.seen
                                            for entry in group])  # fmt: skip
             there = {f"{name} {key}" for key in own.texts}
@@ -125,14 +125,14 @@ class Translation:
 
     def put(self, name: str, key: str, group: list[Entry]) -> None:
         """Take what these entries say as the texts of a key."""
-        own, texts = self.own[name], _without_end([entry.said for entry in group])
+        own, texts = self.own[name], _without_end([entry.translation for entry in group])
         row = next((row for row in own.rows if row.key == key), None)
         if own.texts.get(key) != texts and texts:
             if row is None:
                 own.rows.append(row := Row(key, None, 0, ""))
             row.text = format_rows(key, texts, len(group) > 1)
             own.texts[key], own.lines[key] = texts, row.line
-        if name != NAMES:
+        if name != NAMES_CATALOGUE:
             self._note(name, key, [entry.seen for entry in group])
 
     def put_all(self, name: str, texts: Catalogue) -> None:
@@ -155,12 +155,12 @@ class Translation:
             rest = sorted(self.seen.keys() - {*order})
             there = (at for at in [*order, *rest] if at in self.seen)
             lines = [f"{at} {' '.join(self.seen[at])}\n" for at in there]
-            _write(self.folder / SEEN, SEEN_NOTE.format(self.code) + "".join(lines))
+            _write(self.folder / SEEN_FILE, SEEN_NOTE.format(self.code) + "".join(lines))
 
     def problems(self) -> Iterator[tuple[Path, list[Problem]]]:
         """Yield what is wrong with each file."""
-        yield self.folder / ITSELF, self.language.problems
-        yield self.folder / SEEN, self.seen_problems
+        yield self.folder / ABOUT_FILE, self.language.problems
+        yield self.folder / SEEN_FILE, self.seen_problems
         for name in self.english:
             yield self.path(name), self.merge(name).problems
 
@@ -189,7 +189,7 @@ def format_rows(key: str, texts: list[Forms], is_list: bool) -> str:
     if is_list:
         parts = [quote(text.get("", "")) for text in texts]
         row = f"{head} = [{', '.join(parts)}]\n"
-        if len(row) <= WIDTH and row.count("\n") == 1:
+        if len(row) <= LIST_COLUMNS and row.count("\n") == 1:
             return row
         return f"{head} = [\n" + "".join(f"  {part},\n" for part in parts) + "]\n"
     return "".join(f"{head}{'.' * bool(name)}{name} = {quote(form)}\n"

@@ -17,8 +17,8 @@ from babel.messages.plurals import get_plural
 from babel.messages.pofile import PoFileError, read_po, write_po
 
 from tiniscript.base.catalogue_source import Catalogue, Entry, Forms
-from tiniscript.base.languages import NAMES, languages
-from tiniscript.base.translations import NUMBERS, Language, misfits
+from tiniscript.base.languages import NAMES_CATALOGUE, languages
+from tiniscript.base.translations import NUMBERS_TRIED, Language, misfits
 from tiniscript.base.version import __version__
 from tools.translation_files import Translation, tell
 
@@ -63,10 +63,10 @@ def give(path: Path, own: Translation) -> int:
 
 def _add(catalog: Catalog, name: str, entry: Entry, forms: tuple[str, ...]) -> None:
     english: str | tuple[str, str] = entry.english
-    own: str | tuple[str, ...] = entry.said.get("", "")
+    own: str | tuple[str, ...] = entry.translation.get("", "")
     if entry.plural:
         english = (entry.english, entry.plural)
-        own = tuple(entry.said.get(form, "") for form in forms)
+        own = tuple(entry.translation.get(form, "") for form in forms)
     flags = {BRACES} if "{" in entry.english else set()
     message = catalog.add(
         english, own, context=_context(name, entry.key), auto_comments=entry.notes,
@@ -76,7 +76,7 @@ def _add(catalog: Catalog, name: str, entry: Entry, forms: tuple[str, ...]) -> N
 
 
 def _context(name: str, key: str) -> str:
-    return name if name == NAMES else f"{name}/{key}"
+    return name if name == NAMES_CATALOGUE else f"{name}/{key}"
 
 
 def take(path: Path, own: Translation) -> int:
@@ -113,7 +113,7 @@ def _take_text(message: Message, forms: Forms, own: Translation) -> str:
     """Take one text; return why that is not possible, or nothing."""
     english, *plural = [message.id] if isinstance(message.id, str) else message.id
     name, _, key = (message.context or "").partition("/")
-    key = key if name != NAMES else english
+    key = key if name != NAMES_CATALOGUE else english
     if key not in own.groups.get(name, {}):
         return f"there is no English text with the context {message.context or 'of nothing'}"
     group = own.pair_texts(name, key)
@@ -121,10 +121,10 @@ def _take_text(message: Message, forms: Forms, own: Translation) -> str:
     entry = next((entry for entry in group if (entry.english, entry.plural) == expected), None)
     if entry is None:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
-    said, seen = entry.said, entry.seen
-    entry.said, entry.seen = forms, entry.hash
+    said, seen = entry.translation, entry.seen
+    entry.translation, entry.seen = forms, entry.hash
     if why := misfits(entry, own.language):
-        entry.said, entry.seen = said, seen
+        entry.translation, entry.seen = said, seen
         return f"{message.context}: {why[0]}"
     own.put(name, key, group)
     return ""
@@ -139,7 +139,7 @@ def language_facts(code: str) -> tuple[str, str, list[str], str]:
     name, english_name = (locale.get_display_name(item) or code for item in (code, "en"))
     count, rule = get_plural(code)
     known = (*SIMPLE, (_cldr_categories(count, rule, locale.plural_form), rule))
-    expected = [locale.plural_form(number) for number in range(NUMBERS)]
+    expected = [locale.plural_form(number) for number in range(NUMBERS_TRIED)]
     fitting = (item for item in known if item[0] and _forms_by(*item) == expected)
     return name, english_name, *next(fitting, SIMPLE[0])
 
@@ -147,11 +147,11 @@ def language_facts(code: str) -> tuple[str, str, list[str], str]:
 def _forms_by(names: list[str], rule: str) -> list[str]:
     """Return the names of the forms that numbers have."""
     form = c2py(rule)
-    return [names[form(number)] for number in range(NUMBERS)]
+    return [names[form(number)] for number in range(NUMBERS_TRIED)]
 
 
 def _cldr_categories(count: int, rule: str, of_cldr: Callable[[int], str]) -> list[str]:
     """Return how CLDR calls the forms of a rule of gettext, nothing if a form has no number."""
     form = c2py(rule)
-    found = {form(number): of_cldr(number) for number in range(NUMBERS)}
+    found = {form(number): of_cldr(number) for number in range(NUMBERS_TRIED)}
     return [found[k] for k in range(count)] if found.keys() == {*range(count)} else []

@@ -13,11 +13,11 @@ from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import (
     BY_NAME,
     ESCAPE,
-    ESCAPED,
+    ESCAPED_OPS,
     NEEDS_GO,
     NEEDS_TASKS,
     OPS,
-    PUSHED,
+    PUSHED_NUMBERS,
     SHORTS,
     Op,
     op_at,
@@ -113,7 +113,7 @@ def faults_of(op: Op) -> set[str]:
 
 def test_the_instructions_that_can_fault_are_those_that_the_table_names() -> None:
     for op in OPS:
-        said = {fault for fault, names in opcodes.FAULTING.items() if op.name in names}
+        said = {fault for fault, names in opcodes.FAULTING_OPS.items() if op.name in names}
         said -= {"STUCK", "STUCK_LEFT", "STUCK_RIGHT"}  # of a robot that measures
         assert faults_of(op) == said, op.name
 
@@ -159,7 +159,7 @@ def test_the_last_bits_of_a_comparison_with_a_constant_are_the_comparator() -> N
 
 def test_a_byte_begins_the_codes_of_two() -> None:
     assert opcodes.BY_CODE[ESCAPE] is None
-    for code, op in ESCAPED.items():
+    for code, op in ESCAPED_OPS.items():
         assert op_at(bytes([0, ESCAPE, code]), 1) is op
         assert op.opcode == bytes([ESCAPE, code]) and op.size == 2 + sum(
             operand.kind.size for operand in op.operands
@@ -170,7 +170,7 @@ def test_a_byte_begins_the_codes_of_two() -> None:
 
 def test_a_way_has_the_code_of_a_time_after_the_escape() -> None:
     """So a machine's tables of decode forms serve both."""
-    for code, op in ESCAPED.items():
+    for code, op in ESCAPED_OPS.items():
         of_time = opcodes.BY_CODE[code]
         assert of_time is not None
         assert op.name == of_time.name.replace("MOVE_", "GO_").replace("WATCH_", "WATCH_GO_")
@@ -182,8 +182,8 @@ def test_a_way_has_the_code_of_a_time_after_the_escape() -> None:
 
 
 def test_numbers_of_one_byte_follow_one_another() -> None:
-    codes = [BY_NAME[f"PUSH_NUM_{n}"].code for n in PUSHED]
-    assert codes == list(range(codes[0], codes[0] + len(PUSHED)))
+    codes = [BY_NAME[f"PUSH_NUM_{n}"].code for n in PUSHED_NUMBERS]
+    assert codes == list(range(codes[0], codes[0] + len(PUSHED_NUMBERS)))
 
 
 def test_a_time_of_one_byte_is_a_time_of_its_own() -> None:

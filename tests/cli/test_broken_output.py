@@ -21,7 +21,7 @@ from tests.support.pty_robot import PtyRobot, on
 from tests.support.robot_fleet import RobotFleet
 from tests.support.waiting import HANGS_S, until
 from tiniscript import robots
-from tiniscript.cli import CLOSED, streams
+from tiniscript.cli import EXIT_OF_CLOSED_PIPE, streams
 from tiniscript.cli.robot import connect, fleet
 from tiniscript.library import opening
 from tiniscript.link.messages import STATUSES, STOP_RUN
@@ -49,7 +49,7 @@ def test_upload_into_a_pipe_that_closes_stops_the_robot(
     pty_robot: PtyRobot, lines: int, extra: list[str]
 ) -> None:
     code, said = after_lines(lines, "upload", "-e", SHOWS, "--port", pty_robot.port, *extra)
-    assert code == CLOSED
+    assert code == EXIT_OF_CLOSED_PIPE
     assert said.count("\n") == 1 and "stopped the robot" in said
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
@@ -59,18 +59,18 @@ def test_a_program_that_prints_nothing_is_stopped_too(pty_robot: PtyRobot) -> No
     port = ("--port", pty_robot.port)
     for words in (("upload", "-e", FOREVER), ("start",)):
         code, said = after_lines(1, *words, *port)
-        assert code == CLOSED
+        assert code == EXIT_OF_CLOSED_PIPE
         assert said.count("\n") == 1 and "stopped the robot" in said
         assert not pty_robot.moves
     code, said = after_lines(0, "live", FOREVER.removeprefix("SI|"), *port)
-    assert code == CLOSED and "stopped the robot" in said
+    assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in said
 
 
 def test_many_robots_that_show_nothing_are_stopped() -> None:
     with RobotFleet([robots.load("tinibot").kit] * 2) as room:
         ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
         code, _ = after_lines(0, "upload", "-e", FOREVER, *ports)
-        assert code == CLOSED
+        assert code == EXIT_OF_CLOSED_PIPE
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
 
 
@@ -90,32 +90,32 @@ def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
     drives = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
     words = ["upload", "-e", f"SI|LOOP(FOREVER);{drives}SHOW(1);END_LOOP", "--port", pty_robot.port]
     code, said = after_lines(1, *words)
-    assert code == CLOSED and said.count("\n") == 1 and "stopped the robot" in said
+    assert code == EXIT_OF_CLOSED_PIPE and said.count("\n") == 1 and "stopped the robot" in said
     pty_robot.switch_off_and_on()
     on(pty_robot, "show").gives(0, out="SHOW")
 
 
 def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
     port = ("--port", pty_robot.port)
-    assert after_lines(1, "upload", "-e", SHOWS, *port, both=True) == (CLOSED, "")
+    assert after_lines(1, "upload", "-e", SHOWS, *port, both=True) == (EXIT_OF_CLOSED_PIPE, "")
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
     code, said = after_lines(2, "start", *port)
-    assert code == CLOSED and "stopped the robot" in said
+    assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in said
     code, said = after_lines(1, "live", "LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP", *port)
-    assert code == CLOSED and "stopped the robot" in said
+    assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in said
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 
 def test_what_goes_on_alone_goes_on(pty_robot: PtyRobot) -> None:
     port = ("--port", pty_robot.port)
     code, said = after_lines(0, "upload", "-e", SHOWS, "--detach", *port)
-    assert (code, said) == (CLOSED, "")
+    assert (code, said) == (EXIT_OF_CLOSED_PIPE, "")
     assert pty_robot.moves
     code, said = after_lines(0, "doctor", *port)
-    assert (code, said) == (CLOSED, "")
+    assert (code, said) == (EXIT_OF_CLOSED_PIPE, "")
     assert pty_robot.moves
     code, said = after_lines(2, "monitor", *port)
-    assert code == CLOSED and "stopped" not in said
+    assert code == EXIT_OF_CLOSED_PIPE and "stopped" not in said
     pty_robot.until(lambda: pty_robot.moves, "it drives on")
 
 
@@ -124,7 +124,7 @@ def test_many_robots_are_stopped() -> None:
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
         ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
         code, _ = after_lines(4, "upload", "-e", SHOWS, *ports)
-        assert code == CLOSED
+        assert code == EXIT_OF_CLOSED_PIPE
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
         for pupil in room.pupils:
             assert any(line.startswith("MOTORS") for line in pupil.did)
@@ -179,7 +179,7 @@ def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
                               stderr=theirs, timeout=HANGS_S)  # fmt: skip
     finally:
         os.close(theirs)
-    assert completed.returncode == CLOSED
+    assert completed.returncode == EXIT_OF_CLOSED_PIPE
 
 
 # -- a port that vanishes -----------------------------------------------------------------------

@@ -129,8 +129,8 @@ def test_options_that_make_no_sense(words: list[str], said: str, tmp_path: Path)
 
 
 def test_every_state_of_a_broker_has_a_sentence() -> None:
-    from tiniscript.cli.robot.robot_broker import NOT_BEGUN
+    from tiniscript.cli.robot.robot_broker import UNSTARTED_STATES
     from tiniscript.cli.texts import has_text
 
     for state, _ in WIFI_STATES:
-        assert state in NOT_BEGUN or has_text(f"broker_{state.lower()}")
+        assert state in UNSTARTED_STATES or has_text(f"broker_{state.lower()}")

@@ -275,7 +275,7 @@ def test_what_became_of_the_robots_is_the_exit_code(
 
 
 @pytest.mark.parametrize("is_there", [True, False])
-@pytest.mark.parametrize("gone", [*product((True, False, None), repeat=classroom.STOPS)])
+@pytest.mark.parametrize("gone", [*product((True, False, None), repeat=classroom.STOP_MESSAGES)])
 def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
     gone: tuple[bool | None, ...], is_there: bool,

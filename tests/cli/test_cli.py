@@ -275,7 +275,7 @@ def test_fmt_lays_out_in_place(tsc: Tsc, program: Path) -> None:
 def test_fmt_leaves_what_is_wrong_and_what_it_would_make_too_large(
     tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tiniscript.cli.commands.fmt.LARGEST_SOURCE", 1000)
+    monkeypatch.setattr("tiniscript.cli.commands.fmt.LARGEST_SOURCE_BYTES", 1000)
     for text, code in (("f(2 80)", 1), ("S\n" * 499, 2)):
         program.write_text(text, encoding="utf-8")
         assert tsc("fmt", program).code == code

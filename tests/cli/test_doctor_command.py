@@ -197,7 +197,7 @@ def test_wrong_use_and_no_such_port(tsc: Tsc) -> None:
 @pytest.fixture
 def cable(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyEnd]:
     """A pseudo-terminal is no cable: here its name does not tell."""
-    monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO", ())
+    monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO_TERMINALS", ())
     monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
     with PtyEnd(Firmware()) as pty_end:
         yield pty_end
@@ -235,7 +235,7 @@ def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> Non
     with PtyEnd(Firmware(name=b"ANA 6B", kit=0x1234)) as pty_end:
         tsc("doctor", "--port", pty_end.port, "--report", file).gives(3, out=str(file))
         text = file.read_text(encoding="utf-8")
-        assert text.startswith(report.MARK + "\n")
+        assert text.startswith(report.REPORT_MARK + "\n")
         assert "unknown_kit sure" in text and "next: Name its profile once" in text
         assert f"port: {pty_end.port}" in text
         for word in ("ANA", "6B", "12347f3a", str(tmp_path), *(x for x in own if len(x) > 2)):
@@ -247,7 +247,7 @@ def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> Non
 
 def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "drive.ts"
-    for text in ("SI|F(2, 80)\n", report.MARK + " of mine\n", "x" * 100_000):
+    for text in ("SI|F(2, 80)\n", report.REPORT_MARK + " of mine\n", "x" * 100_000):
         file.write_text(text, encoding="utf-8")
         done = tsc("doctor", "--port", "/dev/not-there", "--report", file)
         assert done.code == 2, text[:50]

@@ -210,7 +210,7 @@ def test_values_stand_beside_the_floor_on_a_wide_terminal() -> None:
 
 
 def test_a_long_way_stays_in_view_and_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sketch, "CORNERS", 100)
+    monkeypatch.setattr(sketch, "MOST_CORNERS", 100)
     way = sketch.Sketch(robots.load("tinibot"))
     for k in range(3000):
         way.set_motors(k * 500, 60 + k % 30, 90 - k % 41)

@@ -324,7 +324,7 @@ def test_what_fails_has_a_sentence_and_leaves_no_page(clone: Clone, said: str, w
     done = clone.unasked(clone.studio("--yes"))
     assert (done.code, done.out) == (2, "")
     assert "fetching packages from npm" in done.err and words in done.err
-    log = cache_folder() / fetching.LOG
+    log = cache_folder() / fetching.LOG_FILE
     assert str(log) in done.err and "build_studio" in log.read_text(encoding="utf-8")
     assert not clone.page.exists()
 
@@ -390,7 +390,9 @@ def test_pip_without_a_network_has_a_sentence(clone: Clone) -> None:
 # -- what is fetched
 
 
-@pytest.mark.parametrize(("said", "lasts_s"), [(fetching.PUTTING, 1), ("Downloading", 600)])
+@pytest.mark.parametrize(
+    ("said", "lasts_s"), [(fetching.INSTALLING_MESSAGE, 1), ("Downloading", 600)]
+)
 def test_what_must_not_end_in_the_middle_is_waited_for(
     tmp_path: Path, said: str, lasts_s: int
 ) -> None:
@@ -406,8 +408,8 @@ def test_what_must_not_end_in_the_middle_is_waited_for(
 
     with pytest.raises(KeyboardInterrupt):
         children.run([sys.executable, "-c", code], tmp_path, look,
-                     may_end=lambda so_far: fetching.PUTTING not in so_far)  # fmt: skip
-    assert (tmp_path / "whole").exists() == (said == fetching.PUTTING)
+                     may_end=lambda so_far: fetching.INSTALLING_MESSAGE not in so_far)  # fmt: skip
+    assert (tmp_path / "whole").exists() == (said == fetching.INSTALLING_MESSAGE)
 
 
 @pytest.mark.parametrize("end", [*ENDS, None])

@@ -175,7 +175,7 @@ def test_an_output_is_on_the_disk_before_it_replaces_the_old_one(
     sync = os.fsync
 
     def look(number: int) -> None:
-        [new] = tmp_path.glob(f".*{files.NEW}")
+        [new] = tmp_path.glob(f".*{files.NEW_ENDING}")
         seen.append((old.read_bytes(), new.read_bytes()))
         sync(number)
 

@@ -17,7 +17,7 @@ from tests.support.rows import each_row
 from tests.support.virtual_robot import Talk, robot_in
 from tiniscript import compile_text, robots
 from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, requested_command
-from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
+from tiniscript.cli.robot.bookkeeping import BOOKKEEPING_MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.live_state import LiveState
@@ -351,10 +351,13 @@ def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture
     known = LiveState(robots.load("tinibot").kit)
     for before in (0, 1, 2):  # of the program's own, by chance
         catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
-        for value in (*[MARK] * before, MARK, MARK, 7):
+        for value in (*[BOOKKEEPING_MARK] * before, BOOKKEEPING_MARK, BOOKKEEPING_MARK, 7):
             assert catch.hold(ShownEvent(value, 0))
         assert catch.hold(DoneEvent(1))
-        assert {name: value.value for name, value in known.values.items()} == {"X": MARK, "Y": 7}
+        assert {name: value.value for name, value in known.values.items()} == {
+            "X": BOOKKEEPING_MARK,
+            "Y": 7,
+        }
         assert capsys.readouterr().out == "SHOW -2147483.648\n" * before
         known.values.clear()
 
@@ -367,13 +370,13 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     for end in ("STOPPED", "DONE"):
         catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
         assert not catch.hold(show(7))
-        told: list[Event] = [show(MARK), show(5000), MissedEvent(1)]
+        told: list[Event] = [show(BOOKKEEPING_MARK), show(5000), MissedEvent(1)]
         assert [catch.hold(each) for each in told] == [True, True, False]
         catch.hold(event(end))
         assert capsys.readouterr().out == ""
     # what a person shows is shown
     catch = Catch(("X",), known, EventPrinter("en"), says_done=False)
-    for each in (show(MARK), show(MARK), show(5000), DoneEvent(1)):
+    for each in (show(BOOKKEEPING_MARK), show(BOOKKEEPING_MARK), show(5000), DoneEvent(1)):
         catch.hold(each)
     assert capsys.readouterr().out == "SHOW -2147483.648\n"
     assert known.values["X"].value == 5000
@@ -382,8 +385,8 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     hidden = [
         bookkeeping.hides_trace(what, values)
         for what, values in (
-            ("START", ()), ("SHOW", (1,)), ("SHOW", (MARK,)), ("SHOW", (5000,)), ("MOTORS", (0, 0)),
-            ("DONE", ()), ("START", ()), ("SHOW", (5000,)),
+            ("START", ()), ("SHOW", (1,)), ("SHOW", (BOOKKEEPING_MARK,)), ("SHOW", (5000,)),
+            ("MOTORS", (0, 0)), ("DONE", ()), ("START", ()), ("SHOW", (5000,)),
         )
     ]  # fmt: skip
     assert hidden == [False, False, True, True, False, False, False, False]

@@ -11,10 +11,10 @@ from rich.console import Console
 from rich.text import Text
 
 from tiniscript.cli.commands import wiring
-from tiniscript.cli.terminal.canvas import Canvas, merge_layers, put
+from tiniscript.cli.terminal.canvas import Canvas, merge_layers, put_letter
 from tiniscript.cli.terminal.plot import ROWS, Plot, scale
 from tiniscript.cli.terminal.run_drawing import Picture
-from tiniscript.cli.terminal.screen import BEGIN, END, Frame
+from tiniscript.cli.terminal.screen import BEGIN_UPDATE, END_UPDATE, Frame
 
 COLUMNS, LINES = 40, 12
 SIGNS = ["a", "b", "─", "⣿", " ", "ñ", "漢"]
@@ -96,7 +96,7 @@ def test_a_line_that_has_not_changed_is_not_written_again() -> None:
     terminal.draw(lines)
     lines[3] = Text("other")
     said = terminal.draw(lines)
-    assert said.startswith(BEGIN) and said.endswith(END)
+    assert said.startswith(BEGIN_UPDATE) and said.endswith(END_UPDATE)
     assert "other" in said and "value" not in said
     assert [each for each in terminal.seen() if each] == [text.plain for text in lines]
 
@@ -234,9 +234,9 @@ def test_a_character_has_the_dots_of_all_layers_and_the_style_of_the_topmost() -
 
 def test_a_letter_takes_the_place_of_the_character_that_a_dot_lies_in() -> None:
     lines = [Text("abc"), Text("def")]
-    put(lines, (3, 5), "X", "bold")
+    put_letter(lines, (3, 5), "X", "bold")
     for dot in ((-1, 0), (0, -1), (6, 0), (0, 8)):
-        put(lines, dot, "X")
+        put_letter(lines, dot, "X")
     assert [line.plain for line in lines] == ["abc", "dXf"]
 
 

@@ -20,8 +20,15 @@ from tiniscript import robots
 from tiniscript.cli import help, main
 from tiniscript.cli.texts.options import OPTIONS, Option, options_of, shown_of
 from tiniscript.cli.texts.options import PROGRAM as A_PROGRAM
-from tiniscript.cli.texts.verbs import COMMANDS, FIRST, NOTES, VERBS, command_words, steps_of
-from tiniscript.cli.texts.verbs import of_verb as of_verb_text
+from tiniscript.cli.texts.verbs import (
+    COMMANDS,
+    FIRST_COMMANDS,
+    NOTES,
+    VERBS,
+    command_words,
+    steps_of,
+)
+from tiniscript.cli.texts.verbs import verb_sentence as of_verb_text
 from tiniscript.cli.texts.verbs import verb_text as said_in
 from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.robots.ports import AVRS
@@ -120,7 +127,9 @@ def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
 def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None:
     said = help.overview(language)
     assert len(said.splitlines()) <= 30
-    assert [row.split()[1] for row in rows_of(said) if row.startswith("tsc ")] == list(FIRST)
+    assert [row.split()[1] for row in rows_of(said) if row.startswith("tsc ")] == list(
+        FIRST_COMMANDS
+    )
 
 
 @each_row("asked, verb", [

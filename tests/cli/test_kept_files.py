@@ -110,7 +110,7 @@ KEPT = {
         source_map,
     ),
     "a program": Kept(
-        lambda number: outputs.put(str(output()), bytes((number,)) * len(LONG)),
+        lambda number: outputs.write_output(str(output()), bytes((number,)) * len(LONG)),
         found_output,
         outputs,
         is_alone=True,
@@ -235,7 +235,7 @@ def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_pat
 
         assert ended(begun(cut)) == 0
         assert kept.all() == before, most
-        assert not [*tmp_path.rglob(f"*{files.NEW}")], "nothing is left of what did not fit"
+        assert not [*tmp_path.rglob(f"*{files.NEW_ENDING}")], "nothing is left of what did not fit"
         kept.add(SECOND)
         assert sorted(kept.all()) == with_more(kept, before, SECOND), most
 
@@ -290,8 +290,10 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
     monkeypatch.setattr(files, "monotonic", lambda: now_s)
     monkeypatch.setattr(files, "sleep", passes)
     with ExitStack() as stack:
-        for lock in [*tmp_path.rglob(f"*{files.LOCK}")]:
-            stack.enter_context(files.lock_file(lock.with_name(lock.name[: -len(files.LOCK)])))
+        for lock in [*tmp_path.rglob(f"*{files.LOCK_ENDING}")]:
+            stack.enter_context(
+                files.lock_file(lock.with_name(lock.name[: -len(files.LOCK_ENDING)]))
+            )
         for _ in range(2):  # and the second time
             now_s = 0.0
             with suppress(BadKeys, OSError):

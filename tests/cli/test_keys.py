@@ -16,7 +16,7 @@ from tests.support.command import Tsc
 from tiniscript.base import files
 from tiniscript.link import met_robots
 from tiniscript.link.authority import RobotKey
-from tiniscript.link.keys import MOST, BadKeys, KeyFile, encode_keys
+from tiniscript.link.keys import MOST_KEYS, BadKeys, KeyFile, encode_keys
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 
 ONE = RobotKey(0x12345678, KEY_OWNER, bytes(range(16)), "TINI")
@@ -45,7 +45,7 @@ def test_only_this_person_reads_the_file(key_file: KeyFile) -> None:
      encode_keys([ONE]).replace(SECRET[:2].encode(), b"zz"),
      encode_keys([ONE._replace(key=bytes(16))]), encode_keys([ONE._replace(key=bytes(3))]),
      encode_keys([ONE]).replace(b"12345678", b"1234567"), b"[" * 100_000,
-     encode_keys([ONE]).replace(b"12345678", b"-1234567"), encode_keys([ONE] * (MOST + 1))],
+     encode_keys([ONE]).replace(b"12345678", b"-1234567"), encode_keys([ONE] * (MOST_KEYS + 1))],
 )  # fmt: skip
 def test_a_file_that_is_none_is_left_as_it_is(key_file: KeyFile, data: bytes) -> None:
     key_file.path.parent.mkdir()
@@ -203,16 +203,16 @@ def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Pat
     """As a list of a stranger, who would have a person's own robots gone."""
     key_file, many = KeyFile(), tmp_path / "many.json"
     key_file.add([ONE])
-    others = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST)]
+    others = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST_KEYS)]
     many.write_bytes(encode_keys(others))
     for language, words in (("en", "2000 keys"), ("es", "2000 llaves")):
         tsc("set", "owner", "--import", str(many), "--lang", language).gives(2, words, out="")
     assert key_file.all() == [ONE]
-    assert key_file.add(others[1:]) == MOST - 1
+    assert key_file.add(others[1:]) == MOST_KEYS - 1
     assert key_file.create_pending_key(5_000, KEY_OWNER, "A") is None, (
         "no key is dropped for a new one"
     )
-    assert ONE in key_file.all() and len(key_file.all()) == MOST
+    assert ONE in key_file.all() and len(key_file.all()) == MOST_KEYS
 
 
 def test_a_broken_file_and_one_that_others_may_read_are_told(tsc: Tsc) -> None:
@@ -287,7 +287,7 @@ def test_places_that_cannot_be_kept_end_nothing(key_file: KeyFile) -> None:
 def test_no_more_places_are_kept_than_a_file_holds(
     key_file: KeyFile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(met_robots, "KEPT", 3)
+    monkeypatch.setattr(met_robots, "MOST_PLACES", 3)
     for number in range(5):
         key_file.meet(f"tcp://{number}", number)
     assert [key_file.robot_at(f"tcp://{number}") for number in range(5)] == [None, None, 2, 3, 4]

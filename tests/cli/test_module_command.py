@@ -159,7 +159,7 @@ def test_how_a_step_ends_is_a_cause_of_the_doctors_table() -> None:
     """And no other cause is of a setting."""
     named = {cause: how for how, causes in ENDS.items() for cause in causes}
     assert {*named} == {cause for cause, row in CAUSES.items() if row.part == "setting"}
-    assert {cause for cause, how in named.items() if how not in set_up.GOOD} == {
+    assert {cause for cause, how in named.items() if how not in set_up.GOOD_OUTCOMES} == {
         cause for cause in named if CAUSES[cause].verdict == WRONG
     }
 

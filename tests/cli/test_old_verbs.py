@@ -17,10 +17,10 @@ from tests.support.texts import said as all_said
 from tiniscript.base.languages import FOLDER
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts.options import choosers_of, chosen, options_of
-from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, command_words
+from tiniscript.cli.texts.verbs import COMMANDS, FORMER_COMMANDS, STEPS, VERBS, command_words
 from tiniscript.cli.verbless import is_help
 
-OLD = "|".join(WAS)
+OLD = "|".join(FORMER_COMMANDS)
 # `tsc name`, as a command or in a list of words; the changelog says what was called how, and when.
 NAMED = re.compile(
     rf"(?:\btsc|-m tiniscript)(?:['\", ]+--lang['\", ]+\w\w)?['\", ]+(?:{OLD})\b(?!=)"
@@ -52,7 +52,7 @@ def test_no_file_names_an_old_verb() -> None:
 
 
 def test_what_is_searched_for_is_found() -> None:
-    for name in WAS:
+    for name in FORMER_COMMANDS:
         for words in ("Try:  tsc {}", "`tsc {} x`", '["tsc", "{}"]', "python -m tiniscript {}",
                       '"-m tiniscript", "--lang", "es", "{}"'):  # fmt: skip
             assert NAMED.search(words.format(name)), words
@@ -117,7 +117,7 @@ def test_what_documents_say_to_type_is_a_command() -> None:
 # -- the old names --------------------------------------------------------------------------------
 
 
-@each_row("name", WAS)
+@each_row("name", FORMER_COMMANDS)
 def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
     assert name not in VERBS
     for language in LANGUAGES:
@@ -126,7 +126,7 @@ def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
             assert done.err.count("\n") == 1 and name in done.err
             now = done.err.rstrip("\n").rpartition("  tsc ")[2]
             verb, *words = shlex.split(now)
-            assert chosen(verb, words)[0] == WAS[name], now
+            assert chosen(verb, words)[0] == FORMER_COMMANDS[name], now
             assert "nonsense" not in now and wrong_in(now) is None
 
 
@@ -151,7 +151,7 @@ def test_what_was_typed_after_it_stands_after_the_new_one(tsc: Tsc, was: str, no
 
 
 def test_help_on_an_old_name_is_that_of_the_new_command(tsc: Tsc) -> None:
-    for name, command in WAS.items():
+    for name, command in FORMER_COMMANDS.items():
         told = tsc("help", name, "--lang", "en").gives(0)
         assert told.out == tsc("help", command, "--lang", "en").out or command in STEPS
 

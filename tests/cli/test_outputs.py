@@ -28,7 +28,9 @@ PAIRS = [
     for verb, parser in PARSERS.items()
     for output in values_of(parser)
     for other in values_of(parser)
-    if output in paths.WRITES and other != output and {other} & {*paths.READS, *paths.WRITES}
+    if output in paths.WRITE_OPTIONS
+    and other != output
+    and {other} & {*paths.READ_OPTIONS, *paths.WRITE_OPTIONS}
     if not (verb == "monitor" and output == "plot")
 ]
 # What a verb is told to do, before its files.
@@ -60,7 +62,7 @@ def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> Non
             kind = kinds[dest]
             assert kind is not None, f"{verb}: {dest}"
             assert (kind.reads, kind.writes) == (
-                paths.READS.get(dest, ""), paths.WRITES.get(dest, ("", ""))[1]
+                paths.READ_OPTIONS.get(dest, ""), paths.WRITE_OPTIONS.get(dest, ("", ""))[1]
             ), f"{verb}: {dest}"  # fmt: skip
             is_file = kind.name in ("program", "robot", "world", "port", "file")
             assert is_file == bool(kind.reads or kind.writes), f"{verb}: {dest}"
@@ -95,7 +97,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
                 assert known, f"{file.name}: {line.strip()}"
                 found |= set(known)
     assert found == set(places)
-    assert {places[each] for each in found} == {*paths.WRITES, "program", "programs"}
+    assert {places[each] for each in found} == {*paths.WRITE_OPTIONS, "program", "programs"}
 
 
 @pytest.mark.sampled("how")
@@ -116,7 +118,7 @@ def test_no_output_is_another_file_of_its_command(
     before = sorted(os.listdir(here))  # noqa: PTH208
     for language in ("en", "es"):
         tsc(*arguments(verb, {other: precious, output: path}), "--lang", language).gives(
-            2, str(path), precious.name, paths.WRITES[output][0]
+            2, str(path), precious.name, paths.WRITE_OPTIONS[output][0]
         )
     assert precious.read_text(encoding="utf-8") == text
     assert sorted(os.listdir(here)) == before  # noqa: PTH208 - nothing was made either
@@ -190,7 +192,7 @@ OUTPUTS = [
     (verb, output)
     for verb, parser in PARSERS.items()
     for output in values_of(parser)
-    if output in paths.WRITES and not (verb == "monitor" and output == "plot")
+    if output in paths.WRITE_OPTIONS and not (verb == "monitor" and output == "plot")
 ]
 
 
@@ -203,7 +205,7 @@ def test_what_cannot_be_written_is_said_before_anything_is_done(
     files = {"robot": Path("tinibot")} if verb == "board" else {}
     for path in (here, here / "none" / "x", Path("a\0b"), Path("x" * 5000)):
         words = arguments(verb, {**files, output: path})
-        tsc(*words).gives(2, paths.WRITES[output][0])
+        tsc(*words).gives(2, paths.WRITE_OPTIONS[output][0])
     assert list(here.iterdir()) == []
 
 

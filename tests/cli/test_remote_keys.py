@@ -7,7 +7,7 @@ import random
 import pytest
 
 from tiniscript.cli.robot.remote_keys import FIRST_S, REPEAT_S, HeldKeys
-from tiniscript.link.remote import NOTHING, pressed_of
+from tiniscript.link.remote import NOTHING_PRESSED, pressed_of
 
 UP, LEFT = "\x1b[A", "\x1b[D"
 KEYS = (
@@ -21,13 +21,13 @@ def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed: str, name: str
     keys, held = HeldKeys(), pressed_of([name])
     assert not keys.take(typed, 10.0)
     assert keys.pressed_at(10.0) == keys.pressed_at(10.0 + FIRST_S - 0.01) == held
-    assert keys.pressed_at(10.0 + FIRST_S) == NOTHING
+    assert keys.pressed_at(10.0 + FIRST_S) == NOTHING_PRESSED
     for k in range(20):  # a terminal repeats it after 0.66 s, 25 times a second
-        assert keys.pressed_at(20.66 + k / 25 - 0.01) == (held if k else NOTHING)
+        assert keys.pressed_at(20.66 + k / 25 - 0.01) == (held if k else NOTHING_PRESSED)
         keys.take(typed, 20.66 + k / 25)
     last = 20.66 + 19 / 25
     assert keys.pressed_at(last + REPEAT_S - 0.01) == held
-    assert keys.pressed_at(last + REPEAT_S) == NOTHING
+    assert keys.pressed_at(last + REPEAT_S) == NOTHING_PRESSED
 
 
 def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
@@ -56,7 +56,7 @@ def test_a_key_that_comes_in_two_pieces(cut: int) -> None:
 def test_what_is_no_key_of_a_remote_control_holds_nothing(typed: str) -> None:
     keys = HeldKeys()
     assert not keys.take(typed + "\x1b", 0.0)
-    assert not keys.take("b", 0.1) and keys.pressed_at(0.1) in (NOTHING, pressed_of(["B"]))
+    assert not keys.take("b", 0.1) and keys.pressed_at(0.1) in (NOTHING_PRESSED, pressed_of(["B"]))
     assert not keys.take("b", 0.2)
     assert keys.pressed_at(0.2) == pressed_of(["B"])
 

@@ -29,7 +29,7 @@ from tiniscript import robots
 from tiniscript.cli import main
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.conversation import AGAIN, Conversation, NoPerson
+from tiniscript.cli.robot.conversation import ANSWER_AGAIN, Conversation, NoPerson
 from tiniscript.cli.robot.self_test import SelfTest
 from tiniscript.doctor import report
 from tiniscript.library.simulated import Simulated
@@ -182,7 +182,7 @@ def test_only_the_port_of_the_self_test_is_opened(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The board of another group may be on the only other port: nobody has chosen it."""
-    monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO", ())
+    monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO_TERMINALS", ())
     monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
     with PtyEnd(Firmware()) as end:
         monkeypatch.setattr("tiniscript.doctor.diagnosis._only_port", lambda *_: end.port)
@@ -444,7 +444,7 @@ def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
         lambda talk: talk.answer("ask_free", name="X", values=""),
         lambda talk: talk.choice("ask_learn", 2),
         lambda talk: talk.turn_motor("left"),
-        lambda talk: talk.ask_what_was_seen("BEEP(1, 440)", "ask_buzzer", AGAIN),
+        lambda talk: talk.ask_what_was_seen("BEEP(1, 440)", "ask_buzzer", ANSWER_AGAIN),
     ]
     for last in ways:
         typed = iter(["1\n"] * answers)

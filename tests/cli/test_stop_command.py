@@ -235,7 +235,7 @@ def test_who_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.Monkey
             return False
 
     found = Asleep(77, "tsc monitor") if is_known else None
-    monkeypatch.setattr(holders, "holder", lambda *_: found)
+    monkeypatch.setattr(holders, "find_holder", lambda *_: found)
 
     def busy(*_: object, **__: object) -> PortConnection:
         raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
@@ -254,4 +254,4 @@ def test_a_process_that_has_ended_holds_nothing() -> None:
     pid = command.process.pid
     command.ended()
     assert not holders.is_suspended(pid)
-    assert holders.holder("/nowhere", pid) is None
+    assert holders.find_holder("/nowhere", pid) is None

@@ -15,7 +15,7 @@ from tests.machines.host import missing as host_missing
 from tests.machines.pace import Pace, trace_at
 from tests.oracle import interpreter
 from tiniscript.base.kit import Kit
-from tiniscript.conformance.kit import FORM, VERSION, cases_in
+from tiniscript.conformance.kit import MACHINE_FORM, MACHINE_VERSION, cases_in
 from tools.generate.machine_kit import Run, answer_of, case_of, lines_of, runs
 
 AVR_BYTES = 620  # of an image
@@ -145,6 +145,11 @@ def oracle_kit(kit: Kit) -> interpreter.Kit:
 def request_of(run: Run, answer: list[str]) -> list[str]:
     """Return the lines that ask a process for a run, without the last one."""
     kits = [[line.removesuffix("\n") for line in lines_of(run.kit)]]
-    file = {"form": FORM, "version": VERSION, "kits": kits, "cases": [case_of(run, 0, answer)]}
+    file = {
+        "form": MACHINE_FORM,
+        "version": MACHINE_VERSION,
+        "kits": kits,
+        "cases": [case_of(run, 0, answer)],
+    }
     (case,) = cases_in(file)
     return case.request().splitlines()[:-1]

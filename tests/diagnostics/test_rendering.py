@@ -11,7 +11,7 @@ from tests.support.rows import each_row
 from tests.support.texts import said as all_said
 from tiniscript import check_text, compile_text
 from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
-from tiniscript.base.languages import SOURCE, languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, languages
 from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes, rendering
 from tiniscript.diagnostics.codes import CODES, Diagnostic
@@ -34,7 +34,7 @@ KIT = Kit(
 )
 LANGUAGES = languages()
 TEXTS = {language: all_said(language, "messages") for language in languages()}
-EXAMPLES = [code for code in sorted(CODES) if f"{code}/wrong" in TEXTS[SOURCE]]
+EXAMPLES = [code for code in sorted(CODES) if f"{code}/wrong" in TEXTS[SOURCE_LANGUAGE]]
 BOARD = {"robot": "TINIBOT", "limit": "900", "code": "1000", "over": "100"}
 LEVEL = {"level": "uno", "limit": "255", "code": "260", "over": "5"}
 WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
@@ -94,7 +94,7 @@ def test_each_code_has_all_texts_in_every_language(code: str) -> None:
 def test_a_translator_sees_the_wrong_program_of_a_message() -> None:
     notes = {entry.key: entry.notes for entry in sources()["messages"].entries.values()}
     for code in EXAMPLES:
-        rows = [f"wrong: {row}" for row in TEXTS[SOURCE][f"{code}/wrong"].splitlines()]
+        rows = [f"wrong: {row}" for row in TEXTS[SOURCE_LANGUAGE][f"{code}/wrong"].splitlines()]
         assert notes[f"{code}/message"] == rows
 
 
@@ -113,7 +113,7 @@ def test_the_right_example_has_no_diagnostic(code: str) -> None:
 
 @each_row("code", EXAMPLES)
 def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
-    found = compile_text(TEXTS[SOURCE][f"{code}/wrong"], KIT)
+    found = compile_text(TEXTS[SOURCE_LANGUAGE][f"{code}/wrong"], KIT)
     values = found.diagnostics[0].values
     if found.diagnostics[0].repair is None:  # else what it becomes is told
         assert gaps(code) <= set(values)

@@ -100,7 +100,7 @@ def test_a_program_of_another_user_is_known_by_its_lock(linux: FakeComputer) -> 
     linux.write("/run/lock/LCK..ttyUSB0", "999")  # it has ended
     assert diagnosis.access(linux, port).users == ()
     for other in ("socket://robot:7000", "/dev/ttyUSB9"):
-        assert diagnosis.access(linux, other) == computer.FREE
+        assert diagnosis.access(linux, other) == computer.FREE_ACCESS
 
 
 # -- macOS and Windows --------------------------------------------------------------------------

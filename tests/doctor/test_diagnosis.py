@@ -20,7 +20,7 @@ from tiniscript.cli.texts.causes import sentences_of
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
 from tiniscript.doctor.examination import Expectations
 from tiniscript.doctor.findings import CAUSES
-from tiniscript.doctor.robot import SILENT
+from tiniscript.doctor.robot import MOST_UNANSWERED
 from tiniscript.link import errors
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
@@ -351,7 +351,7 @@ def test_a_robot_that_falls_silent_behind_another_tsc_is_given_up(
 ) -> None:
     """Each request waits for the retries of that tsc, and for its search for the robot."""
     known = [Reply(OK, 0, HELLO), Reply(OK, 0, STATUS), *[Reply(OK, 0, PONG)] * answered]
-    lost: list[Reply[Any]] = [Reply(LOST)] * SILENT
+    lost: list[Reply[Any]] = [Reply(LOST)] * MOST_UNANSWERED
     case.shared = Shared(*known, *lost)
     assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
     case.shared = Shared(*known, *lost[1:], *[Reply(OK, 0, PONG)] * 3, *lost)

@@ -68,7 +68,7 @@ def test_a_board_that_is_not_ours_says_what_it_is_what_was_seen_and_what_to_do(c
         for heard in ("Distance: 34", ""):
             sentences = sentences_of(Finding(cause, True, {"said": heard}), language)
             assert all(sentences) and "{" not in "".join(sentences)
-            assert heard in sentences.seen or cause == foreign.ECHO
+            assert heard in sentences.seen or cause == foreign.ECHO_SKETCH
         link = foreign.explain(foreign.Foreign(cause, "a\x1bb", True), language)
         assert "a?b" in link.said and link.advice == sentences.then
 

@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 
 from tiniscript import robots
-from tiniscript.link.remote import NOTHING
+from tiniscript.link.remote import NOTHING_PRESSED
 from tools.bench.keys import (
-    AHEAD,
     AT_ONCE,
     HELD_MOST_MS,
     LET_GO_MOST_MS,
     LOST_MOST_MS,
+    PAD_AHEAD,
     Hand,
 )
 
@@ -32,6 +32,6 @@ def test_what_a_hand_holds_reaches_the_motors(
     """Also what it lets go; and a lost line lets all go."""
     with Hand(sketches(sketch_name), BAUD, AT_ONCE) as hand:
         for _ in range(TRIES):
-            assert 0 < hand.change(AHEAD) <= HELD_MOST_MS[BAUD]
-            assert 0 < hand.change(NOTHING) <= LET_GO_MOST_MS[BAUD]
+            assert 0 < hand.change(PAD_AHEAD) <= HELD_MOST_MS[BAUD]
+            assert 0 < hand.change(NOTHING_PRESSED) <= LET_GO_MOST_MS[BAUD]
         assert 0 < hand.lose() <= LOST_MOST_MS

@@ -162,7 +162,7 @@ def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Pa
     project = copied(tmp_path)
     for language, answer, other in (("es", "500: 0 a 100", "en"), ("en", "500: 0 to 100", "es")):
         robot = robots.load("tinibot", "mega").with_language(language)
-        (project / building.HEADER).write_text(building.header(robot), encoding="utf-8")
+        (project / building.HEADER_FILE).write_text(building.header(robot), encoding="utf-8")
         pio(project, "run", "-e", "mega").gives(0)
         elf = project / ".pio" / "build" / "mega" / "firmware.elf"
         for each in (language, other):

@@ -12,7 +12,7 @@ from tests.support.esp32_radio import Network
 from tests.support.owners import Keys
 from tests.virtual.test_protocol_sniffer import NOT_FOR_ROBOTS
 from tiniscript.link.messages import STOP_BYTES
-from tiniscript.virtual.protocol_sniffer import is_for_robot
+from tiniscript.virtual.protocol_sniffer import sniff_robot_client
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +63,7 @@ def test_the_robot_tells_its_clients_as_a_virtual_one_does(knocked_at: Esp32Robo
         if chance.random() < 0.3 and data:
             at = chance.randrange(len(data))
             data = data[:at] + chance.randbytes(1) + data[at + 1 :]
-        assert sniffed(knocked_at, data) is is_for_robot(data), data
+        assert sniffed(knocked_at, data) is sniff_robot_client(data), data
     for data in NOT_FOR_ROBOTS.values():
         for k in range(min(len(data), 400)):
-            assert sniffed(knocked_at, data[:k]) is is_for_robot(data[:k]), data[:k]
+            assert sniffed(knocked_at, data[:k]) is sniff_robot_client(data[:k]), data[:k]

@@ -19,7 +19,7 @@ from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.session import Session
-from tiniscript.virtual.protocol_sniffer import is_for_robot
+from tiniscript.virtual.protocol_sniffer import sniff_robot_client
 
 ROOM = 1022  # bytes; one place is for who leaves
 LATE_MS = 3  # a turn of the radio's task, and what a network of this computer takes
@@ -95,7 +95,7 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     other.send(page)
     talk(robot, ends, LATE_MS)
     other.taken()
-    assert other.has_ended == (is_for_robot(word + page) is False)
+    assert other.has_ended == (sniff_robot_client(word + page) is False)
     stops(robot, end, drives(robot, owner), b"S\n", "after one that has stopped nothing")
     end.leave()
     other.leave()

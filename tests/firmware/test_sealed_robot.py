@@ -35,7 +35,7 @@ from tiniscript.link.messages import (
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import OK, Reply
-from tiniscript.link.seal import LAST, Seal
+from tiniscript.link.seal import LAST_COUNTER, Seal
 from tiniscript.link.session import Session
 
 SHORT = "SI|F(0.1, 80)"
@@ -229,7 +229,7 @@ def test_a_counter_at_its_end_begins_another_seal() -> None:
     table, session, _ = opened()
     seal = session._sealing.seal
     assert seal
-    seal.sent = LAST - 1
+    seal.sent = LAST_COUNTER - 1
     assert table.tries(session) == "OK"
     assert session._sealing.seal is seal and seal.is_spent
     assert table.tries(session) == "OK"
@@ -262,7 +262,7 @@ def cable_off(table: Owned, session: Session) -> None:
 def spent(table: Owned, session: Session) -> None:
     """The session has one more number for it."""
     if session._sealing.seal:
-        session._sealing.seal.sent = LAST - 1
+        session._sealing.seal.sent = LAST_COUNTER - 1
 
 
 @pytest.mark.parametrize("loses", [cable_off, spent])

@@ -105,9 +105,9 @@ def test_sources_robot_and_board_make_the_digest(clone: Path, own: Path) -> None
 def test_the_header_that_somebody_has_made_is_not_the_robot(
     clone: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(building, "PLACES", [clone.parent / "vm_arduino"])
+    monkeypatch.setattr(building, "SOURCE_FOLDERS", [clone.parent / "vm_arduino"])
     before = building.sources()
-    (clone.parent / "vm_arduino" / building.HEADER).write_text("#error", encoding="utf-8")
+    (clone.parent / "vm_arduino" / building.HEADER_FILE).write_text("#error", encoding="utf-8")
     assert before and building.sources() == before
 
 
@@ -146,7 +146,7 @@ def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
 
 def source_bytes(clone: Path) -> dict[str, bytes]:
     project = clone.parent / "vm_arduino"
-    paths = [project / name for name in (building.SETTINGS, building.PARTITIONS)]
+    paths = [project / name for name in (building.SETTINGS_FILE, building.PARTITIONS_FILE)]
     files = [*paths, *sorted((project / "src").rglob("*"))]
     return {
         path.relative_to(project).as_posix(): path.read_bytes() for path in files if path.is_file()
@@ -174,11 +174,11 @@ def test_a_file_that_is_not_whole_is_built_anew(text: str, whole: bool) -> None:
 
 
 def test_the_cache_does_not_grow_for_ever() -> None:
-    for number in range(ready.KEPT + 5):
+    for number in range(ready.MOST_FILES + 5):
         kept = ready.keep("a/robot of mine", "uno", f"{number:016x}", b":00000001FF\n")
         os.utime(kept.path, ns=(number, number))
     found = ready.files(ready.cache())
-    assert len(found) == ready.KEPT and found[-1].digest == f"{ready.KEPT + 4:016x}"
+    assert len(found) == ready.MOST_FILES and found[-1].digest == f"{ready.MOST_FILES + 4:016x}"
     assert {path.suffix for path in ready.cache().iterdir()} == {".hex"}
 
 

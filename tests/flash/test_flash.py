@@ -295,8 +295,14 @@ def test_the_avrdude_of_another_program_is_found(
     (avrdude.NOBODY, "avrdude error: unable to open programmer arduino on port /dev/ttyUSB0"),
     (avrdude.OTHER_CHIP, "avrdude: Expected signature for ATmega328P is 1E 95 0F"),
     (avrdude.OTHER_CHIP, "avrdude: Yikes!  Invalid device signature."),
-    (avrdude.PORT, 'avrdude: ser_open(): can\'t open device "/dev/ttyUSB0": Permission denied'),
-    (avrdude.PORT, "avrdude error: cannot open port /dev/ttyUSB0: No such file or directory"),
+    (
+        avrdude.PORT_FAILED,
+        'avrdude: ser_open(): can\'t open device "/dev/ttyUSB0": Permission denied',
+    ),
+    (
+        avrdude.PORT_FAILED,
+        "avrdude error: cannot open port /dev/ttyUSB0: No such file or directory",
+    ),
     (avrdude.BROKEN_OFF, "Writing | ####avrdude: stk500_recv(): programmer is not responding"),
     (avrdude.DIFFERS, "Writing | #### | 100% 1.68s\navrdude: verification error, first mismatch"),
     (avrdude.FAILED, "avrdude: cannot find its settings"),
@@ -308,7 +314,7 @@ def test_what_avrdude_says_has_a_name(how: str, said: str) -> None:
 
 
 def test_every_end_has_its_sentence() -> None:
-    for how in avrdude.ENDS:
+    for how in avrdude.OUTCOMES:
         assert has_text(f"flash_{how}")
 
 

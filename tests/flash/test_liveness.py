@@ -7,11 +7,18 @@ import random
 import pytest
 
 from tiniscript.flash import avrdude
-from tiniscript.flash.avrdude import MARKS, NOBODY_S, SILENCE_S, WHOLE_S, StepProgress, WriteResult
+from tiniscript.flash.avrdude import (
+    BAR_MARKS,
+    NOBODY_S,
+    SILENCE_S,
+    WHOLE_S,
+    StepProgress,
+    WriteResult,
+)
 
 LOOK_S = 0.1
 MEGA_S = 50.0  # writing its 256 KB and reading them back
-SIGNATURE = "Reading | " + "#" * MARKS + " | 100% 0.01s\n"
+SIGNATURE = "Reading | " + "#" * BAR_MARKS + " | 100% 0.01s\n"
 
 
 class Clock:
@@ -31,7 +38,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 def output(rng: random.Random, whole_s: float, longest_s: float) -> list[tuple[float, str]]:
     """Return the output of an avrdude and when it comes: never later than that after the last."""
-    parts = [SIGNATURE, "Writing | ", *"#" * MARKS, " |\nReading | ", *"#" * MARKS, " |\n"]
+    parts = [SIGNATURE, "Writing | ", *"#" * BAR_MARKS, " |\nReading | ", *"#" * BAR_MARKS, " |\n"]
     gaps_s = [rng.random() ** 4 for _ in parts]
     total = sum(gaps_s)
     at_s, found = 0.0, []
@@ -52,7 +59,7 @@ def watched(
         passed_s = clock.now_s - began_s
         try:
             watch("".join(part for at_s, part in parts if at_s <= passed_s))
-        except avrdude._Over as over:
+        except avrdude._Ended as over:
             return over.ended, passed_s
         clock.now_s += LOOK_S
     percents = [each.percent + 100 * (each.phase == avrdude.READING) for each in seen if each]

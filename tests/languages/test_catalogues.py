@@ -20,8 +20,8 @@ from tests.support.copies import linked
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.base import languages
-from tiniscript.base.catalogue_source import UNKNOWN
-from tiniscript.base.languages import FOLDER, ITSELF, SOURCE
+from tiniscript.base.catalogue_source import UNKNOWN_HASH
+from tiniscript.base.languages import ABOUT_FILE, FOLDER, SOURCE_LANGUAGE
 from tiniscript.base.translations import read_language
 from tiniscript.base.words import WORDS
 from tiniscript.cli import main
@@ -43,11 +43,11 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(language: str,
     """And each translation is of the English text that is there now."""
     found = languages.entries(name, language)
     assert found.problems == []
-    assert [at for at, entry in found.entries.items() if entry.said and entry.is_stale] == []
-    assert [at for at, entry in found.entries.items() if entry.seen == UNKNOWN] == [], (
+    assert [at for at, entry in found.entries.items() if entry.translation and entry.is_stale] == []
+    assert [at for at, entry in found.entries.items() if entry.seen == UNKNOWN_HASH] == [], (
         f"python -m tools.languages --seen {language}"
     )
-    if read_language(FOLDER / language / ITSELF).is_complete:
+    if read_language(FOLDER / language / ABOUT_FILE).is_complete:
         wanted = {at for at, entry in SOURCES[name].entries.items() if not entry.is_same}
         said = {at for at, entry in found.entries.items() if entry.is_translated}
         assert wanted <= said
@@ -68,7 +68,7 @@ def test_a_language_is_in_step(language: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("language", ["es", "pt"])
 def test_a_whole_language_promises_to_be_complete(language: str) -> None:
-    assert read_language(FOLDER / language / ITSELF).is_complete
+    assert read_language(FOLDER / language / ABOUT_FILE).is_complete
 
 
 def test_what_messages_call_the_values_of_words_is_a_term() -> None:
@@ -145,7 +145,7 @@ def test_each_robot_can_say_its_texts_and_each_row_of_a_lexicon_is_known(languag
     ("", "en"), ("_", "en"), ("../es", "en"), ("__pycache__", "en"), ("eso", "en"),
 ])  # fmt: skip
 def test_a_locale_has_a_language_or_english(name: str, language: str) -> None:
-    assert languages.find(name) == language
+    assert languages.find_language(name) == language
 
 
 def test_the_variables_of_a_locale_count_as_everywhere() -> None:
@@ -166,8 +166,8 @@ def longer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """A language whose texts are a third longer, beside English."""
     for code in languages.languages():
         (tmp_path / code).mkdir()
-    for path in FOLDER.glob(f"{SOURCE}/*.toml"):
-        (tmp_path / SOURCE / path.name).write_bytes(path.read_bytes())
+    for path in FOLDER.glob(f"{SOURCE_LANGUAGE}/*.toml"):
+        (tmp_path / SOURCE_LANGUAGE / path.name).write_bytes(path.read_bytes())
     with monkeypatch.context() as patch:
         for module in ("tools.languages", "tools.translation_files"):
             patch.setattr(f"{module}.FOLDER", tmp_path)
@@ -180,7 +180,7 @@ def longer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
 
 
 def _forget() -> None:
-    languages.forget()
+    languages.forget_languages()
 
 
 class Terminal(io.StringIO):
@@ -239,11 +239,13 @@ def test_texts_that_are_longer_keep_to_80_columns(
     """And each of their texts is another one there: none is outside of the catalogues."""
     for words in LAID_OUT:
         rows = {}
-        for language in (SOURCE, longer):
+        for language in (SOURCE_LANGUAGE, longer):
             monkeypatch.setenv("LC_ALL", language)
             rows[language] = tsc(*words).out.splitlines()
         assert [row for row in rows[longer] if len(row) > 80] == [], words
-        same = {row for row in {*rows[SOURCE]} & {*rows[longer]} if "$(" not in row}  # no code
+        same = {
+            row for row in {*rows[SOURCE_LANGUAGE]} & {*rows[longer]} if "$(" not in row
+        }  # no code
         assert [row for row in same if re.search(r"^ *\w.*[a-z]{3} [a-z]{3}", row)] == [], words
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tiniscript.base.kit import REMOTE
-from tiniscript.base.languages import FOLDER, ITSELF, SOURCE, languages, table
+from tiniscript.base.languages import ABOUT_FILE, FOLDER, SOURCE_LANGUAGE, languages, table
 from tiniscript.base.translations import read_language
 from tiniscript.base.words import WORDS
 from tiniscript.recovery import rows, suggestion_rows
@@ -45,7 +45,7 @@ def _words(language: str) -> set[str]:
 
 def test_words_of_a_language_are_in_its_folder() -> None:
     """Patterns of characters have some that are said for signs: `punto y coma`."""
-    theirs = set().union(*map(_words, languages())) - _words(SOURCE) - {*WORDS}
+    theirs = set().union(*map(_words, languages())) - _words(SOURCE_LANGUAGE) - {*WORDS}
     found = set()
     for path in sorted((ROOT / "compiler/tiniscript").rglob("*.py")):
         if "page" in path.parts:
@@ -77,7 +77,7 @@ def test_rows_name_no_word_of_a_language() -> None:
     [
         language
         for language in languages()[1:]
-        if read_language(FOLDER / language / ITSELF).is_complete
+        if read_language(FOLDER / language / ABOUT_FILE).is_complete
     ],
 )
 def test_each_language_says_how_much_and_what_pupils_call_things(language: str) -> None:

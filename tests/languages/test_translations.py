@@ -20,13 +20,19 @@ from tests.support.copies import linked
 from tests.support.waiting import HANGS_S
 from tiniscript.base import catalogue_source, languages
 from tiniscript.base.catalogue_source import Catalogue, Entry
-from tiniscript.base.languages import FOLDER, ITSELF, NAMES, SEEN, SOURCE
+from tiniscript.base.languages import (
+    ABOUT_FILE,
+    FOLDER,
+    NAMES_CATALOGUE,
+    SEEN_FILE,
+    SOURCE_LANGUAGE,
+)
 from tiniscript.base.translations import (
-    NUMBERS,
+    NUMBERS_TRIED,
     merge_translations,
     read_language,
-    read_own,
     read_seen,
+    read_translation_file,
 )
 from tiniscript.cli.texts import Sentence
 from tools import languages as tool
@@ -49,16 +55,16 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A folder of languages with English and one more, `xx`."""
     for module in (languages, tool, translation_files):
         monkeypatch.setattr(module, "FOLDER", tmp_path / "languages")
-    for code in (SOURCE, "xx"):
+    for code in (SOURCE_LANGUAGE, "xx"):
         (tmp_path / "languages" / code).mkdir(parents=True)
-    itself = FOLDER / SOURCE / ITSELF
-    shutil.copyfile(itself, tmp_path / "languages" / SOURCE / itself.name)
-    write(tmp_path / "languages" / "xx" / ITSELF, 'name = "xx"\n')
-    write(tmp_path / "languages" / SOURCE / "some.toml", ENGLISH)
-    languages.forget()
+    itself = FOLDER / SOURCE_LANGUAGE / ABOUT_FILE
+    shutil.copyfile(itself, tmp_path / "languages" / SOURCE_LANGUAGE / itself.name)
+    write(tmp_path / "languages" / "xx" / ABOUT_FILE, 'name = "xx"\n')
+    write(tmp_path / "languages" / SOURCE_LANGUAGE / "some.toml", ENGLISH)
+    languages.forget_languages()
     yield tmp_path / "languages"
     monkeypatch.undo()
-    languages.forget()
+    languages.forget_languages()
 
 
 def write(path: Path, said: str) -> None:
@@ -66,7 +72,7 @@ def write(path: Path, said: str) -> None:
 
 
 def said(key: str, language: str = "xx") -> str | dict[str, str]:
-    languages.forget()
+    languages.forget_languages()
     return languages.texts("some", language)[key]
 
 
@@ -74,7 +80,7 @@ def opened(place: Path, own: str | None = None, seen: bool = False) -> Translati
     """Return what `xx` has, as the tool sees it; `seen`: of the English texts of now."""
     if own is not None:
         write(place / "xx" / "some.toml", own)
-    english = {"some": catalogue_source.load(place / SOURCE / "some.toml")}
+    english = {"some": catalogue_source.load(place / SOURCE_LANGUAGE / "some.toml")}
     translation = Translation("xx", english)
     if seen:
         translation.see([])
@@ -166,12 +172,12 @@ def test_what_an_editor_does_to_a_file_is_no_mistake(place: Path) -> None:
 def test_what_is_wrong_in_the_hashes_is_said_with_its_line_and_kept(
     row: str, line: int, why: str, place: Path
 ) -> None:
-    write(place / "xx" / SEEN, row)
+    write(place / "xx" / SEEN_FILE, row)
     own = opened(place, OWN)
-    assert problems(own) == [(SEEN, line, why)]
+    assert problems(own) == [(SEEN_FILE, line, why)]
     own.see(["*"])
     own.write()
-    assert (place / "xx" / SEEN).read_text() == row
+    assert (place / "xx" / SEEN_FILE).read_text() == row
 
 
 @pytest.mark.parametrize(("row", "line", "why"), [
@@ -191,11 +197,11 @@ def test_what_is_wrong_in_the_hashes_is_said_with_its_line_and_kept(
 def test_what_a_language_cannot_say_of_itself_is_as_in_english(
     row: str, line: int, why: str, place: Path
 ) -> None:
-    write(place / "xx" / ITSELF, row + "\n")
+    write(place / "xx" / ABOUT_FILE, row + "\n")
     ((name, at, found),) = problems(opened(place, OWN))
-    assert (name, at) == (ITSELF, line) and found.startswith(why)
-    languages.forget()
-    assert languages.about("xx").forms == ("one", "other")
+    assert (name, at) == (ABOUT_FILE, line) and found.startswith(why)
+    languages.forget_languages()
+    assert languages.language_info("xx").forms == ("one", "other")
     assert said("b") == "Alto."
 
 
@@ -208,13 +214,15 @@ TOML = st.lists(st.sampled_from(["a", '"b/c"', " = ", '"', "'", '"""', "x", "[",
 def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
     with TemporaryDirectory() as name:
         folder = Path(name)
-        for each in ("some.toml", SEEN, ITSELF):
+        for each in ("some.toml", SEEN_FILE, ABOUT_FILE):
             (folder / each).write_bytes(data)
-        language = read_language(folder / ITSELF)
-        assert len(language.form_of) == NUMBERS
-        read_seen(folder / SEEN)
+        language = read_language(folder / ABOUT_FILE)
+        assert len(language.form_of) == NUMBERS_TRIED
+        read_seen(folder / SEEN_FILE)
         english = catalogue_source.load(folder / "some.toml")
-        merge_translations(english, "some", read_own(folder / "some.toml"), {}, language)
+        merge_translations(
+            english, "some", read_translation_file(folder / "some.toml"), {}, language
+        )
 
 
 def test_what_cannot_be_read_is_wrong_and_costs_the_file(
@@ -227,7 +235,7 @@ def test_what_cannot_be_read_is_wrong_and_costs_the_file(
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "read_bytes", refused)
-    assert read_own(own).problems == [(1, "this cannot be read: Permission denied")]
+    assert read_translation_file(own).problems == [(1, "this cannot be read: Permission denied")]
 
 
 # -- what a language has
@@ -244,20 +252,20 @@ def test_plurals_follow_the_rule_of_the_language(place: Path) -> None:
     )  # fmt: skip
     for names, rule, wanted in rules:
         forms = names.split()
-        write(place / "xx" / ITSELF, f"forms = {forms}\nwhich_form = '{rule}'\n")
+        write(place / "xx" / ABOUT_FILE, f"forms = {forms}\nwhich_form = '{rule}'\n")
         rows = "".join(f"n.{form} = '{{n}} {form}'\n" for form in forms)
         assert problems(opened(place, rows)) == []
-        languages.forget()
+        languages.forget_languages()
         for number, form in wanted.items():
             assert languages.plural_text("some", "n", number, "xx") == f"{{n}} {form}"
     write(place / "xx" / "some.toml", OWN)
-    languages.forget()
+    languages.forget_languages()
     assert [languages.plural_text("some", "n", n, "xx") for n in (1, 5)] == ["{n} bytes"] * 2
 
 
 def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
     """CLDR has one for parts of one in Polish: who knows that may write it."""
-    write(place / "xx" / ITSELF, 'forms = ["one", "many"]\nwhich_form = "n != 1"\n')
+    write(place / "xx" / ABOUT_FILE, 'forms = ["one", "many"]\nwhich_form = "n != 1"\n')
     row = "n.one = '{n} a'\nn.many = '{n} b'\n"
     assert (
         problems(opened(place, row)) == problems(opened(place, f"{row}n.other = '{{n}}'\n")) == []
@@ -280,21 +288,21 @@ def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
     opened(place, OWN + 'a = "Lee {file}."\n')
     assert said("b") == "Alto.", "a new one is said at once"
     opened(place, seen=True)
-    write(place / SOURCE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
+    write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     assert said("b") == "Stop now." and said("a") == "Lee {file}."
     own = opened(place)
     assert tool.report(own) == 0
     out = capsys.readouterr().out
     assert "some.toml:2: b: its English text has changed, and so it is said in English: St" in out
     assert "xx: 1 texts are stale." in out and "xx: 1 of 5 texts are translated" in out
-    write(place / "xx" / ITSELF, "is_complete = true\n")
+    write(place / "xx" / ABOUT_FILE, "is_complete = true\n")
     assert tool.report(opened(place)) == 4, "a whole language says all, and as it is now"
     opened(place, seen=True)
     assert said("b") == "Stop now.", "somebody has run the tool for others"
     assert own.see(["x*", "b"]) == ["x*"]
     own.write()
     assert said("b") == "Alto."
-    write(place / SOURCE / "some.toml", ENGLISH)
+    write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH)
     assert said("b") == "Stop.", "of the text before it is none now"
 
 
@@ -305,7 +313,7 @@ def test_a_text_in_front_of_others_moves_and_loses_no_translation(
     opened(place, 'more = ["", "Quítalo.", "Ponlo."]\n', seen=True)
     moved = ENGLISH.replace('["{fix}", "Take it out.", "Put it in."]',
                             '["New.", "Put it in.", "{fix}", "Take it out."]')  # fmt: skip
-    write(place / SOURCE / "some.toml", moved)
+    write(place / SOURCE_LANGUAGE / "some.toml", moved)
     if has_run:
         own = opened(place)
         assert [*own.follow()] == []
@@ -321,7 +329,7 @@ def test_a_text_in_front_of_others_moves_and_loses_no_translation(
 
 def test_a_new_text_of_a_list_whose_english_has_moved_is_none_of_another_text(place: Path) -> None:
     opened(place, 'more = ["", "Quítalo."]\n', seen=True)
-    write(place / SOURCE / "some.toml", ENGLISH.replace('"{fix}", ', '"{fix}", "New.", '))
+    write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace('"{fix}", ', '"{fix}", "New.", '))
     ((_, line, why),) = problems(opened(place, 'more = ["", "Nuevo.", "Quítalo."]\n'))
     assert line == 1 and why.startswith("more: its English texts have other places now")
     assert said("more/2") == "New."
@@ -331,9 +339,9 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
     """What is gone goes; a key that somebody has mistyped stays, and is wrong."""
     notes = '# who\n[x]\nb = "Alto."  # short\n# why\na = "Lee {file}."\ngoes = "Se va."\n# end\n'
     opened(place, notes)
-    write(place / SOURCE / "some.toml", ENGLISH + 'goes = "It goes."\n')
+    write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH + 'goes = "It goes."\n')
     opened(place, seen=True)
-    write(place / SOURCE / "some.toml", ENGLISH.replace("b =", "moved ="))
+    write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("b =", "moved ="))
     own = opened(place, (place / "xx" / "some.toml").read_text("utf-8") + 'mistyped = "Ay."\n')
     assert [*own.follow()] == ["some.toml: goes"]
     own.write()
@@ -341,29 +349,29 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
         '# why\na = "Lee {file}."\n# who\n[x]\nmoved = "Alto."\n# end\nmistyped = "Ay."\n'
     )
     assert said("moved") == "Alto."
-    seen = (place / "xx" / SEEN).read_text(encoding="utf-8")
+    seen = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     assert [row.rpartition(" ")[0] for row in seen.splitlines()[1:]] == ["some a", "some moved"]
     assert problems(opened(place)) == [("some.toml", 7, "mistyped: there is no such English text")]
     again = opened(place)
     assert [*again.follow()] == []
     again.write()
-    assert (place / "xx" / SEEN).read_text(encoding="utf-8") == seen
+    assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8") == seen
 
 
 def test_a_mistake_in_a_file_costs_nothing_that_is_noted(place: Path) -> None:
     opened(place, OWN + 'more = ["", "Quítalo."]\n', seen=True)
-    seen = (place / "xx" / SEEN).read_text(encoding="utf-8")
-    write(place / SOURCE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
+    seen = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
+    write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     for spoilt in ('b = "Alto.\n', 'more = ["", "a", "b", "c"]\n' + OWN, OWN + "b = 'x'\n"):
         own = opened(place, spoilt, seen=True)
         assert [*own.follow()] == []
         own.write()
-        assert (place / "xx" / SEEN).read_text(encoding="utf-8").startswith(seen[:60])
+        assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8").startswith(seen[:60])
         kept = (place / "xx" / "some.toml").read_text(encoding="utf-8")
         assert sorted(kept.splitlines()) == sorted(spoilt.splitlines())
     (place / "xx" / "some.toml").write_bytes(OWN.encode("utf-16"))
     own = opened(place, seen=True)
-    assert "some b" in (place / "xx" / SEEN).read_text(encoding="utf-8")
+    assert "some b" in (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     opened(place, OWN)
     assert said("b") == "Stop now.", "it is stale still"
 
@@ -373,16 +381,16 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
 ) -> None:
     """A note that the key begins with is not said beside it; a list says its texts itself."""
     write(
-        place / SOURCE / "some.toml",
+        place / SOURCE_LANGUAGE / "some.toml",
         '[verb]\na = "Open"\nb = ["Shut", "Open"]\n[door]\ndoor.own = "Open"\n[menu]\nd = "Open"\n',
     )
     own = opened(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
     entries = [entry for entry in own.merge("some").entries.values() if not entry.is_same]
-    assert [(entry.key, entry.english, entry.notes, entry.said[""]) for entry in entries] == [
+    assert [(it.key, it.english, it.notes, it.translation[""]) for it in entries] == [
         ("a", "Open", ["verb", "menu"], "Abrir"), ("b", "Shut", ["verb"], "Cierra"),
         ("door", "Open", [], "Abierta"),
     ]  # fmt: skip
-    languages.forget()
+    languages.forget_languages()
     assert languages.texts("some", "xx") == {
         "a": "Abrir", "b": "Cierra", "b/2": "Abrir", "door": "Abierta", "d": "Abrir",
     }  # fmt: skip
@@ -391,7 +399,7 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
 
 
 def test_a_program_is_for_no_translator_and_may_have_a_lone_brace(place: Path) -> None:
-    write(place / SOURCE / "some.toml", 'a = "A."\n"b/wrong".same = "LOOP(3) {"\n')
+    write(place / SOURCE_LANGUAGE / "some.toml", 'a = "A."\n"b/wrong".same = "LOOP(3) {"\n')
     own = opened(place)
     assert problems(own) == []
     own.put_all("some", pseudo(own.english["some"]))
@@ -430,11 +438,11 @@ def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
     entries = [Entry("a", "Stop.", "", {"": each}) for each in ("x" * 41, "Arrêt", "Halte")]
     own = Catalogue({(str(k), entry.key): entry for k, entry in enumerate(entries)})
     assert [why for _, why in check_robot(own)] == [
-        f"a robot says at most 40 signs, in ASCII: {entry.said['']}" for entry in entries[:2]
+        f"a robot says at most 40 signs, in ASCII: {entry.translation['']}" for entry in entries[:2]
     ]
     rows = ["F | AVANCE", "F AVANCE", "QQ | RECULE", "B | recule", "B | RECULÉ", "number 2 | DEUX"]
-    english = languages.table(SOURCE, "lexicon.txt")
-    tables = {SOURCE: english, "fr": "\n".join(rows)}
+    english = languages.table(SOURCE_LANGUAGE, "lexicon.txt")
+    tables = {SOURCE_LANGUAGE: english, "fr": "\n".join(rows)}
     monkeypatch.setattr("tools.languages.table", lambda language, _: tables[language])
     assert [*check_lexicon("fr")] == rows[1:5]
 
@@ -446,11 +454,11 @@ def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
 def whole(place: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     """The tool, with all English texts and no language."""
     shutil.rmtree(place)
-    shutil.copytree(FOLDER / SOURCE, place / SOURCE)
-    languages.forget()
+    shutil.copytree(FOLDER / SOURCE_LANGUAGE, place / SOURCE_LANGUAGE)
+    languages.forget_languages()
 
     def run(*words: str) -> int:
-        languages.forget()
+        languages.forget_languages()
         monkeypatch.setattr(sys, "argv", ["tools.languages", *words])
         return tool.main()
 
@@ -470,7 +478,7 @@ def test_a_new_language_begins_with_what_unicode_knows_of_it(
     whole: Callable[..., int], capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     assert whole(code) == 0
-    language = read_language(place / code / ITSELF)
+    language = read_language(place / code / ABOUT_FILE)
     assert language.problems == []
     assert (language.name, language.english_name, " ".join(language.forms)) == (
         name,
@@ -490,8 +498,12 @@ def test_a_stranger_adds_a_language_text_by_text(
     whole("fr")
     own = place / "fr" / "command.toml"
     write(own, 'no_verb = "tsc : la commande {found} n\'existe pas. Essaie :  tsc --help"\n')
-    languages.forget()
-    assert languages.find("fr_CA.UTF-8") == languages.find("French_France.1252") == "fr"
+    languages.forget_languages()
+    assert (
+        languages.find_language("fr_CA.UTF-8")
+        == languages.find_language("French_France.1252")
+        == "fr"
+    )
     assert languages.text("command", "no_verb", "fr").startswith("tsc : la commande")
     capsys.readouterr()
     assert whole("--check") == 0
@@ -499,7 +511,7 @@ def test_a_stranger_adds_a_language_text_by_text(
     assert "fr: 1 texts are new. Note of which English texts they are:" in out
     assert whole("--seen", "fr") == 0
     assert "fr: 1 of " in (out := capsys.readouterr().out) and "new" not in out
-    (row,) = (place / "fr" / SEEN).read_text(encoding="utf-8").splitlines()[1:]
+    (row,) = (place / "fr" / SEEN_FILE).read_text(encoding="utf-8").splitlines()[1:]
     assert row.startswith("command no_verb ")
     write(own, 'no_verb = "tsc : la commande {fond} n\'existe pas."\nno_verbe = "x"\n')
     assert whole("--check") == whole() == 1
@@ -511,8 +523,8 @@ def test_a_stranger_adds_a_language_text_by_text(
 def test_what_is_missing_is_named_with_the_line_that_it_goes_after() -> None:
     """That of the text before it in English; another order of the file changes nothing there."""
     said = {"": "x"}
-    rows = [Entry("a", "A"), Entry("b", "B", said=said, line=7), Entry("c", "C", line=99),
-            Entry("d", "D", said=said, line=3), Entry("e", "E")]  # fmt: skip
+    rows = [Entry("a", "A"), Entry("b", "B", translation=said, line=7), Entry("c", "C", line=99),
+            Entry("d", "D", translation=said, line=3), Entry("e", "E")]  # fmt: skip
     found = [(line, what.partition(" ")[0]) for line, what in tool.missing_rows(rows)]
     assert found == [(1, "a"), (7, "c"), (3, "e")]
 
@@ -523,8 +535,8 @@ def test_a_file_that_is_missing_is_named(
 ) -> None:
     whole("fr")
     write(place / "fr" / f"{name}.toml", "")
-    (place / SOURCE / f"{name}.toml").unlink()
-    (place / "fr" / ITSELF).unlink()
+    (place / SOURCE_LANGUAGE / f"{name}.toml").unlink()
+    (place / "fr" / ABOUT_FILE).unlink()
     capsys.readouterr()
     assert whole("--check") == 1
     out = capsys.readouterr().out
@@ -537,7 +549,7 @@ def test_what_is_no_language_is_not_made(
 ) -> None:
     for words in (["../x"], ["X"], ["--check", "fr"], ["--seen", "fr"], ["--po", "fr"]):
         assert whole(*words) == 1
-    assert [path.name for path in place.iterdir()] == [SOURCE]
+    assert [path.name for path in place.iterdir()] == [SOURCE_LANGUAGE]
     out = capsys.readouterr().out
     assert out.count("no such language. Try:  python -m tools.languages fr") == 3
 
@@ -548,8 +560,8 @@ def test_a_wrong_english_text_goes_into_no_language(
 ) -> None:
     whole("fr")
     write(place / "fr" / "robot.toml", 'gone = "Ô"\n')
-    write(place / "fr" / SEEN, "robot gone 00000000\n")
-    source = place / SOURCE / "robot.toml"
+    write(place / "fr" / SEEN_FILE, "robot gone 00000000\n")
+    source = place / SOURCE_LANGUAGE / "robot.toml"
     write(source, f"{spoilt}\n{source.read_text(encoding='utf-8')}")
     capsys.readouterr()
     assert whole() == 1
@@ -563,18 +575,18 @@ def test_a_wrong_english_text_goes_into_no_language(
 def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own, path = place / "xx" / "some.toml", place / "xx" / f"some{languages.KEPT}"
+    own, path = place / "xx" / "some.toml", place / "xx" / f"some{languages.CACHE_ENDING}"
 
     def stop() -> str:
-        languages.forget()
+        languages.forget_languages()
         return languages.text("some", "b", "xx")
 
     write(own, OWN)
     assert stop() == "Alto."
     path.write_bytes(path.read_bytes().replace(b"Alto.", b"Paro."))
     assert stop() == "Paro.", "it is read as it is while nothing is newer"
-    for source in (own, place / "xx" / SEEN, place / "xx" / ITSELF,
-                   place / SOURCE / "some.toml"):  # fmt: skip
+    for source in (own, place / "xx" / SEEN_FILE, place / "xx" / ABOUT_FILE,
+                   place / SOURCE_LANGUAGE / "some.toml"):  # fmt: skip
         path.write_bytes(path.read_bytes().replace(b"Alto.", b"Paro."))
         source.touch()
         os.utime(source, (path.stat().st_mtime + 2,) * 2)
@@ -594,24 +606,27 @@ def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
 def test_a_package_has_no_sources_and_a_page_learns_what_it_needs(place: Path) -> None:
     write(place / "xx" / "some.toml", OWN)
     write(place / "xx" / "names.toml", '"First" = "Primero"\n')
-    files = languages.kept_files()
+    files = languages.cache_files()
     assert sorted(files) == [
-        f"{code}/{name}{languages.KEPT}"
+        f"{code}/{name}{languages.CACHE_ENDING}"
         for code in ("en", "xx")
-        for name in ("language", NAMES, "some")
+        for name in ("language", NAMES_CATALOGUE, "some")
     ]
     for path in place.glob("*/*"):
         path.unlink()
     for name, data in files.items():
         (place / name).write_bytes(data)
-    languages.forget()
+    languages.forget_languages()
     assert languages.text("some", "b", "xx") == "Alto."
-    assert languages.find_text(NAMES, "First", "xx") == "Primero"
-    assert languages.find_text(NAMES, "First", SOURCE) is None
-    assert languages.about("xx").name == "xx" and languages.about("zz").name == "English"
+    assert languages.find_text(NAMES_CATALOGUE, "First", "xx") == "Primero"
+    assert languages.find_text(NAMES_CATALOGUE, "First", SOURCE_LANGUAGE) is None
+    assert (
+        languages.language_info("xx").name == "xx"
+        and languages.language_info("zz").name == "English"
+    )
     for path in (place / "xx").iterdir():
         path.unlink()
-    languages.forget()
+    languages.forget_languages()
     assert languages.text("some", "b", "xx") == "Stop."
 
 
@@ -635,14 +650,16 @@ def command(package: Path, *words: str, code: str = WITHOUT) -> tuple[int, str]:
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A package as a clone has it, in which nothing is made yet."""
     target = tmp_path_factory.mktemp("clone") / "tiniscript"
-    return linked(FOLDER.parent, target, f"*{languages.KEPT}", "__pycache__", "page", "ready")
+    return linked(
+        FOLDER.parent, target, f"*{languages.CACHE_ENDING}", "__pycache__", "page", "ready"
+    )
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows limits no files of a process")
 def test_a_clone_on_a_full_disk_speaks(package: Path) -> None:
     code, said = command(package, "complie", "--lang", "es")
     assert code == 2 and "¿Quisiste decir compile?" in said and said.count("\n") == 1
-    assert list(package.glob(f"languages/*/*{languages.KEPT}*")) == []
+    assert list(package.glob(f"languages/*/*{languages.CACHE_ENDING}*")) == []
 
 
 @pytest.mark.parametrize(("spoil", "why"), [
@@ -661,7 +678,7 @@ def test_english_texts_that_are_wrong_are_said_without_words_of_ours(
         ("command", ["check", "no_such.ts", "--lang", "es"]),
         ("command", ["complie"]),
     ):
-        path = own / "languages" / SOURCE / f"{name}.toml"
+        path = own / "languages" / SOURCE_LANGUAGE / f"{name}.toml"
         if path.is_file():
             path.chmod(0o644)
         spoil(path)
@@ -678,9 +695,9 @@ def own(place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Transla
     """A language with a translation, a stale one, and a form missing."""
     monkeypatch.chdir(tmp_path)
     before = ENGLISH.replace("Stop.", "Halt.")
-    write(place / SOURCE / "some.toml", before)
+    write(place / SOURCE_LANGUAGE / "some.toml", before)
     opened(place, OWN + 'a = "Lee {file}."\nmore = ["", "", "Ponlo."]\n', seen=True)
-    write(place / SOURCE / "some.toml", ENGLISH)
+    write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH)
     return opened(place)
 
 
@@ -710,7 +727,9 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
     """A fuzzy one and an empty one are left out; a text that has changed meanwhile is said."""
     translators.exchange("xx", own.english)
     english, said = ENGLISH.replace("{n} b", "{n} B"), Path("xx.po").read_text(encoding="utf-8")
-    write(place / SOURCE / "some.toml", english.replace('["{fix}", ', '["New.", "{fix}", '))
+    write(
+        place / SOURCE_LANGUAGE / "some.toml", english.replace('["{fix}", ', '["New.", "{fix}", ')
+    )
     said = said.replace('"Take it out."\nmsgstr ""', '"Take it out."\nmsgstr "¡Fuera \\"x\\"!"')
     said = said.replace('msgstr[0] ""', 'msgstr[0] "{n} b"').replace('[1] ""', '[1] "{n} bb"')
     write(Path("xx.po"), said.replace("Lee {file}", "Mira {file}"))
@@ -726,7 +745,7 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
     assert problems(translation) == [] and translation.merge("some").entries["b", "Stop."].is_stale
     write(Path("xx.po"), said.replace("#, fuzzy", "#"))
     translators.exchange("xx.po", opened(place).english)
-    languages.forget()
+    languages.forget_languages()
     assert languages.text("some", "b", "xx") == "Alto."
 
 
@@ -738,9 +757,9 @@ def test_a_language_goes_out_and_comes_back_with_every_text(
     english = tool.sources()
     before = Translation(language, english)
     translators.give(Path("out.po"), before)
-    shutil.copytree(FOLDER / SOURCE, tmp_path / "languages" / SOURCE)
+    shutil.copytree(FOLDER / SOURCE_LANGUAGE, tmp_path / "languages" / SOURCE_LANGUAGE)
     (tmp_path / "languages" / language).mkdir()
-    for itself in (FOLDER / language).glob(ITSELF):
+    for itself in (FOLDER / language).glob(ABOUT_FILE):
         shutil.copy(itself, tmp_path / "languages" / language)
     monkeypatch.setattr(translation_files, "FOLDER", tmp_path / "languages")
     assert translators.take(Path("out.po"), Translation(language, english)) == 0
@@ -750,7 +769,7 @@ def test_a_language_goes_out_and_comes_back_with_every_text(
         assert new.problems == []
         for at, entry in old.entries.items():
             is_asked = not entry.is_same
-            assert new.entries[at].said == entry.said or not is_asked, at
+            assert new.entries[at].translation == entry.translation or not is_asked, at
             assert new.entries[at].seen == entry.seen or not is_asked, at
 
 

@@ -20,7 +20,7 @@ from tiniscript.base.version import __version__
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import RobotError
-from tiniscript.library.opening import AGAIN_S, BUSY_S
+from tiniscript.library.opening import BUSY_S, RETRY_S
 from tiniscript.link.errors import PortError
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.registry import Registration
@@ -69,10 +69,10 @@ def test_a_port_that_is_free_soon_is_opened(
 ) -> None:
     """Its owner may be leaving: however long the search for it took."""
     rng = random.Random(seed)
-    place = Place(monkeypatch, rng.choice(SEARCH_S), rng.uniform(0, BUSY_S - AGAIN_S))
+    place = Place(monkeypatch, rng.choice(SEARCH_S), rng.uniform(0, BUSY_S - RETRY_S))
     found: object = opening.connection_to(port, "upload", 9600, 1)
     assert found is place
-    assert place.now_s <= place.free_s + AGAIN_S
+    assert place.now_s <= place.free_s + RETRY_S
 
 
 @pytest.mark.parametrize("search_s", SEARCH_S)
@@ -85,7 +85,7 @@ def test_a_port_that_stays_busy_is_said_to_be(
     with pytest.raises(RobotError) as busy:
         opening.connection_to(port, "upload", 9600, 1)
     assert busy.value.reason == "port_busy"
-    assert BUSY_S < place.now_s - began_s < BUSY_S + 2 * AGAIN_S
+    assert BUSY_S < place.now_s - began_s < BUSY_S + 2 * RETRY_S
     place.reason, place.tries = "port_gone", 0
     with pytest.raises(RobotError) as gone:
         opening.connection_to(port, "upload", 9600, 1)

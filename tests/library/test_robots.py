@@ -347,17 +347,17 @@ def test_what_ended_before_a_run_is_not_its_end() -> None:
     follower = Follower(5)
     stopped = event("STOPPED")
     started = [StartedEvent(run, 1) for run in (5, 6)]
-    assert not follower.is_about(stopped, "P")
+    assert not follower.follow(stopped, "P")
     assert follower.end(DoneEvent(4)) is None
-    assert follower.is_about(started[0], "P")
-    assert follower.is_about(stopped, "P")
+    assert follower.follow(started[0], "P")
+    assert follower.follow(stopped, "P")
     assert follower.end(stopped) == End("STOPPED")
     assert follower.end(DoneEvent(5)) == End("DONE")
     for last, reason in (
         (started[1], "replaced"), (LostEvent(), "link_lost"), (RestartedEvent(), "restarted")
     ):  # fmt: skip
         with fails(tiniscript.RobotError, reason):
-            follower.is_about(last, "P")
+            follower.follow(last, "P")
 
 
 def test_a_reset_during_a_run_is_no_end_of_the_program(pty_robot: PtyRobot) -> None:

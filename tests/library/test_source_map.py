@@ -184,7 +184,7 @@ def test_a_variable_is_a_yes_no_where_a_show_of_it_is_one() -> None:
 
 
 def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(source_map, "KEPT", 3)
+    monkeypatch.setattr(source_map, "MOST_MAPS", 3)
     programs = [compiled(f"W({k})") for k in range(1, 6)]
     for k, each in enumerate(programs):
         source_map.remember(each.image, mapped(each))

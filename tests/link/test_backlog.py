@@ -9,7 +9,14 @@ from contextlib import closing
 import pytest
 
 from tests.support.waiting import until
-from tiniscript.link.outcomes import KEPT, Backlog, MissedEvent, ShownEvent, StartedEvent, Told
+from tiniscript.link.outcomes import (
+    MOST_EVENTS,
+    Backlog,
+    MissedEvent,
+    ShownEvent,
+    StartedEvent,
+    TimedEvent,
+)
 from tiniscript.link.payloads import DoneEvent, FaultEvent
 from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.session import Session
@@ -65,7 +72,7 @@ def test_a_line_that_nobody_looks_at_keeps_little() -> None:
         found.append(told[1])
     line.close()
     assert kept_bytes < MOST_BYTES
-    assert len(found) <= KEPT + 1
+    assert len(found) <= MOST_EVENTS + 1
     assert found[0].name == "MISSED"
     assert found[0].count + len(found) - 1 == 20 * PIECES
 
@@ -99,30 +106,30 @@ def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch
     assert (pieces, line.end_reason) == ([CHATTER], "socket disconnected")
 
 
-def shown(number: int) -> Told:
+def shown(number: int) -> TimedEvent:
     return number, ShownEvent(number, 0)
 
 
 def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
     backlog = Backlog()
     backlog.put([(0, StartedEvent(1, 2)), shown(0)])
-    backlog.put(shown(number) for number in range(1, 10 * KEPT))
+    backlog.put(shown(number) for number in range(1, 10 * MOST_EVENTS))
     backlog.put([(0, FaultEvent(1, 2, 3, 4))])
     found = [backlog.take()[1] for _ in range(len(backlog))]
     assert [each.name for each in found[:3]] == ["MISSED", "STARTED", "SHOW"]
-    assert found[-1].name == "FAULT" and len(found) == KEPT + 1
-    assert found[-2] == ShownEvent(10 * KEPT - 1, 0), "the newest is there"
-    assert found[0] == MissedEvent(10 * KEPT + 2 - KEPT)
+    assert found[-1].name == "FAULT" and len(found) == MOST_EVENTS + 1
+    assert found[-2] == ShownEvent(10 * MOST_EVENTS - 1, 0), "the newest is there"
+    assert found[0] == MissedEvent(10 * MOST_EVENTS + 2 - MOST_EVENTS)
     assert len(backlog) == 0
 
 
 def test_what_has_room_is_not_missed() -> None:
     backlog = Backlog()
-    backlog.put(shown(number) for number in range(KEPT))
-    assert [backlog.take()[0] for _ in range(KEPT)] == list(range(KEPT))
+    backlog.put(shown(number) for number in range(MOST_EVENTS))
+    assert [backlog.take()[0] for _ in range(MOST_EVENTS)] == list(range(MOST_EVENTS))
 
 
 def test_a_robot_that_only_tells_how_programs_end_is_bounded_too() -> None:
     backlog = Backlog()
-    backlog.put((number, DoneEvent(number)) for number in range(5 * KEPT))
-    assert len(backlog) == KEPT + 1
+    backlog.put((number, DoneEvent(number)) for number in range(5 * MOST_EVENTS))
+    assert len(backlog) == MOST_EVENTS + 1

@@ -94,11 +94,11 @@ STAGES = ("before it is connected", "connected", "notify")
 @pytest.fixture
 def loop(monkeypatch: pytest.MonkeyPatch) -> Iterator[event_loop.EventLoop]:
     monkeypatch.setattr(bluetooth, "BleakClient", Client)
-    bluetooth._turn.cache_clear()  # the lock is of one loop
+    bluetooth._connect_lock.cache_clear()  # the lock is of one loop
     found = event_loop.EventLoop()
     yield found
     found.close()
-    bluetooth._turn.cache_clear()
+    bluetooth._connect_lock.cache_clear()
 
 
 def connects(loop: event_loop.EventLoop, device: Any) -> bluetooth.BluetoothPort:

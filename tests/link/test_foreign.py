@@ -15,7 +15,7 @@ from tests.support.foreign_boards import RECORDINGS, Recording
 from tests.support.uart import at_speed
 from tiniscript.link import foreign
 from tiniscript.link.connection import FOREIGN, KEPT_BYTES, LinkConnection, reason_of
-from tiniscript.link.foreign import identify_board, stranger
+from tiniscript.link.foreign import identify_board, identify_stranger
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES
 from tiniscript.link.outcomes import LOST
@@ -92,7 +92,7 @@ def test_noise_before_a_recording_changes_nothing(recording: Recording, before: 
 def test_two_bytes_alone_say_nothing() -> None:
     """Neither those of an mBot nor the version of Firmata's protocol: noise has them, too."""
     for few in (b"\xff\x55", b"\xf9\x02\x05", b"\xff\x55\r", b"\xf0\x79\x02\x05\xf7", b"\r\n"):
-        assert stranger(few) is None
+        assert identify_stranger(few) is None
 
 
 def test_the_two_that_send_high_bytes_are_told_apart() -> None:
@@ -114,7 +114,7 @@ def test_noise_of_a_wrong_speed_is_no_board(recording: Recording) -> None:
             assert (noise == recording.data) == (sent == heard)
             if sent != heard:
                 assert identify_board(noise) is None, (sent, heard)
-                assert stranger(noise) is None, (sent, heard)
+                assert identify_stranger(noise) is None, (sent, heard)
 
 
 @given(st.binary(max_size=300))
@@ -125,16 +125,16 @@ def test_random_bytes_are_no_board(data: bytes) -> None:
 def test_much_noise_is_no_board() -> None:
     chance = random.Random(5)
     for _ in range(300):
-        assert stranger(bytes(chance.choices(range(256), k=500))) is None
+        assert identify_stranger(bytes(chance.choices(range(256), k=500))) is None
 
 
 @given(st.lists(st.sampled_from(OURS), min_size=1, max_size=6), st.binary(max_size=20))
 def test_a_robot_is_no_board(traffic: list[bytes], noise: bytes) -> None:
     """With any noise before it and behind: its frames and its lines are looked at first."""
     for data in (b"".join(traffic), noise + b"\0" + b"".join(traffic) + noise):
-        assert stranger(data) is None or not foreign.is_robot(data)
+        assert identify_stranger(data) is None or not foreign.is_robot(data)
         if any(foreign.is_robot(each) for each in traffic):
-            assert stranger(b"\0" + b"".join(traffic)) is None
+            assert identify_stranger(b"\0" + b"".join(traffic)) is None
 
 
 @given(
@@ -146,7 +146,7 @@ def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
 ) -> None:
     frame = encode_frame(Frame(number, 3, 7, data[:50], is_reply))
     assert foreign.is_robot(frame)
-    assert stranger(b"\0" + frame) is None
+    assert identify_stranger(b"\0" + frame) is None
 
 
 @pytest.mark.sampled("piece", keep=40)
@@ -183,8 +183,8 @@ def test_what_a_computer_sends_is_no_robot_s() -> None:
     ],
 )
 def test_what_is_text(data: bytes, said: str) -> None:
-    assert foreign.readable(data) == said
-    found = stranger(data)
+    assert foreign.readable_line(data) == said
+    found = identify_stranger(data)
     assert (found.said if found else "") == said
     assert found is None or found.is_sure == (b"\n" in data)
 
@@ -194,7 +194,7 @@ def test_what_is_text(data: bytes, said: str) -> None:
 def test_any_line_of_text_is_text(line: str) -> None:
     """Bytes that are text at this speed are never those of a wrong speed."""
     data = f"{line}\r\n".encode()
-    found = stranger(data)
+    found = identify_stranger(data)
     assert found is not None or foreign.is_robot(data)
 
 

@@ -8,7 +8,7 @@ import random
 import pytest
 
 from tiniscript.link.transports import READ_S
-from tiniscript.link.transports.pushed import ENDED, KEPT_BYTES, PushedTransport
+from tiniscript.link.transports.pushed import END_REASON, KEPT_BYTES, PushedTransport
 
 
 class Waits:
@@ -63,7 +63,7 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
             is_cancelled = True
         elif what == "end":
             port.end("")
-            why = why or ENDED
+            why = why or END_REASON
         else:
             size = rng.choice((1, 20, 4096))
             late = rng.randbytes(5) if what == "while it waits" else b""

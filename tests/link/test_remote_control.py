@@ -30,7 +30,7 @@ from tiniscript.link.messages import (
     encode_payload,
 )
 from tiniscript.link.outcomes import CANCELLED, LOST
-from tiniscript.link.remote import GAP_MS, NOTHING, Pressed, pressed_of
+from tiniscript.link.remote import GAP_MS, NOTHING_PRESSED, Pressed, pressed_of
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -44,7 +44,7 @@ def readings(held: Pressed) -> tuple[int, ...]:
     return (*(held.keys >> key & 1 for key in range(6)), held.x * 1000, held.y * 1000)
 
 
-NONE = readings(NOTHING)
+NONE = readings(NOTHING_PRESSED)
 
 
 class Hand:
@@ -52,7 +52,7 @@ class Hand:
 
     def __init__(self, session: Session, robot: HostFirmware) -> None:
         self.session, self.robot = session, robot
-        self.held = NOTHING
+        self.held = NOTHING_PRESSED
         self.loses: Callable[[], bool] = lambda: False  # the line, a packet
         self.words: list[tuple[int, Pressed]] = []  # that were sent
         self.outcomes: list[int] = []
@@ -70,7 +70,7 @@ class Hand:
     def talk(self, milliseconds: int) -> None:
         robot, session = self.robot, self.session
         for _ in range(milliseconds):
-            if self.held != NOTHING and robot.now_ms - self._said_ms >= 100:
+            if self.held != NOTHING_PRESSED and robot.now_ms - self._said_ms >= 100:
                 self._say()
             data = session.poll(robot.now_ms)
             for packet in data.split(b"\0"):
@@ -99,7 +99,14 @@ def hand() -> Hand:
 
 def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
     one = hand()
-    for held in (UP, Pressed(0, 100, -100), pressed_of(["UP", "B"], -1, 30), NOTHING, A, NOTHING):
+    for held in (
+        UP,
+        Pressed(0, 100, -100),
+        pressed_of(["UP", "B"], -1, 30),
+        NOTHING_PRESSED,
+        A,
+        NOTHING_PRESSED,
+    ):
         one.holds(held)
         one.talk(40)
         assert one.robot.remote() == readings(held)
@@ -116,7 +123,7 @@ def test_a_word_every_200_ms_while_something_is_held_and_none_while_nothing_is()
     one.holds(UP)
     one.talk(2001)
     assert len(one.words) == 11
-    one.holds(NOTHING)
+    one.holds(NOTHING_PRESSED)
     one.talk(3000)
     assert len(one.words) == 12
     numbers = [seq for seq, _ in one.words]
@@ -125,7 +132,7 @@ def test_a_word_every_200_ms_while_something_is_held_and_none_while_nothing_is()
 
 def test_a_word_waits_only_while_the_one_before_has_no_answer() -> None:
     one = hand()
-    for held in (UP, NOTHING, A, UP, NOTHING):
+    for held in (UP, NOTHING_PRESSED, A, UP, NOTHING_PRESSED):
         one.holds(held)
         one.talk(5)
         assert one.words[-1][1] == held
@@ -133,11 +140,11 @@ def test_a_word_waits_only_while_the_one_before_has_no_answer() -> None:
     count = len(one.words)
     one.holds(UP)
     one.talk(1)
-    one.holds(NOTHING)
+    one.holds(NOTHING_PRESSED)
     one.talk(GAP_MS - 1)
     assert [word for _, word in one.words[count:]] == [UP]
     one.talk(1)
-    assert [word for _, word in one.words[count:]] == [UP, NOTHING]
+    assert [word for _, word in one.words[count:]] == [UP, NOTHING_PRESSED]
 
 
 def test_words_alone_keep_an_attached_program_alive() -> None:
@@ -147,7 +154,7 @@ def test_words_alone_keep_an_attached_program_alive() -> None:
     one.holds(UP)
     one.talk(3000)
     assert one.robot.did[-1].endswith("MOTORS 40 40")
-    one.holds(NOTHING)
+    one.holds(NOTHING_PRESSED)
     one.talk(1100)
     assert one.robot.did[-1].endswith("FAULTED"), "and nothing else does"
 
@@ -166,7 +173,7 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
         one.talk(HOLD_MS)
         assert one.robot.remote() == NONE
         one.loses = lambda: False
-        one.holds(NOTHING)
+        one.holds(NOTHING_PRESSED)
         one.talk(250)
 
 
@@ -184,7 +191,7 @@ def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
             one.talk(50)
             looks += 1
             read += one.robot.remote() == readings(one.held)
-        one.holds(NOTHING)
+        one.holds(NOTHING_PRESSED)
         one.talk(HOLD_MS)
         for _ in range(10):
             assert one.robot.remote() == NONE
@@ -266,7 +273,7 @@ def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
     assert one.robot.until(one.session, one.session.upload(image(DRIVES), saves=False)) == OK
     name = one.session.name(b"Ana")
     one.talk(300)
-    for held in (UP, NOTHING, A, NOTHING):
+    for held in (UP, NOTHING_PRESSED, A, NOTHING_PRESSED):
         one.holds(held)
         one.talk(60)
         assert one.robot.remote() == readings(held)
@@ -285,7 +292,7 @@ def test_a_stop_lets_all_go_and_keys_release_nothing_after_it() -> None:
     one.holds(UP)
     one.talk(300)
     one.session.stop(one.robot.now_ms)
-    one.held = NOTHING
+    one.held = NOTHING_PRESSED
     one.talk(300)
     assert one.robot.is_latched
     did = len(one.robot.did)
@@ -478,7 +485,7 @@ def test_a_word_that_comes_twice_counts_once() -> None:
     wire = Wire()
     word = wire.keys(UP)
     assert wire.answer(word) == "OK"
-    assert wire.answer(wire.keys(NOTHING)) == "OK"
+    assert wire.answer(wire.keys(NOTHING_PRESSED)) == "OK"
     assert wire.answer(word) == "STALE"
     assert wire.robot.remote() == NONE
     last = wire.keys(A)

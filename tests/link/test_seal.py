@@ -14,7 +14,7 @@ from tests.machines.link import cpp_link
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME, SEALED_PAYLOAD_BYTES
 from tiniscript.link.receiver import Receiver
-from tiniscript.link.seal import LAST, Seal, session_key, siphash
+from tiniscript.link.seal import LAST_COUNTER, Seal, session_key, siphash
 
 KEY = bytes(range(16))
 CHALLENGE = bytes.fromhex("a1a2a3a4a5a6a7a8")
@@ -74,7 +74,9 @@ def random_frame(chance: random.Random, is_reply: bool) -> Frame:
 
 
 def counters(chance: random.Random) -> int:
-    return chance.choice((1, 2, 0xFF, 0x100, LAST - 1, LAST, chance.randrange(1, LAST)))
+    return chance.choice(
+        (1, 2, 0xFF, 0x100, LAST_COUNTER - 1, LAST_COUNTER, chance.randrange(1, LAST_COUNTER))
+    )
 
 
 def test_the_vectors_of_the_authors() -> None:
@@ -141,16 +143,16 @@ def test_another_origin_is_another_key() -> None:
 
 
 def test_a_counter_at_its_end_seals_nothing_more() -> None:
-    mine = seal(sent=LAST - 1)
+    mine = seal(sent=LAST_COUNTER - 1)
     assert not mine.is_spent
     mine.seal_frame(Frame(2, 1, 1))
     assert mine.is_spent
     with pytest.raises(AssertionError):
         mine.seal_frame(Frame(2, 1, 1))
     marked = whole(Frame(2, 1, 1, is_reply=True, is_sealed=True))
-    assert cpp_link().sealed(KEY, ORIGIN, 0, LAST - 1, marked)
-    assert cpp_link().sealed(KEY, ORIGIN, 0, LAST, marked) == b""
-    assert not cpp_link().opens(KEY, ORIGIN, LAST, by_hand(Frame(2, 1, 1), LAST))
+    assert cpp_link().sealed(KEY, ORIGIN, 0, LAST_COUNTER - 1, marked)
+    assert cpp_link().sealed(KEY, ORIGIN, 0, LAST_COUNTER, marked) == b""
+    assert not cpp_link().opens(KEY, ORIGIN, LAST_COUNTER, by_hand(Frame(2, 1, 1), LAST_COUNTER))
 
 
 def test_no_sealed_frame_is_a_line_of_text() -> None:

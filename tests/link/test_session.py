@@ -27,7 +27,7 @@ from tiniscript.link.messages import (
     STATE_STOPPED,
     STATUSES,
 )
-from tiniscript.link.outcomes import CANCELLED, LOST, MIDWAY, PlaceEvent, TextEvent
+from tiniscript.link.outcomes import CANCELLED, DETAIL_MIDWAY, LOST, PlaceEvent, TextEvent
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
 from tiniscript.link.round_trips import DOUBLED_MS, LIVELY_MS
@@ -268,7 +268,7 @@ def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> Non
             session.receive(answer(clear, {}, epoch=11), 20)
         session.poll(20)
         session.stop(25)
-        assert live.outcome and live.outcome.detail == (MIDWAY if is_cleared else 0)
+        assert live.outcome and live.outcome.detail == (DETAIL_MIDWAY if is_cleared else 0)
     session = greeted()
     live = session.live(FORWARD)
     session.receive(answer(session.poll(0), {}, status=STATUSES["BUSY"]), 5)

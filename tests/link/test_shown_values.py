@@ -12,7 +12,7 @@ from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME, PLACES, STATE_IDLE, STATE_RUNNING
 from tiniscript.link.outcomes import Event, MissedEvent, ShownEvent
 from tiniscript.link.payloads import DoneEvent
-from tiniscript.link.session import ASKS_PLACE, Session
+from tiniscript.link.session import PLACE_QUESTION, Session
 
 PROGRAM = unpack(pack("SI", 0, FORWARD)).checksum
 OTHER = 0xABCDEF01
@@ -49,7 +49,7 @@ def answer_to_ping(
     """Return the robot's answer to PING, which the session sends now and asks for its place."""
     sent = session.poll(now_ms)
     frame = decode_frame(sent.strip(b"\0"))
-    assert frame and (frame.number, frame.payload) == (BY_NAME["PING"].number, ASKS_PLACE)
+    assert frame and (frame.number, frame.payload) == (BY_NAME["PING"].number, PLACE_QUESTION)
     place = struct.pack("<HI", 9, program) if state == STATE_RUNNING else b""
     return answer(sent, {"state": state, "run": run, "place": place})
 

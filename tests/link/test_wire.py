@@ -48,7 +48,7 @@ def test_it_does_not_listen_for_ever() -> None:
 
 def test_a_board_restarts_when_its_lines_come_back() -> None:
     port = Port()
-    Wire(port).restart()
+    Wire(port).reset_board()
     assert sorted(port.lines[:2]) == [("dtr", False), ("rts", False)]
     assert sorted(port.lines[2:]) == [("dtr", True), ("rts", True)]
 

@@ -8,7 +8,7 @@ from tests.machines.host import Ran
 from tiniscript.base.kit import Kit
 from tiniscript.base.trace import Ending
 from tiniscript.base.trace import Senses as Lists
-from tiniscript.bytecode.image import EVERYTHING
+from tiniscript.bytecode.image import ALL_NEEDS
 from tiniscript.bytecode.verify import load_image
 from tiniscript.vm.runner import run
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tests.machines import Senses
 
 
-def ran_python(image: bytes, kit: Kit, senses: Senses, has: int = EVERYTHING) -> Ran:
+def ran_python(image: bytes, kit: Kit, senses: Senses, has: int = ALL_NEEDS) -> Ran:
     """Run an image, which is read and verified as a machine that has so much of `needs` does it."""
     code = load_image(image, kit, has).code
     events = run(code, kit, lists_of(kit, senses), senses.max_ms, senses.max_steps, senses.seed)

@@ -21,7 +21,7 @@ from tests.machines.host import SOURCES, WARNINGS, Process, Ran, contents, kept,
 from tests.machines.text_reader import Answer
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS
-from tiniscript.codegen.text.problems import NAMES
+from tiniscript.codegen.text.problems import PROBLEM_NAMES
 from tiniscript.robots.kit_words import kit_words
 from tools.builds import chips
 
@@ -74,7 +74,7 @@ def _answer(bytes_io: BytesIO) -> Answer:
         return Answer()
     first, second = bytes_io.read(2)
     if kind == 1:
-        return Answer(problem=NAMES[first], column=second)
+        return Answer(problem=PROBLEM_NAMES[first], column=second)
     assert kind == 0
     return Answer(start=STARTS[first], code=bytes_io.read(second))
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tests.machines.host import FLAGS, SOURCES, Process, compiled, files_in, texts
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS
-from tiniscript.codegen.text.problems import NAMES
+from tiniscript.codegen.text.problems import PROBLEM_NAMES
 from tiniscript.robots.kit_words import kit_words
 
 LARGEST_ROOM = 60_000
@@ -61,7 +61,7 @@ def answer(line: str) -> Answer:
     if word == "OK":
         return Answer(start=STARTS[int(rest[0])], code=bytes.fromhex("".join(rest[1:])))
     if word == "NO":
-        return Answer(problem=NAMES[int(rest[0])], column=int(rest[1]))
+        return Answer(problem=PROBLEM_NAMES[int(rest[0])], column=int(rest[1]))
     assert word == "MORE"
     return Answer()
 

@@ -41,7 +41,7 @@ def all_wanted(wire: SimulatedWire, end: Simulated, name: str, baud: int) -> Mod
     module = met(wire)
     wanted = WantedSettings(name, "135790"[: module.dialect.pin_digits], baud)
     outcomes = ended(wire, wanted, module)
-    assert [outcome.how in set_up.GOOD for outcome in outcomes] == [True] * 3
+    assert [outcome.how in set_up.GOOD_OUTCOMES for outcome in outcomes] == [True] * 3
     assert (end.name, end.pin, end.data_baud) == wanted
     return module
 
@@ -102,7 +102,8 @@ def test_a_module_that_says_no_version_is_found_all_the_same(kind: str) -> None:
     module = met(wire)
     assert (module.dialect.name, module.version) == (kind, "")
     assert [
-        outcome.how in set_up.GOOD for outcome in ended(wire, WantedSettings("Tini"), module)
+        outcome.how in set_up.GOOD_OUTCOMES
+        for outcome in ended(wire, WantedSettings("Tini"), module)
     ] == [True]
     assert end.name == "Tini"
 
@@ -206,7 +207,7 @@ def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, comman
     )
     is_whole = end.is_on
     assert is_whole == (
-        len(outcomes) == 3 and all(outcome.how in set_up.GOOD for outcome in outcomes)
+        len(outcomes) == 3 and all(outcome.how in set_up.GOOD_OUTCOMES for outcome in outcomes)
     )
     end.breaks_after = None
     if kind.startswith("HC-05"):

@@ -18,7 +18,7 @@ from tests.support.casefile import ROOT
 from tests.support.command import process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.pty_robot import PtyRobot, on
-from tiniscript.cli.commands.doctor import BLANK, STEPS
+from tiniscript.cli.commands.doctor import BLANK_FIELD, FORM_STEPS
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts.options import chosen
 from tools.site.documents import sources
@@ -70,7 +70,9 @@ def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_
     # a busy computer may be late
     answers = r"1\. It answers: \d+ of 20 arrived at once, and 0 arrived damaged"
     assert re.fullmatch(answers, form[3])
-    assert [row.endswith(f": {BLANK}") for row in form[6::3]] == [True] * (len(STEPS) - 1)
+    assert [row.endswith(f": {BLANK_FIELD}") for row in form[6::3]] == [True] * (
+        len(FORM_STEPS) - 1
+    )
     said = [(form[k + 1], form[k + 2]) for k in range(3, len(form), 3)]
     shown = [(f"   do: {do}", f"   see: {see}") for do, see in steps(LISTS["en"]).values()]
     assert said == [(do.replace("\\|", "|"), see.replace("\\|", "|")) for do, see in shown]
@@ -82,7 +84,7 @@ def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
     report = tmp_path / "bring-up.txt"
     assert process("doctor", "--port", "/dev/ttyUSB99", "--report", report).code == 3
     form = report.read_text("utf-8").split("\n\n")[-1].splitlines()
-    assert form[2:4] == ["robot: none answered", f"1. It answers: {BLANK}"]
+    assert form[2:4] == ["robot: none answered", f"1. It answers: {BLANK_FIELD}"]
 
 
 @pytest.mark.parametrize("before", ["", "(\n"])

@@ -28,7 +28,12 @@ FILES = [
 ]
 VM = SOURCES / "src" / "vm"
 CHOOSING = {"build.h", "cpu.h", "layout_avr.h"}
-OF_AVR = {"cpu_avr.h", "reader_calls_avr.h", "receiver_avr.h", "link_avr.h"}  # for its compiler alone
+OF_AVR = {
+    "cpu_avr.h",
+    "reader_calls_avr.h",
+    "receiver_avr.h",
+    "link_avr.h",
+}  # for its compiler alone
 GENERATED_BY_ROBOT = {"texts.cpp"}  # a table for robots that say all, and a shorter one
 ASSEMBLY_THAT_CHOOSES = {"bytecode_avr.S"}
 CONDITION = re.compile(r"#\s*(if|ifdef|ifndef|elif|else|endif)\b")

@@ -17,7 +17,7 @@ import tiniscript
 from tests.support.casefile import ROOT, Example, examples
 from tests.support.rows import each_row
 from tiniscript.cli import main
-from tools.site.documents import FRONT, documents, links, name_in, sources
+from tools.site.documents import FRONT_PAGE, documents, links, name_in, sources
 
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
 
@@ -49,10 +49,10 @@ def commands() -> list[Command]:
     return found
 
 
-@each_row("language, name", sources(ROOT, FRONT).items())
+@each_row("language, name", sources(ROOT, FRONT_PAGE).items())
 def test_every_readme_leads_to_the_others(language: str, name: str) -> None:
     row = (ROOT / name).read_text(encoding="utf-8").splitlines()[2]
-    assert row == " · ".join(links(language, FRONT, sources(ROOT, FRONT)))
+    assert row == " · ".join(links(language, FRONT_PAGE, sources(ROOT, FRONT_PAGE)))
 
 
 @each_row(

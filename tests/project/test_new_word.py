@@ -265,10 +265,10 @@ def test_it_is_on_the_poster(
     language: str, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(languages, "FOLDER", with_texts(tmp_path / "said"))
-    languages.forget()
+    languages.forget_languages()
     monkeypatch.setitem(WORDS, "CHIME", HORN._replace(text="CHIME"))
     lines = [line for line in poster.page(language) if isinstance(line, Line)]
-    languages.forget()
+    languages.forget_languages()
     texts = [line.text for line in lines]
     assert texts[texts.index(HORN.text) + 1] == says
     assert texts[texts.index("CHIME") + 1] == "= BEEP(0.5, 440)"

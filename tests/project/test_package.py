@@ -22,7 +22,7 @@ from tests.support.command import rest_of
 from tests.support.needs import need
 from tests.support.platformio import prepared
 from tests.support.waiting import HANGS_S
-from tiniscript.base.languages import kept_files
+from tiniscript.base.languages import cache_files
 from tools.release import facts
 
 SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc", ".pio",
@@ -139,7 +139,7 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
         if not name.startswith("tiniscript/languages/")
         or (name.endswith(".txt") and not name.endswith("/seen.txt"))
     }  # fmt: skip
-    package |= {f"tiniscript/languages/{name}" for name in kept_files()}
+    package |= {f"tiniscript/languages/{name}" for name in cache_files()}
     sources = {
         SOURCES + name.removeprefix("vm_arduino/")
         for name in kept

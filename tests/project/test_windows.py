@@ -23,7 +23,7 @@ from tests.support.rows import each_row
 from tests.support.texts import said as said_in
 from tiniscript.base import files
 from tiniscript.base.languages import languages
-from tiniscript.cli import CLOSED, streams
+from tiniscript.cli import EXIT_OF_CLOSED_PIPE, streams
 from tiniscript.cli.windows_names import has_no_file, is_device
 
 PROGRAM = "SI|F(2, 80)\n"
@@ -132,7 +132,7 @@ def test_a_program_of_notepad_is_the_same_program(
 def encoded(said: str, encoding: str) -> str:
     """Return what is read of a sentence that was written in an encoding."""
     streams.register()
-    return said.encode(encoding, streams.NAME).decode(encoding)
+    return said.encode(encoding, streams.ERROR_HANDLER).decode(encoding)
 
 
 @each_row("encoding", ["cp1252", "cp850", "cp437"])
@@ -309,14 +309,14 @@ def test_colors_are_for_consoles_that_read_them(
     monkeypatch.setattr(ctypes, "windll", SimpleNamespace(kernel32=kernel), raising=False)
     monkeypatch.delenv("NO_COLOR", raising=False)
     console = Console()
-    assert not streams.are_read(console), "it has no number"
+    assert not streams.reads_sequences(console), "it has no number"
     monkeypatch.setattr(console, "fileno", lambda: 1)
-    assert streams.are_read(console) is is_read
+    assert streams.reads_sequences(console) is is_read
     assert kernel.mode == after
     assert streams.has_colors(console) is is_read
     monkeypatch.setenv("NO_COLOR", "1")
     assert not streams.has_colors(console)
-    assert not streams.are_read(io.StringIO())
+    assert not streams.reads_sequences(io.StringIO())
 
 
 LEFT = """\
@@ -339,7 +339,7 @@ sys.exit(main(["help"]))
 @pytest.mark.parametrize(
     ("platform", "number", "about", "value", "code"),
     [
-        ("win32", errno.EINVAL, "other", None, CLOSED),
+        ("win32", errno.EINVAL, "other", None, EXIT_OF_CLOSED_PIPE),
         ("win32", errno.EINVAL, "failure.filename", "a.bin", 2),
         ("win32", errno.EINVAL, "failure.winerror", 87, 2),
         ("win32", errno.ENOSPC, "other", None, 2),
@@ -356,7 +356,7 @@ def test_a_reader_that_has_left_is_no_mistake(
         env={"PYTHONPATH": str(ROOT / "compiler"), "LC_ALL": "C.UTF-8"},
     )  # fmt: skip
     assert completed.returncode == code
-    assert bool(completed.stderr) is (code != CLOSED), completed.stderr
+    assert bool(completed.stderr) is (code != EXIT_OF_CLOSED_PIPE), completed.stderr
 
 
 # -- files

@@ -15,7 +15,7 @@ import yaml
 from tests.support.casefile import ROOT
 from tests.support.command import process
 from tools.release.__main__ import main as release
-from tools.site.documents import FRONT, sources
+from tools.site.documents import FRONT_PAGE, sources
 
 FOLDER = ROOT / ".github" / "workflows"
 FILES = sorted(FOLDER.glob("*.yml"))
@@ -77,7 +77,9 @@ def test_a_workflow_trusts_nobody(path: Path) -> None:
 
 def test_visitors_commands_are_those_of_readme() -> None:
     runs = [step.get("run", "") for name, step in steps() if name == "checks.yml"]
-    texts = [(ROOT / name).read_text(encoding="utf-8") for name in sources(ROOT, FRONT).values()]
+    texts = [
+        (ROOT / name).read_text(encoding="utf-8") for name in sources(ROOT, FRONT_PAGE).values()
+    ]
     for line in (r"py tools\try.py", "python3 tools/try.py", "sh tools/try.sh"):
         assert all(f"| `{line}` |" in text for text in texts)
         assert line in runs

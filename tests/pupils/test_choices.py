@@ -8,7 +8,7 @@ from tests.pupils.corpus import check
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import CHECKS, is_better, repair_program
+from tiniscript.diagnostics.fixing import MOST_CHECKS, is_better, repair_program
 from tiniscript.library import compiling
 
 
@@ -34,9 +34,11 @@ def test_a_program_is_checked_so_often_and_no_more() -> None:
 
     def endless(text: str) -> list[Diagnostic]:
         texts.append(text)
-        return [missing] * (2 * CHECKS - len(texts))
+        return [missing] * (2 * MOST_CHECKS - len(texts))
 
-    assert repair_program("F(2 80)", endless).repairs == CHECKS - 1 and len(texts) == CHECKS
+    assert (
+        repair_program("F(2 80)", endless).repairs == MOST_CHECKS - 1 and len(texts) == MOST_CHECKS
+    )
 
 
 def test_a_repair_with_a_mistake_in_it_is_none() -> None:

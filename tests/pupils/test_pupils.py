@@ -18,7 +18,7 @@ from tests.support.rows import go_through
 from tiniscript.base.source import Edit, Source, apply_edits
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import edits_of, offer, repair_program
+from tiniscript.diagnostics.fixing import edits_of, edits_offered, repair_program
 
 # Repairs that write a number in another way: a unit, a letter for a digit, `X++`, `50.`, and how
 # often `I = 1 TO 4` and `LOOP(I = 0; I < 4; I++)` go round.
@@ -130,7 +130,9 @@ def helps_and_keeps_the_numbers(entry: Entry) -> None:
             continue
         after = check(apply_edits(entry.program, edits))
         if mistakes(after) > mistakes(diagnostics):  # it has uncovered several: no button makes it
-            assert not offer(entry.program, diagnostics, diagnostics.index(diagnostic), check)
+            assert not edits_offered(
+                entry.program, diagnostics, diagnostics.index(diagnostic), check
+            )
         assert mistakes(after) <= mistakes(diagnostics) or not (repair and repair.is_sure)
         if mistakes(after) == mistakes(diagnostics):  # it has uncovered another one
             assert diagnostic not in after
@@ -167,7 +169,7 @@ def test_what_a_message_says_to_write_is_offered(programs: tuple[Entry, ...]) ->
 def offers_what_it_says(entry: Entry) -> None:
     diagnostics, text = check(entry.program), entry.program
     for which, diagnostic in enumerate(diagnostics):
-        edits = offer(text, diagnostics, which, check)
+        edits = edits_offered(text, diagnostics, which, check)
         names_one = any(diagnostic.values.get(gap) for gap in WRITTEN.get(diagnostic.code, ()))
         assert edits or not names_one, diagnostic
         if edits and not diagnostic.is_mistake:

@@ -11,7 +11,7 @@ from tests.pupils.corpus import check
 from tests.support.rows import each_row
 from tiniscript.base.languages import languages, table
 from tiniscript.base.source import Edit, Source, apply_edits
-from tiniscript.base.words import SINCE, WORDS
+from tiniscript.base.words import VERSION_OF_WORD, WORDS
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.diagnostics.rendering import message
@@ -79,7 +79,7 @@ def test_a_part_of_a_turn_is_degrees(wrong: str, right: str) -> None:
 
 RENAMED = [
     word for word, its in WORDS.items()
-    if word not in SINCE and its.role.name != "setup" and not its.role.is_of_blocks
+    if word not in VERSION_OF_WORD and its.role.name != "setup" and not its.role.is_of_blocks
 ]  # fmt: skip
 
 

@@ -32,7 +32,7 @@ def test_a_board_is_drawn_and_built(board: str) -> None:
 def test_a_board_with_an_avr_is_written_and_has_sketches(board: str) -> None:
     written = {firmware_board for firmware_board, _ in bootloaders.BOARDS.values()}
     assert board in written, "flash/bootloaders.py says how its firmware is written"
-    assert board in writing.BOARDS, "sketch/writing.py says how a sketch calls it"
+    assert board in writing.BOARD_TITLES, "sketch/writing.py says how a sketch calls it"
     assert board in VARIANTS, "tests/machines/board.py names the core's folder with its pins"
 
 
@@ -52,7 +52,7 @@ def test_every_board_is_told_to_people() -> None:
 
 
 def test_no_table_has_a_board_without_firmware() -> None:
-    assert set(SIDES) | set(writing.BOARDS) <= set(firmware.BOARDS)
+    assert set(SIDES) | set(writing.BOARD_TITLES) <= set(firmware.BOARDS)
     assert {board for board, _ in bootloaders.BOARDS.values()} <= set(firmware.BOARDS)
 
 

@@ -21,7 +21,7 @@ from tiniscript.bytecode.image import ImageRefused, unpack
 from tiniscript.bytecode.verify import Refused, load_image
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.diagnostics import codes
-from tiniscript.library.compiling import Compiled, compile_text, for_robot
+from tiniscript.library.compiling import Compiled, compile_text, fit_to_robot
 from tiniscript.library.runs import run
 from tiniscript.studio import block_reading
 from tiniscript.vm.runner import run as run_code
@@ -69,7 +69,7 @@ def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
 
     now = images()
     assert sum(map(bool, now)) > 300
-    monkeypatch.setattr(kits, "OWN_BESIDE_REMOTE", -1)
+    monkeypatch.setattr(kits, "MOST_SENSORS_BESIDE_REMOTE", -1)
     assert TINIBOT.readings == TINIBOT.sensors
     assert images() == now
 
@@ -292,9 +292,9 @@ def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
     for verb in (["check"], ["show"], ["run", "--max-time", "0.1"]):
         assert tsc(*verb, *of).code == 0
     profile = robots.load(robot)
-    made = for_robot(compile_text(text, profile.kit), profile)
+    made = fit_to_robot(compile_text(text, profile.kit), profile)
     assert made.is_right == has and bool(made.image) == has
-    mine = for_robot(compile_text("KEY_A = 1;SHOW(KEY_A)", profile.kit), profile)
+    mine = fit_to_robot(compile_text("KEY_A = 1;SHOW(KEY_A)", profile.kit), profile)
     assert mine.is_right and mine.image
 
 

@@ -26,7 +26,7 @@ from tests.support.campaign import each_seed, wanted
 from tests.support.images import TINIBOT, image_of
 from tiniscript.base.version import __version__
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.outcomes import Event, Told
+from tiniscript.link.outcomes import Event, TimedEvent
 from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing import server as server_of
@@ -53,7 +53,7 @@ class SteppedLine:
     def robot(self) -> object:
         return self.session.robot
 
-    def listen(self, on_events: Callable[[list[Told]], None]) -> None:
+    def listen(self, on_events: Callable[[list[TimedEvent]], None]) -> None:
         self._on_events = on_events
 
     def tell(self, event: Event) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from tiniscript.bytecode.image import Image
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.handshake import exchange_of
+from tiniscript.link.handshake import exchange_by_name
 from tiniscript.link.messages import BY_NAME, Field, Message
 from tiniscript.link.payloads import REPLIES, EmptyReply
 from tiniscript.link.requests import Request
@@ -145,7 +145,7 @@ def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, 
     ((name, taken, _),) = session.method_calls
     assert (name, taken) == ("nod", values)
     given = dict(zip((its.name for its in NOD.request), values, strict=True))
-    assert next(exchange_of("nod")(Mock(), **given)) == Request("NOD", given)
+    assert next(exchange_by_name("nod")(Mock(), **given)) == Request("NOD", given)
 
 
 @pytest.mark.usefixtures("_knows_nod")

@@ -14,7 +14,7 @@ from tiniscript import robots
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.outcomes import Event, Told
+from tiniscript.link.outcomes import Event, TimedEvent
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.requests import OK, Reply
@@ -40,7 +40,7 @@ class FakeLine:
         self.withdrawn: list[PendingRequest[Any]] = []
         self.asked: list[PendingRequest[Any]] = []
 
-    def listen(self, on_events: Callable[[list[Told]], None]) -> None:
+    def listen(self, on_events: Callable[[list[TimedEvent]], None]) -> None:
         self._on_events = on_events
 
     def tell(self, event: Event) -> None:
@@ -68,7 +68,7 @@ class FakeLine:
     def withdraw(self, request: PendingRequest[Any]) -> None:
         self.withdrawn.append(request)
 
-    def event(self) -> Told:
+    def event(self) -> TimedEvent:
         return 0, event("STOPPED")
 
     def close(self) -> None:

@@ -8,7 +8,7 @@ from tests.support.images import image_of
 from tests.support.shared_pty_robot import Shared
 from tests.support.waiting import HANGS_S
 from tiniscript.link.connection import LinkConnection
-from tiniscript.link.outcomes import KEPT, Backlog, Event, PlaceEvent, ShownEvent
+from tiniscript.link.outcomes import MOST_EVENTS, Backlog, Event, PlaceEvent, ShownEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.shared_connection import join
 
@@ -49,8 +49,8 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
 
 def test_who_takes_no_events_keeps_the_newest_place_alone() -> None:
     backlog = Backlog()
-    backlog.put((k, PlaceEvent(1, 2, k)) for k in range(2 * KEPT))
+    backlog.put((k, PlaceEvent(1, 2, k)) for k in range(2 * MOST_EVENTS))
     backlog.put([(0, ShownEvent(1, 0))])
-    assert backlog.take() == (2 * KEPT - 1, PlaceEvent(1, 2, 2 * KEPT - 1))
+    assert backlog.take() == (2 * MOST_EVENTS - 1, PlaceEvent(1, 2, 2 * MOST_EVENTS - 1))
     assert backlog.take()[1] == ShownEvent(1, 0)
     assert not backlog

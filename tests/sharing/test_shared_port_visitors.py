@@ -20,7 +20,7 @@ from tiniscript.link.outcomes import ShownEvent
 from tiniscript.link.payloads import DoneEvent
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
-from tiniscript.link.sharing.server import CLIENTS, FULL_BYTES
+from tiniscript.link.sharing.server import FULL_BYTES, MOST_CLIENTS
 
 
 def greeting(registration: Registration, **other: object) -> bytes:
@@ -44,7 +44,7 @@ def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPa
     """Long before the time for their greeting is over."""
     monkeypatch.setattr("tiniscript.link.sharing.server.GREETING_S", 600.0)
     with Shared() as (_, registration), ExitStack() as opened:
-        silent = [opened.enter_context(visitor(registration)) for _ in range(CLIENTS + 10)]
+        silent = [opened.enter_context(visitor(registration)) for _ in range(MOST_CLIENTS + 10)]
         assert all(is_let_go(peer) for peer in silent[:10])
         silent[10].settimeout(0.2)
         with pytest.raises(TimeoutError):

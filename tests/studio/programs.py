@@ -8,7 +8,7 @@ from typing import NamedTuple
 from tests.support.casefile import ROOT, all_cases, example_robot
 from tiniscript import ProgramError, compile, robots
 from tiniscript.diagnostics.rendering import Message
-from tiniscript.library.named_robot import name_in
+from tiniscript.library.named_robot import shipped_name_in
 
 _ROBOT = re.compile(r"^\s*robot\s*=\s*(\w+)", re.MULTILINE)
 
@@ -24,7 +24,7 @@ def programs() -> list[Program]:
     for case in all_cases():
         if "tiniscript" in case.parts:
             named = _ROBOT.search(case.parts.get("senses", ""))
-            own = name_in(case.parts["tiniscript"].encode()) or "tinibot"
+            own = shipped_name_in(case.parts["tiniscript"].encode()) or "tinibot"
             robot = named[1] if named and named[1] in robots.names() else own
             found.append(Program(case.id, case.parts["tiniscript"], robot))
     for path in sorted((ROOT / "examples").glob("*.ts")):

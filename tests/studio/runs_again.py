@@ -13,7 +13,7 @@ import sys
 from tests.oracle.task_programs import TaskAuthor
 from tiniscript import robots
 from tiniscript.bytecode.image import checksum
-from tiniscript.library.compiling import compile_source, for_robot
+from tiniscript.library.compiling import compile_source, fit_to_robot
 from tiniscript.studio.playing import play, ready
 from tiniscript.studio.recordings import VIRTUAL, Row, decode, encode, head
 from tiniscript.studio.simulation import Simulation
@@ -30,7 +30,7 @@ def recorded(number: int) -> tuple[bytes, list[Row]]:
         profile = robots.load(rng.choice(ROBOTS))
         text = rng.choice(("", "SB|")) + TaskAuthor(rng, ways=rng.random() < 0.7).program()
         found = compile_source(text.encode(), profile, "", is_strict=True, is_chosen=True)
-        found = for_robot(found, profile)
+        found = fit_to_robot(found, profile)
         if found.image:
             break
     world = rng.choice(worlds.names())

@@ -13,7 +13,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.needs import need
-from tiniscript.base.languages import SOURCE, entries, languages, plural_text
+from tiniscript.base.languages import SOURCE_LANGUAGE, entries, languages, plural_text
 from tiniscript.flash import ready
 from tiniscript.studio import serving
 from tiniscript.studio.block_kinds import KINDS, SAYS
@@ -73,7 +73,9 @@ def test_a_text_has_the_places_of_the_english_one(language: str) -> None:
     """`%1` and so on, which Blockly and the page fill; gaps are checked of all catalogues."""
     for entry in entries("studio", language).entries.values():
         places = sorted(re.findall(r"%[\d%]", entry.english))
-        assert all(sorted(re.findall(r"%[\d%]", each)) == places for each in entry.said.values())
+        assert all(
+            sorted(re.findall(r"%[\d%]", each)) == places for each in entry.translation.values()
+        )
 
 
 def test_every_sentence_is_said_somewhere() -> None:
@@ -84,7 +86,7 @@ def test_every_sentence_is_said_somewhere() -> None:
     package = (path.read_text(encoding="utf-8") for path in (PACKAGE.rglob("*.py")))
     built = (ROOT / "tools/builds/studio.py").read_text(encoding="utf-8")  # the frame of the page
     words = set(re.findall(r"\w+", "".join((*package, sources, built))))
-    keys = set(page_texts(SOURCE)) - {""}
+    keys = set(page_texts(SOURCE_LANGUAGE)) - {""}
     assert len(keys) > 600
     for key in keys:
         if key.partition("/")[0] not in OTHERS:
@@ -94,7 +96,7 @@ def test_every_sentence_is_said_somewhere() -> None:
 
 
 def test_every_block_says_something_and_nothing_else_does() -> None:
-    said = set(page_texts(SOURCE))
+    said = set(page_texts(SOURCE_LANGUAGE))
     words = [*KINDS, *(word for kind in KINDS.values() for word in kind.words)]
     words += [unit for kind in KINDS.values() for unit in kind.units.values()]
     words += ["seconds", "SI", "SB", "PING", "elseif", "else"]

@@ -11,7 +11,7 @@ from tests.pupils import corpus
 from tests.studio.programs import LACKING, said
 from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
-from tiniscript.diagnostics.fixing import OFFERS, repair_program
+from tiniscript.diagnostics.fixing import MOST_OFFERS, repair_program
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.compiling import Compiled, compile_source
 from tiniscript.studio import checking, worker
@@ -123,7 +123,7 @@ def test_some_mistakes_are_not_repaired() -> None:
     found = buttons("SI|F(2, 80~1A2B")
     assert found and not any(found)
     found = buttons("SI|" + "F(2, 80\n" * 90)
-    assert 0 < sum(map(bool, found)) <= OFFERS < len(found)
+    assert 0 < sum(map(bool, found)) <= MOST_OFFERS < len(found)
 
 
 def test_a_file_is_read_as_the_command_reads_it_or_gets_a_sentence() -> None:
@@ -253,7 +253,7 @@ def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
     text = ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, 101)) + f";\n{wrong}"
     findings = checking.check(text.encode(), "tinibot", "en").findings
     assert len(texts) == 1 and sum(finding.may_repair for finding in findings) == (
-        1 if wrong else OFFERS
+        1 if wrong else MOST_OFFERS
     )
     which = next(k for k, finding in enumerate(findings) if finding.may_repair)
     assert checking.repair(text.encode(), "tinibot", which)

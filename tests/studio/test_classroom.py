@@ -657,7 +657,7 @@ def keeper(kept_at: Path) -> Iterator[Keeper]:
 
 
 def goes_on(room: Room, keeper: Keeper) -> int:
-    return command._go_on(command._Class(room.made, keeper))
+    return command._resume_class(command._Class(room.made, keeper))
 
 
 def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:

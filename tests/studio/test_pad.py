@@ -13,7 +13,7 @@ import pytest
 
 from tests.studio.test_second_time_page import made
 from tests.support.node import in_node
-from tiniscript.link.remote import EVERY_MS
+from tiniscript.link.remote import REPEAT_MS
 from tiniscript.studio import classroom
 
 __all__ = ["made"]
@@ -42,7 +42,7 @@ def test_it_is_said_at_each_change_and_again_while_it_is_held(made: Path) -> Non
         made, WHOLE, ["passes", 1000], ["down", "KEY_UP", 1], ["passes", 450],
         ["up", "KEY_UP", 1], ["passes", 2000],
     )  # fmt: skip
-    assert EVERY_MS == 200
+    assert REPEAT_MS == 200
     assert found == [[1000, UP, 0, 0], [1200, UP, 0, 0], [1400, UP, 0, 0], [1450, *NOTHING]]
 
 

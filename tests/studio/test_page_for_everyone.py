@@ -15,7 +15,7 @@ from tests.support.needs import need
 from tests.support.sampling import some_of
 from tests.support.studio import Pages, axe, checked, enter, image, speak, write
 from tiniscript import check, compile
-from tiniscript.base.languages import SOURCE, languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, languages
 from tiniscript.studio import serving
 
 if TYPE_CHECKING:
@@ -324,5 +324,5 @@ def test_the_service_worker_has_every_file() -> None:
     }
     said = json.loads(source.partition("LANGUAGES = ")[2].partition(";")[0])
     assert set(said) == set(languages())
-    later = {name for code in said if code != SOURCE for name in said[code]}
+    later = {name for code in said if code != SOURCE_LANGUAGE for name in said[code]}
     assert set(listed) == {"./", *names} - later and later < names

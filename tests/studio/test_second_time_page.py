@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from tests.support.node import in_node
-from tiniscript.base.languages import SOURCE, about, languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, language_info, languages
 from tiniscript.studio import block_kinds
 from tiniscript.studio.description import description
 from tools.builds.page_texts import page_texts
@@ -57,9 +57,9 @@ ENDS = {
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What the build makes for the page's sources."""
     folder = tmp_path_factory.mktemp("made")
-    content = {"languages": [(code, about(code).name) for code in languages()], "lock": {},
+    content = {"languages": [(code, language_info(code).name) for code in languages()], "lock": {},
                "description": description(), "blocks": block_kinds.data(),
-               "texts": page_texts(SOURCE)}  # fmt: skip
+               "texts": page_texts(SOURCE_LANGUAGE)}  # fmt: skip
     for name, value in content.items():
         (folder / f"{name}.json").write_text(json.dumps(value), encoding="utf-8")
     return folder

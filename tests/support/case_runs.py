@@ -6,14 +6,14 @@ from tests.machines import Senses
 from tests.support.casefile import Case
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.cli.options import decimal
-from tiniscript.library.named_robot import name_in
+from tiniscript.library.named_robot import shipped_name_in
 from tiniscript.robots.profile import Robot
 
 
 def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
     """Return what the fence `senses` says: `robot`, `max-time`, `seed`, and a list a sensor."""
     readings: dict[str, list[int]] = {}
-    named = name_in(case.parts.get("tiniscript", "").encode())
+    named = shipped_name_in(case.parts.get("tiniscript", "").encode())
     options = {"robot": named or robots.DEFAULT, "max-time": "60", "seed": "1"}
     for row in case.parts.get("senses", "").splitlines():
         name, _, values = (part.strip() for part in row.partition("="))

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.base.languages import languages
-from tiniscript.library.named_robot import name_in
+from tiniscript.library.named_robot import shipped_name_in
 from tools.site.documents import language_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -170,7 +170,7 @@ def all_cases() -> list[Case]:
 
 def example_robot(path: Path) -> str:
     """Return the robot that a program of `examples/` is for."""
-    return name_in(path.read_bytes()) or "tinibot"
+    return shipped_name_in(path.read_bytes()) or "tinibot"
 
 
 def has_tasks(text: str) -> bool:

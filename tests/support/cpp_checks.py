@@ -37,7 +37,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.trace import TracedRobot
 from tiniscript.base.words import COMPARATORS
 from tiniscript.bytecode.image import (
-    EVERYTHING,
+    ALL_NEEDS,
     GO,
     HEADER_BYTES,
     REFUSALS,
@@ -47,7 +47,7 @@ from tiniscript.bytecode.image import (
     unpack,
     with_checksum,
 )
-from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ESCAPED, FAULTS
+from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ESCAPED_OPS, FAULTS
 from tiniscript.bytecode.verify import Refused, load_image, verify
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.runner import MachineOf
@@ -285,7 +285,7 @@ def slow_run(image: bytes, senses: Senses, not_ready: int, late_ms: int = 0) -> 
 
 # -- ways ---------------------------------------------------------------------------------------
 
-WAYS = [op.opcode for op in ESCAPED.values()]
+WAYS = [op.opcode for op in ESCAPED_OPS.values()]
 
 
 def way_code(rng: random.Random) -> bytes:
@@ -325,7 +325,7 @@ def check_way_codes(machine: Process, seed: int, count: int) -> None:
     codes += [bytes(each) for each in ((ESCAPE,), *((ESCAPE, second) for second in range(256)))]
     pushed = simple("PUSH_NUM_2") * 2
     codes += [pushed + bytes((ESCAPE, second)) for second in range(256)]
-    for needs in (0, TASKS, GO, EVERYTHING):
+    for needs in (0, TASKS, GO, ALL_NEEDS):
         accepted = compare_verdicts(machine, codes, *SIZES, needs)
         if needs != GO:
             continue

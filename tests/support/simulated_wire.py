@@ -66,7 +66,7 @@ class SimulatedWire(Wire):
     def set_baud(self, baud: int) -> None:
         self.baud = baud
 
-    def restart(self) -> None:
+    def reset_board(self) -> None:
         self.restarts += 1
         self.end.restart()
 

@@ -10,10 +10,10 @@ import pytest
 
 from tiniscript import compile_text
 from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
-from tiniscript.base.words import WORDS, concept_of, lexicon
+from tiniscript.base.words import WORDS, lexicon, lexicon_concept
 
 FOREIGN = sorted(  # an arrow is no name
-    word for word in lexicon() if concept_of(word) in WORDS and word.isidentifier()
+    word for word in lexicon() if lexicon_concept(word) in WORDS and word.isidentifier()
 )
 SLIPS = ["END", "Y", "O", "THEN", "DO", "BEGIN", "NO", "YES", "IS", "LET", "VAR", "INT", "CALL",
          "F2", "B50", "L90", "R1", "W1", "S1", "M2", "CM", "SEC", "FIN", "REM", "ON", "OFF", "X",

@@ -14,7 +14,7 @@ from tests.support.texts import said as all_said
 from tests.text.test_plain import NUMBERS
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import disassemble
-from tiniscript.codegen.text.problems import LONGEST, PROBLEMS
+from tiniscript.codegen.text.problems import MOST_CHARACTERS, PROBLEMS
 from tiniscript.robots.text_levels import LEVELS, OF_TASKS_AND_WAYS, UNREAD
 from tiniscript.syntax.lexer import scan
 
@@ -278,7 +278,7 @@ def test_a_reader_without_defs_reads_all_else() -> None:
 def test_texts_are_short_and_plain() -> None:
     for language in LANGUAGES:
         for text in all_said(language, "robot").values():
-            assert text.isascii() and 0 < len(text) <= LONGEST
+            assert text.isascii() and 0 < len(text) <= MOST_CHARACTERS
 
 
 # -- limits -------------------------------------------------------------------------------------

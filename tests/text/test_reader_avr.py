@@ -14,7 +14,7 @@ from tests.machines.text_reader import NO_DEFS, Answer, TextReader
 from tests.support.kits import KITS
 from tests.text.test_reader_agreement import some_texts
 from tiniscript.bytecode.image import STARTS
-from tiniscript.codegen.text.problems import NAMES
+from tiniscript.codegen.text.problems import PROBLEM_NAMES
 from tiniscript.robots.kit_words import kit_words
 from tools.bench import avr_bench
 
@@ -33,7 +33,7 @@ NUMBERS = (
 
 def said(answer: Answer) -> list[int]:
     """Return what the chip says: kind, start or problem, length or column, and a checksum."""
-    numbers = {name: number for number, name in NAMES.items()}
+    numbers = {name: number for number, name in PROBLEM_NAMES.items()}
     if answer.problem:
         return [4, numbers[answer.problem], answer.column, 0]
     checksum = crc32(answer.code)

@@ -19,14 +19,14 @@ from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, PAYLOAD_BYTES, RUN, encode_payload
 from tiniscript.link.session import Session
 from tiniscript.virtual import transports as limits
-from tiniscript.virtual.protocol_sniffer import LONGEST, is_for_robot
+from tiniscript.virtual.protocol_sniffer import MOST_LINE_BYTES, sniff_robot_client
 from tiniscript.virtual.simulator import Simulator
-from tiniscript.virtual.transports import CALLERS
+from tiniscript.virtual.transports import MOST_CALLERS
 
 
 def verdicts(data: bytes) -> list[bool | None]:
     """Return what is found of all beginnings of data, the shortest first."""
-    return [is_for_robot(data[:k]) for k in range(len(data) + 1)]
+    return [sniff_robot_client(data[:k]) for k in range(len(data) + 1)]
 
 
 def tls_hello() -> bytes:
@@ -109,8 +109,8 @@ def test_all_frames_of_a_computer_are_for_a_robot() -> None:
         data = encode_frame(Frame(number, chance.randrange(256), chance.randrange(256), payload))
         firsts.append(b"\0" + data)
     for data in firsts:
-        assert is_for_robot(data) is True, data.hex()
-        assert False not in [is_for_robot(data[:k]) for k in range(4)], data.hex()
+        assert sniff_robot_client(data) is True, data.hex()
+        assert False not in [sniff_robot_client(data[:k]) for k in range(4)], data.hex()
 
 
 @each_row("text, after", [
@@ -128,9 +128,9 @@ def test_a_line_of_text_is_for_a_robot_as_soon_as_it_can_be_told(text: str, afte
 
 
 def test_a_first_line_has_an_end() -> None:
-    assert is_for_robot(b"A" * LONGEST) is None
-    assert is_for_robot(b"A" * (LONGEST + 1)) is False
-    assert is_for_robot(b"") is is_for_robot(b"\0") is None
+    assert sniff_robot_client(b"A" * MOST_LINE_BYTES) is None
+    assert sniff_robot_client(b"A" * (MOST_LINE_BYTES + 1)) is False
+    assert sniff_robot_client(b"") is sniff_robot_client(b"\0") is None
 
 
 # -- at the port --------------------------------------------------------------------------------
@@ -228,7 +228,7 @@ def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes)
         return is_said and b"\0" in received(client, heard)
 
     until(simulator, is_answered)
-    assert CALLERS / 2 < most <= CALLERS
+    assert MOST_CALLERS / 2 < most <= MOST_CALLERS
     for connection in (client, *idle):
         connection.close()
 
@@ -250,7 +250,7 @@ def test_a_silent_client_leaves_its_place_to_one_who_speaks(
     with visit(simulator) as first, visit(simulator) as second:
         first.sendall(PING)
         until(simulator, lambda: simulator.transports.visits == 1)
-        monkeypatch.setattr(limits, "PATIENT_S", 1000.0)
+        monkeypatch.setattr(limits, "PATIENCE_S", 1000.0)
         second.sendall(PING)
         for _ in range(20):
             simulator.turn(0.01)

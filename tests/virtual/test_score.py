@@ -10,7 +10,7 @@ from tests.support.virtual_robot import robot_in
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
-from tiniscript.virtual.score import LOOKS_MS, Score
+from tiniscript.virtual.score import LOOK_PAUSE_MS, Score
 from tiniscript.virtual.worlds import read
 
 FLOOR = "[floor]\nwidth_cm = 300\nheight_cm = 100\n[start]\nx_cm = 40\ny_cm = 50\n"
@@ -86,7 +86,7 @@ def test_each_task_has_three_stars(name: str) -> None:
 
     def motors(left: float, right: float) -> None:
         driving.set_motors(robot.now_ms, left, right)
-        robot.now_ms += LOOKS_MS
+        robot.now_ms += LOOK_PAUSE_MS
         score.look(robot)
 
     for x_cm, y_cm in WAYS[name]:

@@ -90,7 +90,7 @@ def test_many_at_once_are_all_told_but_one(simulator: Simulator) -> None:
     def all_are_told() -> bool:
         nonlocal told
         told = sum(
-            bytes(received(client, into)) == limits.TAKEN
+            bytes(received(client, into)) == limits.PORT_TAKEN
             for client, into in zip(crowd, heard, strict=True)
         )
         return told == 5

@@ -170,7 +170,7 @@ def test_a_program_that_another_one_ends_ends_before_it() -> None:
 
 
 def test_of_what_nobody_takes_the_newest_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tiniscript.virtual.robot.EVENTS", 10)
+    monkeypatch.setattr("tiniscript.virtual.robot.MOST_EVENTS", 10)
     robot = robot_in()
     Talk(robot).upload("SI|X = 0;LOOP(40);X = X + 1;SHOW(X);END_LOOP", is_detached=True)
     robot.step(robot.now_ms + 2000)

@@ -11,7 +11,7 @@ from tests.support.virtual_robot import robot_in
 from tests.virtual.test_simulator import until, visit
 from tiniscript.link.messages import STOP_BYTES, TEXT_MS
 from tiniscript.link.typed_stop import is_at_stop
-from tiniscript.virtual.protocol_sniffer import is_for_robot
+from tiniscript.virtual.protocol_sniffer import sniff_robot_client
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.simulator import Simulator
 
@@ -47,7 +47,7 @@ def test_blank_lines_cost_no_client_its_line(simulator: Simulator) -> None:
 
 @pytest.mark.parametrize("word", [b"S", b"\r\nsToP ", b"\tS", b"\x1bS", b"SSSS", b"Stop.", b"PARA"])
 def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, word: bytes) -> None:
-    assert is_for_robot(word) is None
+    assert sniff_robot_client(word) is None
     with visit(simulator) as client:
         client.sendall(RUNS)
         until(simulator, lambda: simulator.robot.is_running)

@@ -19,7 +19,7 @@ from tiniscript.robots.refusals import describe
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
 from tiniscript.virtual.geometry import Point, Segment
-from tiniscript.virtual.picture import LARGEST, png
+from tiniscript.virtual.picture import LONGEST_SIDE, png
 from tiniscript.virtual.world import WorldRefused
 from tiniscript.virtual.worlds import read
 
@@ -189,4 +189,4 @@ def test_a_picture_has_the_longer_side_that_it_may_have() -> None:
         start = { x_cm = 20, y_cm = 20, heading = 0 }"""
     room, hull = read(text, "room"), Hull(robots.load("tinibot").body)
     image_file = Image.open(BytesIO(png(room, hull, [room.start], room.start, "a room")))
-    assert image_file.size == (LARGEST, 716)
+    assert image_file.size == (LONGEST_SIDE, 716)

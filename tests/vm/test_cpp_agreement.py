@@ -46,7 +46,7 @@ from tiniscript import compile_text
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.disassembly import assemble
 from tiniscript.bytecode.image import (
-    EVERYTHING,
+    ALL_NEEDS,
     GO,
     HEADER_BYTES,
     REFUSALS,
@@ -71,7 +71,7 @@ def test_disassembly_has_the_same_verdict(case: Case) -> None:
     kit = robot_and_senses(case)[0].kit
     code = assemble(case.parts["bytecode"])
     beginnings = [code[:length] for length in range(len(code) + 1)]
-    for needs in (0, TASKS, GO, EVERYTHING):
+    for needs in (0, TASKS, GO, ALL_NEEDS):
         compare_verdicts(host(), beginnings, len(kit.readings), len(kit.actuators), needs)
 
 

@@ -37,7 +37,7 @@ from tests.vm.test_cpp_edges import changed_code, kit_of
 from tiniscript import compile_text
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import assemble
-from tiniscript.bytecode.image import EVERYTHING, TASKS, ImageRefused
+from tiniscript.bytecode.image import ALL_NEEDS, TASKS, ImageRefused
 from tiniscript.bytecode.verify import Refused
 from tools.builds import chips
 
@@ -78,7 +78,7 @@ one_chip = pytest.mark.sampled("chip")  # of each row; with `--whole` all
 
 def has(chip: str) -> int:
     """Return what a chip has of `needs`: a Nano has no tasks."""
-    return EVERYTHING & ~TASKS if chip == avr.NANO else EVERYTHING
+    return ALL_NEEDS & ~TASKS if chip == avr.NANO else ALL_NEEDS
 
 
 def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:

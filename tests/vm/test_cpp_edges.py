@@ -12,7 +12,7 @@ from tests.machines.host import host
 from tests.support.cpp_checks import WIDE, compare_runs, compare_verdicts
 from tests.support.images import image_for
 from tests.support.random_codes import jump, loop, simple
-from tiniscript.base.kit import DEVICES, NUMBER, Device, Kit
+from tiniscript.base.kit import MOST_DEVICES, NUMBER, Device, Kit
 from tiniscript.base.limits import CALLS, COUNTERS, DEFS, JOINS, STACK_VALUES, VARIABLES
 from tiniscript.bytecode.opcodes import BY_CODE, OPS, SHORTS
 
@@ -103,16 +103,16 @@ def test_a_procedure_needs_what_it_calls_needs() -> None:
 
 def test_everything_has_a_place_of_its_own() -> None:
     """Every variable, reading, counter, value and call has a place of its own."""
-    kit = kit_of(DEVICES)
+    kit = kit_of(MOST_DEVICES)
     readings = {device.name: [1000 * k + 500] for k, device in enumerate(kit.sensors)}
     senses = Senses(readings, max_ms=1000, max_steps=5000)
     code = b""
     for k in range(VARIABLES):
         code += simple("SET_VAR8") + bytes([k, 100 - k])
-    for k in range(DEVICES):
+    for k in range(MOST_DEVICES):
         code += simple("READ") + bytes([k])
     inner = b""
-    for name, count in (("PUSH_VAR", VARIABLES), ("PUSH_SENSOR", DEVICES)):
+    for name, count in (("PUSH_VAR", VARIABLES), ("PUSH_SENSOR", MOST_DEVICES)):
         inner += b"".join(simple(name) + bytes([k]) + simple("SHOW") for k in range(count))
     values = b"".join(simple("PUSH8") + bytes([3 * k]) for k in range(STACK_VALUES))
     inner += values + simple("SUB") * (STACK_VALUES - 1) + simple("SHOW")
@@ -122,7 +122,7 @@ def test_everything_has_a_place_of_its_own() -> None:
     code += procedures + jump("CALL", True, last + 3)
     for k in range(VARIABLES):
         code += simple("PUSH_VAR") + bytes([k]) + simple("SHOW")
-    compare_verdicts(host(), [code], DEVICES, 0)
+    compare_verdicts(host(), [code], MOST_DEVICES, 0)
     ending = compare_runs(host(), code, kit, senses)
     assert ending == "DONE", ending
     # joins beside a procedure
@@ -238,9 +238,9 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
 def test_code_that_changed_after_it_was_verified() -> None:
     """Code that changed after it was verified ends in BAD_CODE, and not too early."""
     # a robot may say that it has more sensors than a machine remembers
-    for many in (3, DEVICES - 1, DEVICES, DEVICES + 1, 2 * DEVICES):
+    for many in (3, MOST_DEVICES - 1, MOST_DEVICES, MOST_DEVICES + 1, 2 * MOST_DEVICES):
         kit = kit_of(many)
-        for code, caught in changed_code(min(len(kit.readings), DEVICES)):
+        for code, caught in changed_code(min(len(kit.readings), MOST_DEVICES)):
             ran = host().run_unverified(code, kit, Senses(max_ms=100, max_steps=100))
             ending = ran.trace.splitlines()[-1].split()[-1]
             wanted = "DONE" if caught is None else "BAD_CODE"

@@ -23,9 +23,9 @@ import pytest
 from tests.support.casefile import ROOT, all_cases, example_robot
 from tiniscript import ProgramError, __version__, check, robots, run
 from tiniscript.base.kit import KIT_WORDS_SINCE
-from tiniscript.base.words import SINCE, WORDS
+from tiniscript.base.words import VERSION_OF_WORD, WORDS
 from tiniscript.lessons import catalogue
-from tiniscript.library.named_robot import name_in
+from tiniscript.library.named_robot import shipped_name_in
 
 FOLDER = Path(__file__).parent
 FIRST = "0.2.0"
@@ -72,7 +72,7 @@ def trace_of(old: Old) -> str:
 
 
 def names_a_newer_word(text: str) -> bool:
-    return any(re.search(rf"(?i)\b(?:{word}\s*=|DEF\s+{word})", text) for word in SINCE)
+    return any(re.search(rf"(?i)\b(?:{word}\s*=|DEF\s+{word})", text) for word in VERSION_OF_WORD)
 
 
 def of_this_version() -> Iterator[Old]:
@@ -95,7 +95,7 @@ def written() -> str:
     parts: dict[tuple[str, str], str] = {}
     for old in of_this_version():
         text = old.text.rstrip("\n") + "\n"
-        robot = name_in(text.encode()) or old.robot
+        robot = shipped_name_in(text.encode()) or old.robot
         is_plain = text.strip() and not re.search("(?m)^[=>] ", text)
         if is_plain and (robot, text) not in earlier and robot in robots.names():
             with suppress(ProgramError):
@@ -148,8 +148,8 @@ def test_the_documents_name_the_newer_words(path: str) -> None:
     said = (ROOT / path).read_text(encoding="utf-8")
     breaking = next(part for part in re.split(r"\n(?=- |\n)", said)
                     if "`CM`" in part and "0.3" in part)  # fmt: skip
-    assert all(f"`{word}`" in breaking for word in SINCE)
-    assert set(SINCE) <= set(WORDS)
+    assert all(f"`{word}`" in breaking for word in VERSION_OF_WORD)
+    assert set(VERSION_OF_WORD) <= set(WORDS)
 
 
 def test_each_release_has_its_programs() -> None:

@@ -70,7 +70,7 @@ def main() -> int:
                 if "greater than maximum allowed" not in str(why):
                     print(why, file=sys.stderr)
                     return 2
-                smaller, _ = building.SMALLER[ENVIRONMENT]
+                smaller, _ = building.SMALLER_FIRMWARE[ENVIRONMENT]
                 flash = flash_with(driver, project, smaller)
                 note = "without tasks"
             usual = usual or flash

@@ -26,9 +26,9 @@ from tools.uno import CYCLES_PER_MS, HERTZ, Stack, Uno
 
 LEAST_FREE = 150  # bytes
 HEAP_START_SYMBOL = "_end"  # the symbol after all variables
-RAM = 0x800000  # where avr-nm begins to count it
+RAM_START = 0x800000  # where avr-nm begins to count it
 BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
-CALLS = 8  # at once
+CALLS_AT_ONCE = 8  # at once
 # What is typed, and what the robot says: 16 values that wait, brackets, blocks, long answers.
 TYPED = (
     "HELP\n",
@@ -74,7 +74,7 @@ def heap_start(firmware: Path) -> int:
     text = subprocess.run(["avr-nm", firmware], capture_output=True, text=True, check=True).stdout
     rows = (row.split() for row in text.splitlines())
     (address,) = [row[0] for row in rows if row[-1] == HEAP_START_SYMBOL]
-    return int(address, 16) - RAM
+    return int(address, 16) - RAM_START
 
 
 def surround(uno: Uno, robot: Robot) -> None:
@@ -203,12 +203,12 @@ def all_devices(kit: Kit) -> list[str]:
 def deep_program_text(kit: Kit, more: int) -> str:
     lines = ["X = 0; Y = 0", "DEF D1", *all_devices(kit)]
     lines += ["BEEP(0.02, 440 + X)", "SHOW(X * 1.5 / 7)", "END_DEF"]
-    for number in range(2, CALLS + 1):
+    for number in range(2, CALLS_AT_ONCE + 1):
         lines += [f"DEF D{number}", "LOOP(1)", f"D{number - 1}", "END_LOOP", "END_DEF"]
     sum_of_all = "X / 7 % 5"
     for number in range(12):
         sum_of_all = f"0.{number + 1} {'+-*'[number % 3]} ({sum_of_all})"
-    lines += ["LOOP(FOREVER)", "X = X % 100 + 1", "M(50, 0 - 50)", f"D{CALLS}"]
+    lines += ["LOOP(FOREVER)", "X = X % 100 + 1", "M(50, 0 - 50)", f"D{CALLS_AT_ONCE}"]
     lines += [f"Z = {sum_of_all}", "F(0.05, 80) UNTIL(X > 50 AND NOT (Y < 3 OR Z > 1))"]
     lines += [f"SHOW(X + {number})" for number in range(more)]
     return "SI|" + "; ".join([*lines, "END_LOOP"])

@@ -15,7 +15,7 @@ from pathlib import Path
 from tests.support.images import image_of
 from tiniscript import robots
 from tiniscript.link.messages import HOLD_MS
-from tiniscript.link.remote import GAP_MS, NOTHING, Pressed
+from tiniscript.link.remote import GAP_MS, NOTHING_PRESSED, Pressed
 from tools import ROOT
 from tools.bench import page
 from tools.bench.firmware_stack import connect, require_ok
@@ -24,7 +24,7 @@ from tools.uno import CYCLES_PER_MS, Uno
 
 AT_ONCE = "SI|LOOP(FOREVER); M(PAD_Y, PAD_Y); END_LOOP"
 EXAMPLE = ROOT / "examples" / "remote.ts"  # it looks 20 times in a second
-AHEAD = Pressed(0, 0, 80)
+PAD_AHEAD = Pressed(0, 0, 80)
 PWM_PINS = MOTORS[:2]
 TRIES = 300
 HELD_MS = (100, 400)  # and let go
@@ -66,11 +66,11 @@ class Hand:
         """Return the ms from a change of what is held to the last of the pins that it changes."""
         begun, told = self._begin()
         self._hold(held)
-        return self._ms_from(begun, told, held != NOTHING)
+        return self._ms_from(begun, told, held != NOTHING_PRESSED)
 
     def lose(self) -> float:
         """Return the ms from where a line is lost, over which somebody drives, to motors off."""
-        self._hold(AHEAD, ANEW_MS)
+        self._hold(PAD_AHEAD, ANEW_MS)
         begun, told = self._begin()
         for _ in range(LOST_MS):  # what both say does not arrive
             self._wired.session.poll(self._wired.now_ms)
@@ -105,10 +105,10 @@ class Hand:
 def measure(firmware: Path, baud: int) -> list[list[float]]:
     """Return the ms of each try, by row."""
     with Hand(firmware, baud, AT_ONCE) as hand:
-        changes = [(hand.change(AHEAD), hand.change(NOTHING)) for _ in range(TRIES)]
+        changes = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED)) for _ in range(TRIES)]
         losses = [hand.lose() for _ in range(TRIES)]
     with Hand(firmware, baud, EXAMPLE.read_text(encoding="utf-8")) as hand:
-        seldom = [(hand.change(AHEAD), hand.change(NOTHING))[0] for _ in range(TRIES)]
+        seldom = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED))[0] for _ in range(TRIES)]
     return [*map(list, zip(*changes, strict=True)), seldom, losses]
 
 

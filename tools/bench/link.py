@@ -42,12 +42,12 @@ ROWS = (
     "the same: the median",
     "the same: at most, if everything that can delay a stop happens at the same time",
 )
-OTHERS = {  # by environment
+OTHER_BOARDS = {  # by environment
     "nano_liner": "`liner`, Nano", "mega_grabber": "`grabber`, Mega",
     "uno_tinibot2": "`tinibot2`, Uno, with an edge of each disc just before",
     "mega_tinibot2": "`tinibot2`, Mega, with an edge of each disc just before",
 }  # fmt: skip
-UNSHOWN = ("mega", "mega_liner")  # they are held to the limit as well
+UNSHOWN_ENVIRONMENTS = ("mega", "mega_liner")  # they are held to the limit as well
 UPLOADS = 20  # the main loop is elsewhere each time: the slowest counts
 PHASE_CYCLES = 37
 T = TypeVar("T")
@@ -160,7 +160,7 @@ def print_figures(found: dict[int, Figures], folder: Path) -> bool:
     others = measure_other_stops(folder)
     page.show("link", [
         (row, f"{others[name].us:.1f} µs", f"{others[name].together_us:.1f} µs")
-        for name, row in OTHERS.items()
+        for name, row in OTHER_BOARDS.items()
     ], which=1)  # fmt: skip
     late = [name for name, stop in others.items() if stop.us > STOP_US]
     if late:
@@ -172,7 +172,7 @@ def measure_other_stops(folder: Path) -> dict[str, stops.Slowest]:
     """Return the slowest stops of the other sketches, by environment, each at its robot's baud."""
     project = copy_project(folder / "vm_arduino")
     result = {}
-    for name in (*OTHERS, *UNSHOWN):
+    for name in (*OTHER_BOARDS, *UNSHOWN_ENVIRONMENTS):
         sketch = firmware_size.measure(name, project)
         robot = robots.load(sketch.robot)
         result[name] = stops.slowest(sketch.firmware, robot, sketch.board, robot.board.baud)

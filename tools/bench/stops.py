@@ -33,10 +33,10 @@ FINE, AROUND = 4, 64
 ECHOES = range(-160, 33, 8)  # cycles
 EDGES = range(-480, 33, 16)  # of both discs
 SHORT_ECHO, LONG_ECHO = 1000, 8000  # cycles
-BITS = 10  # of a byte on the wire
+BITS_PER_BYTE = 10  # of a byte on the wire
 QUIET_MS = 25
 PING_MS = 100  # pings are less apart
-RECEIVED = {"uno": 18, "mega": 25}  # the number of the interrupt that sees a stop
+RECEIVE_INTERRUPT = {"uno": 18, "mega": 25}  # the number of the interrupt that sees a stop
 INSTRUCTION = 4  # cycles of the longest one
 
 
@@ -112,7 +112,7 @@ class Busy:
             chip.run_until(self._trigger, "high", PING_MS)
             chip.run_until(self._trigger, "low", PING_MS)
         bit = HERTZ / self.baud
-        cycles = round((len(text) + STOP_RUN - 1) * BITS * bit + SEEN_BITS * bit)
+        cycles = round((len(text) + STOP_RUN - 1) * BITS_PER_BYTE * bit + SEEN_BITS * bit)
         begin = chip.cycle + CYCLES_PER_MS
         begin += (place.at - begin - cycles) % PERIOD
         last = begin + cycles
@@ -126,7 +126,7 @@ class Busy:
                 chip.drive(name, self._level, at=last + place.edge)
         since = len(chip.events)
         chip.send(text + STOP, begin)
-        chip.run_to(last + round(BITS * BITS * bit))
+        chip.run_to(last + round(BITS_PER_BYTE * BITS_PER_BYTE * bit))
         new = chip.events[since:]
         zeros = [event.cycle for event in new if event.what == "received" and event["byte"] == 0]
         off = [
@@ -143,7 +143,7 @@ class Busy:
 
     def together(self) -> int:
         """Return the cycles of a stop before which all comes that may: once, at its longest."""
-        received = RECEIVED[self.chip.board]
+        received = RECEIVE_INTERRUPT[self.chip.board]
         spans = [item for item in self.chip.longest_masked() if item.vector != received]
         entries = {span.vector: span.cycles for span in spans if _is_before(span, received)}
         before = max(

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 VISITS = 3
-THROTTLED = 4  # times as slow a processor
+CPU_THROTTLING = 4  # times as slow a processor
 STARTS = 5
 FRAMES_MS = 4000  # of which pictures are looked at
 PUPILS, WRITERS = 30, 3
@@ -59,7 +59,7 @@ ROWS = {
     "rated": "Lighthouse, desktop: performance, accessibility, best practices (median of five)",
     "files": "all files, gzipped",
 }
-RATED = ("performance", "accessibility", "best-practices")
+RATED_CATEGORIES = ("performance", "accessibility", "best-practices")
 # When one can type in the page: the editor and all buttons are there.
 WATCH = """() => {
   const look = () => {
@@ -173,7 +173,7 @@ def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, st
         page.set_default_timeout(120_000)
         page.add_init_script(f"({FOLLOW})()")
         session = context.new_cdp_session(page)
-        session.send("Emulation.setCPUThrottlingRate", {"rate": THROTTLED})
+        session.send("Emulation.setCPUThrottlingRate", {"rate": CPU_THROTTLING})
         for waits in (cold, warm):
             page.goto(address, wait_until="commit")
             page.click("[data-begin=obstacle]")
@@ -209,7 +209,7 @@ def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, st
         page.wait_for_timeout(FRAMES_MS)
         works += _works_ms(json.loads(browser.stop_tracing())["traceEvents"])
         context.close()
-    slow = [THROTTLED * work for work in works]
+    slow = [CPU_THROTTLING * work for work in works]
     late = sum(item > LATE_MS for item in slow)
     yield "work", f"{late} of {len(slow):,}, median {median(slow):.1f} ms", "none"
 
@@ -307,7 +307,8 @@ def _lighthouse_scores(address: str) -> dict[str, float]:
     """Return the median points of each of Lighthouse's categories."""
     tools = find_tools()
     call = [*tools.npm, "exec", "--yes", "--ignore-scripts", LIGHTHOUSE, "--", address,
-            "--preset=desktop", "--quiet", "--output=json", f"--only-categories={','.join(RATED)}",
+            "--preset=desktop", "--quiet", "--output=json",
+            f"--only-categories={','.join(RATED_CATEGORIES)}",
             f"--chrome-flags=--headless=new {' '.join(studio.WHOLE)}"]  # fmt: skip
     node = str(Path(tools.node[0]).parent)  # npm starts Lighthouse by the first node in PATH
     settings = {**os.environ, "CHROME_PATH": studio.chromium() or "",
@@ -316,7 +317,9 @@ def _lighthouse_scores(address: str) -> dict[str, float]:
     for _ in range(RATINGS):
         completed = subprocess.run(call, env=settings, capture_output=True, text=True, check=True)
         matches.append(json.loads(completed.stdout)["categories"])
-    return {name: 100 * median(item[name]["score"] for item in matches) for name in RATED}
+    return {
+        name: 100 * median(item[name]["score"] for item in matches) for name in RATED_CATEGORIES
+    }
 
 
 if __name__ == "__main__":

@@ -57,7 +57,7 @@ def main() -> int:
         return 2
     try:
         firmware = firmware_size.measure("uno").firmware
-        without = firmware_size.measure(building.SMALLER["uno"][0]).firmware
+        without = firmware_size.measure(building.SMALLER_FIRMWARE["uno"][0]).firmware
     except RuntimeError as failed:
         print(failed, file=sys.stderr)
         return 2

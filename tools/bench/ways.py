@@ -32,7 +32,7 @@ from tools.bench import page
 from tools.bench.firmware_size import PROJECT, measure
 
 SEEDS = 100
-WANTED = 95  # of them
+WANTED_PERCENT = 95  # of them
 FAST, SLOW = 107.5, 92.5  # percent
 SLIPS = (0.005, 0.02, 0.05)
 GO, TURN = "F(100 CM, 60)", "R(360 DEG, 60)"
@@ -40,12 +40,12 @@ LONGEST_MS = 30_000
 TAPE_CM, PROTRACTOR = 1, 5  # as near as one reads them
 # how the way is known: along, aside and turned, as far as each may be off
 LIMITS = {"discs": (1.5, 3, 6), "time, calibrated": (10, 20, 20), "time": (math.inf,) * 3}
-SHOWN = {
+SHOWN_ROWS = {
     "discs": ("discs", SLIPS),
     "time, calibrated": ("time, after `tsc set trim`", SLIPS),
     "time": ("time, without `tsc set trim`", SLIPS[1:2]),
 }
-ROWS = tuple(row for row, slips in SHOWN.values() for _ in slips)
+ROWS = tuple(row for row, slips in SHOWN_ROWS.values() for _ in slips)
 
 
 class Robot(Talk):
@@ -103,8 +103,8 @@ def off(seed: int, slip: float, how: str) -> tuple[float, float, float]:
 
 
 def worst_wanted(values: Sequence[float]) -> float:
-    """Return what WANTED of the values are within."""
-    return sorted(values)[WANTED * len(values) // 100 - 1]
+    """Return what WANTED_PERCENT of the values are within."""
+    return sorted(values)[WANTED_PERCENT * len(values) // 100 - 1]
 
 
 def off_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float]:
@@ -147,7 +147,7 @@ def main(seeds: int = SEEDS, is_uno: bool = False) -> int:
         return int(not result.is_good)
     is_good = True
     rows = []
-    for how, (row, slips) in SHOWN.items():
+    for how, (row, slips) in SHOWN_ROWS.items():
         for slip in slips:
             result = Off.summarise(how, [off(seed, slip, how) for seed in range(1, seeds + 1)])
             rows.append((row, f"{100 * slip:g} %", *result.cells(), result.within))
@@ -157,7 +157,7 @@ def main(seeds: int = SEEDS, is_uno: bool = False) -> int:
 
 
 class Off(NamedTuple):
-    """How far robots are off: what WANTED of 100 are within, and how many keep the limits."""
+    """How far robots are off: what WANTED_PERCENT are within, and how many keep the limits."""
 
     worst: tuple[float, ...]
     within: str
@@ -169,7 +169,7 @@ class Off(NamedTuple):
         ways = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in found)
         turns = sum(item[2] <= limits[2] for item in found)
         within = f"{ways} and {turns}" if limits[0] < math.inf else "-"
-        is_good = 100 * min(ways, turns) >= WANTED * len(found)
+        is_good = 100 * min(ways, turns) >= WANTED_PERCENT * len(found)
         return cls(
             tuple(worst_wanted(column) for column in zip(*found, strict=True)), within, is_good
         )

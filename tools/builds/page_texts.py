@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from tiniscript.base.languages import Texts, about, texts
+from tiniscript.base.languages import Texts, language_info, texts
 
 # Of what the page's Python says; the sentences of lessons come with these.
 MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names", "foreign")
 # What the page says as the command does: how a recording compares, and why a run has ended.
-OF_COMMAND = {
+COMMAND_TEXTS = {
     **{f"record_{what}": f"replay_{what}" for what in (
         "again", "otherwise", "same", "missed", "unread", "empty", "value", "time", "robot_more",
         "virtual_more", "end", "at", "nothing",
@@ -27,9 +27,9 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
 
     The one without a key has which form is for which number, from 0 to 199.
     """
-    own = about(language)
+    own = language_info(language)
     text = texts("command", language)
-    result = texts("studio", language) | {key: text[value] for key, value in OF_COMMAND.items()}
+    result = texts("studio", language) | {key: text[value] for key, value in COMMAND_TEXTS.items()}
     return {
         "": own.form_of,
         **{

@@ -62,12 +62,12 @@ PUPILS = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo", "InÃ
           "Diego"]  # fmt: skip
 TURNS = ("F(1, 80);\n", "F(1, 80);\nR(0.5, 60);\n", PROGRAM.removeprefix("SI|"))
 PUPIL, HAND = "192.0.2.7", 7  # their address, and whose hand is up
-HOLDS = 5  # the line of the breakpoint
+BREAKPOINT_LINE = 5  # the line of the breakpoint
 SIZE = {"width": 1280, "height": 760}
 GAP = 12  # pixels between the pictures of a sheet
 COLOURS = 72  # of a picture: its bytes are less than half, and nobody sees it
-KEPT = "words"  # the text of the picture that has them
-SEEN = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
+WORDS_SCENE = "words"  # the text of the picture that has them
+SEEN_SELECTOR = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
 CLASS = sources(ROOT, "docs/en/class.md")
 GUIDES = {
     value: "".join((ROOT / guide).read_text("utf-8") for guide in (name, CLASS.get(value)) if guide)
@@ -108,7 +108,8 @@ def take(language: str, scene: str, target: Path) -> None:
         page.evaluate(studio.SETTLED)
         words.extend(
             page.eval_on_selector_all(
-                SEEN, "all => all.filter(one => one.checkVisibility()).map(one => one.innerText)"
+                SEEN_SELECTOR,
+                "all => all.filter(one => one.checkVisibility()).map(one => one.innerText)",
             )
         )
         shots.append(Image.open(BytesIO(page.screenshot())).convert("RGB"))
@@ -130,7 +131,7 @@ def take(language: str, scene: str, target: Path) -> None:
         raise SystemExit(f"the page said {pages.wrong[0]}")
     kept = PngInfo()
     text = sorted({row.strip() for word in words for row in word.splitlines() if row.strip()})
-    kept.add_text(KEPT, json.dumps([item for item in text if is_said(item)]))
+    kept.add_text(WORDS_SCENE, json.dumps([item for item in text if is_said(item)]))
     _sheet(shots).quantize(COLOURS).save(target, optimize=True, pnginfo=kept)
 
 
@@ -174,7 +175,7 @@ def _take_single(page: Page, scene: str, look: Callable[[], None]) -> None:
     if scene == ".held":
         page.click("#view_text")
         numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
-        numbers.filter(has_text=str(HOLDS)).last.click()
+        numbers.filter(has_text=str(BREAKPOINT_LINE)).last.click()
     if scene == ".lesson":
         page.click("#side_lessons")
         page.locator("#lesson_next:enabled").wait_for()
@@ -350,7 +351,7 @@ def why_stale(language: str, scene: str = "") -> str:
     if not path.is_file():
         return f"there is no {path.name}. Take it:  {COMMAND}"
     with Image.open(path) as image:
-        words = json.loads(str(image.info.get(KEPT, "[]")))
+        words = json.loads(str(image.info.get(WORDS_SCENE, "[]")))
     if not words:
         return f"{path.name} does not say what can be read in it. Take it:  {COMMAND}"
     gone = [word for word in words if not is_said(word)]

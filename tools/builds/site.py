@@ -22,12 +22,12 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 
-from tiniscript.base.languages import SOURCE, about, languages, text
+from tiniscript.base.languages import SOURCE_LANGUAGE, language_info, languages, text
 from tools import ROOT, CannotMake
 from tools.builds import studio
 from tools.generate.built import build_all
 from tools.site import links, theme
-from tools.site.documents import FRONT, PARTS, Document, documents, sources
+from tools.site.documents import FRONT_PAGE, PARTS, Document, documents, sources
 from tools.site.pages import FILES, Place, Shelf, page, shelf
 
 SITE = ROOT / "tools" / "site"
@@ -105,7 +105,7 @@ def halves_of(documents: list[Document]) -> list[str]:
 
 
 def _start_page(language: str) -> str:
-    sentence = f"{about(language).name}: {text('documents', 'site/choice', language)}"
+    sentence = f"{language_info(language).name}: {text('documents', 'site/choice', language)}"
     return f'<a href="{language}/index.html" lang="{language}" hreflang="{language}">{sentence}</a>'
 
 
@@ -119,8 +119,8 @@ def stage(half: Path, documents: list[Document], on: Shelf, language: str) -> No
         for document in documents
         if language in document.sources
     }
-    front = sources(on.root, FRONT)
-    front_page = page(front.get(language, FRONT), on, Place(language, "index"))
+    front = sources(on.root, FRONT_PAGE)
+    front_page = page(front.get(language, FRONT_PAGE), on, Place(language, "index"))
     for name, said in {**pages, "index": front_page + contents(documents, language)}.items():
         target = half / f"{name}.md"
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -135,7 +135,7 @@ def stage(half: Path, documents: list[Document], on: Shelf, language: str) -> No
 def render(half: Path, folder: Path, documents: list[Document], has_studio: bool) -> None:
     """Make the pages of one half with Sphinx. Raises CannotMake with what it complains about."""
     language = folder.name
-    others = {item: about(item).name for item in halves_of(documents) if item != language}
+    others = {item: language_info(item).name for item in halves_of(documents) if item != language}
     told = {"others": others, "pages": {page.name: list(page.sources) for page in documents},
             "has_studio": has_studio}  # fmt: skip
     (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
@@ -147,7 +147,7 @@ def render(half: Path, folder: Path, documents: list[Document], has_studio: bool
                            env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
     if ended.returncode:
         raise CannotMake((ended.stdout + ended.stderr).replace(f"{half}{os.sep}", "").strip())
-    if language != SOURCE:
+    if language != SOURCE_LANGUAGE:
         theme.translate(folder, language)
 
 

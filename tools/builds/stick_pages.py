@@ -19,7 +19,7 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from tiniscript import robots
-from tiniscript.base.languages import SOURCE, about, text, translated_languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, language_info, text, translated_languages
 from tiniscript.lessons import catalogue
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.plan import plan_of
@@ -68,7 +68,10 @@ def make(root: Path, folder: Path) -> None:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, target)
         else:
-            _write(target / "index.html", page(path.name, f"<p>{escape(path.name)}/</p>", SOURCE))
+            _write(
+                target / "index.html",
+                page(path.name, f"<p>{escape(path.name)}/</p>", SOURCE_LANGUAGE),
+            )
     for language in translated_languages("documents", "stick/title"):
         for name in robots.names():
             plan = plan_of(robots.load(name).with_language(language), language)
@@ -125,7 +128,7 @@ def _index(root: Path, folder: Path, language: str, titles: dict[str, str]) -> s
         text("documents", f"stick/{key}", language) for key in keys
     )
     others = " · ".join(
-        f'<a href="{name_in(item, INDEX)}">{about(item).name}</a>'
+        f'<a href="{name_in(item, INDEX)}">{language_info(item).name}</a>'
         for item in translated_languages("documents", "stick/title")
         if item != language
     )

@@ -23,8 +23,8 @@ from tools import CannotMake
 PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14", "3.15")
 # Packages of which PyPI has only the source; those with a True have parts in C, and do without.
 SOURCES = {"cobs": True, "platformio": False}
-PURE = "py3-none-any"
-OLDEST = (1980, 1, 1, 0, 0, 0)  # the earliest time of a ZIP file
+PURE_TAG = "py3-none-any"
+OLDEST_ZIP_TIME = (1980, 1, 1, 0, 0, 0)  # the earliest time of a ZIP file
 
 _PIP = """\
 import json, sys
@@ -78,7 +78,7 @@ def make_sources(folder: Path) -> None:
         with tempfile.TemporaryDirectory() as place:
             _pip(["wheel", "--quiet", "--no-deps", "--wheel-dir", place, name], {})
             path = next(Path(place).glob("*.whl"))
-            if path.name.endswith(f"-{PURE}.whl"):
+            if path.name.endswith(f"-{PURE_TAG}.whl"):
                 shutil.copy(path, folder)
             elif has_parts_in_c:
                 without_parts_in_c(path, folder)
@@ -92,9 +92,9 @@ def without_parts_in_c(wheel: Path, folder: Path) -> Path:
     Its files have the times that they had, so that the same wheel gives the same bytes.
     """
     name, version = wheel.name.split("-")[:2]
-    target = folder / f"{name}-{version}-{PURE}.whl"
+    target = folder / f"{name}-{version}-{PURE_TAG}.whl"
     rows = []
-    moment = OLDEST
+    moment = OLDEST_ZIP_TIME
     with zipfile.ZipFile(wheel) as old, zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as new:
         record = next(item for item in old.namelist() if item.endswith(".dist-info/RECORD"))
         for item in old.namelist():
@@ -102,7 +102,9 @@ def without_parts_in_c(wheel: Path, folder: Path) -> Path:
                 continue
             data = old.read(item)
             if item.endswith(".dist-info/WHEEL"):
-                data = re.sub(rb"(?m)^Tag:.*\n", b"", data).rstrip() + f"\nTag: {PURE}\n".encode()
+                data = (
+                    re.sub(rb"(?m)^Tag:.*\n", b"", data).rstrip() + f"\nTag: {PURE_TAG}\n".encode()
+                )
                 data = re.sub(rb"(?m)^Root-Is-Purelib:.*$", b"Root-Is-Purelib: true", data)
             moment = old.getinfo(item).date_time
             new.writestr(zipfile.ZipInfo(item, moment), data, zipfile.ZIP_DEFLATED)

@@ -24,7 +24,7 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
-from tiniscript.base.languages import SOURCE, about, catalogue, languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, catalogue, language_info, languages
 from tiniscript.studio import block_kinds, building
 from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description
@@ -98,8 +98,8 @@ def build(page: Path = PAGE) -> None:
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
     for code in languages():
         catalogue("lessons", code)  # made where it is stale
-    make("languages.json", [(code, about(code).name) for code in languages()])
-    make(f"texts.{SOURCE}.json", page_texts(SOURCE))  # whose keys are checked
+    make("languages.json", [(code, language_info(code).name) for code in languages()])
+    make(f"texts.{SOURCE_LANGUAGE}.json", page_texts(SOURCE_LANGUAGE))  # whose keys are checked
     make("description.json", description())
     make("blocks.json", block_kinds.data())
     make_blockly()
@@ -255,7 +255,7 @@ def offline(target: Path) -> None:
     for name in names:
         whole.update(f"{name}\0".encode() + hashlib.sha256((target / name).read_bytes()).digest())
     said = {code: language_files(code) for code in languages()}
-    later = {name for code in said if code != SOURCE for name in said[code]}
+    later = {name for code in said if code != SOURCE_LANGUAGE for name in said[code]}
     apart = {"index.html", LICENCES, FIRMWARE, *later}
     files = ["./", *(name for name in names if name not in apart)]
     constants = {"VERSION": whole.hexdigest()[:16], "FILES": files, "LANGUAGES": said}

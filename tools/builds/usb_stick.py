@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import __version__
-from tiniscript.base.languages import SOURCE, text, translated_languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, text, translated_languages
 from tiniscript.flash import ready
 from tools import ROOT, CannotMake
 from tools.builds import stick_pages, stick_wheels
@@ -79,7 +79,7 @@ def main(words: Sequence[str] | None = None) -> int:
     titles = ", ".join(SYSTEMS[system].title for system in systems)
     add_readme(folder, titles, ", ".join(pythons), missing)
     for item in missing:
-        print(f"missing: {item.sentence(SOURCE)} ({item.why})", file=sys.stderr)
+        print(f"missing: {item.sentence(SOURCE_LANGUAGE)} ({item.why})", file=sys.stderr)
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"{folder}: {size / 1e6:.0f} MB. Copy what is in it to the stick.")
     return 1 if missing else 0

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.base import limits
-from tiniscript.base.kit import DEVICES, Kit
+from tiniscript.base.kit import MOST_DEVICES, Kit
 from tiniscript.bytecode import image, opcodes, verify
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import ProfileRefused, Robot
@@ -30,7 +30,7 @@ from tools.generate.front import fronts
 from tools.generate.guide_pictures import guide_pictures
 from tools.generate.link_header import payloads
 from tools.generate.poster import posters
-from tools.site.documents import LIST
+from tools.site.documents import INDEX_PAGE
 
 COMMAND = "python -m tools.generate"
 KITS = ("tinibot", "liner", "grabber")  # that differ
@@ -139,7 +139,7 @@ def role_table() -> str:
 def fault_table() -> str:
     rows = []
     for number, name, what in opcodes.FAULTS:
-        faulting = ", ".join(f"`{item}`" for item in opcodes.FAULTING[name])
+        faulting = ", ".join(f"`{item}`" for item in opcodes.FAULTING_OPS[name])
         rows.append((number, f"`{name}`", what, faulting or "none, in verified code"))
     return table(("number", "fault", "when", "instructions"), rows)
 
@@ -154,7 +154,12 @@ def limit_table() -> str:
         ("nested blocks in a text, including those around a call", limits.BLOCKS, "", compiler),
         ("stack", limits.STACK_VALUES, "values", both.format("STACK_OVERFLOW")),
         ("variables", limits.VARIABLES, "", f"{compiler}, and {operand}"),
-        ("sensors of a kit, and actuators", DEVICES, "", f"the robot's profile, and {operand}"),
+        (
+            "sensors of a kit, and actuators",
+            MOST_DEVICES,
+            "",
+            f"the robot's profile, and {operand}",
+        ),
         ("tasks beside the main one", limits.TASKS, "", both.format("TOO_MANY_TASKS")),
         (f"{counted}, in all tasks together", limits.COUNTERS, "", deep),
         ("calls open at once, in all tasks together", limits.CALLS, "", both.format("TOO_DEEP")),
@@ -235,7 +240,10 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     *((PICTURES / name, make) for name, make in fronts(COMMAND).items()),
     (PICTURES / "worlds.svg", partial(world_picture, COMMAND)),
     *((PICTURES / name, make) for name, make in guide_pictures(COMMAND).items()),
-    (ROOT / LIST, partial(list_of_documents, COMMAND)),  # which reads the other documents' titles
+    (
+        ROOT / INDEX_PAGE,
+        partial(list_of_documents, COMMAND),
+    ),  # which reads the other documents' titles
     (ROOT / "vm_arduino" / "test" / "cases.cpp", partial(cases_table, COMMAND)),
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))

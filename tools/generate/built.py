@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable
 from functools import partial
 
-from tiniscript.base.languages import SOURCE
+from tiniscript.base.languages import SOURCE_LANGUAGE
 from tools import ROOT
 from tools.generate.command_pages import DOCUMENTED, page
 from tools.generate.documents import table
@@ -25,7 +25,9 @@ Made = dict[str, Callable[[], str]]
 def makers_of_kept() -> Made:
     """Return how what is kept of these documents is made, by its name in a clone."""
     result = wiring_pages(COMMAND, is_kept=True)
-    pages = {name: make for name, make in result.items() if name.startswith(f"docs/{SOURCE}/")}
+    pages = {
+        name: make for name, make in result.items() if name.startswith(f"docs/{SOURCE_LANGUAGE}/")
+    }
     shown = _shown_drawings() | {
         drawing for make in pages.values() for drawing in _drawings(make())
     }

@@ -10,7 +10,14 @@ from collections.abc import Callable, Iterator, Sequence
 from tiniscript.base.languages import text, translated_languages
 from tiniscript.cli import help
 from tiniscript.cli.texts.options import Option, shown_of
-from tiniscript.cli.texts.verbs import NOTES, VERBS, command_words, of_verb, steps_of, verb_text
+from tiniscript.cli.texts.verbs import (
+    NOTES,
+    VERBS,
+    command_words,
+    steps_of,
+    verb_sentence,
+    verb_text,
+)
 from tools.site.documents import links
 
 Table = Callable[[Sequence[str], Sequence[Sequence[object]]], str]
@@ -51,7 +58,7 @@ def _overview(language: str, table: Table) -> Iterator[str]:
 def _command(command: str, language: str, table: Table) -> Iterator[str]:
     yield f"{'##' if command in VERBS else '###'} `tsc {command_words(command)}`"
     yield "\\\n".join(f"`{way}`" for way in help.usage(command, language))
-    yield of_verb(command, "says", language)
+    yield verb_sentence(command, "says", language)
     own = [option for option in shown_of(command) if option.verbs != "*"]
     is_apart = any(option.name == "virtual" for option in own)
     yield _options([option for option in own if not (is_apart and option.virtual)], language, table)
@@ -59,7 +66,7 @@ def _command(command: str, language: str, table: Table) -> Iterator[str]:
     if virtual:
         yield verb_text("virtual", language)
         yield _options(virtual, language, table)
-    yield of_verb(command, "ends", language).replace("\n", "\\\n")
+    yield verb_sentence(command, "ends", language).replace("\n", "\\\n")
 
 
 def _options(options: list[Option], language: str, table: Table) -> str:

@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import NamedTuple
 
 from tiniscript.base import limits
-from tiniscript.base.kit import DEVICES, DEVICES_POLYNOMIAL
+from tiniscript.base.kit import DEVICES_POLYNOMIAL, MOST_DEVICES
 from tiniscript.bytecode import image, opcodes, verify
 
 TASK_OPS = tuple(op for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
@@ -48,7 +48,7 @@ def header(command: str) -> str:
         + constants_of(limits, "CODE_BYTES", "STACK_VALUES", "VARIABLES", "COUNTERS", "CALLS",
                        "DEFS", "TASKS", "NEST_WORDS", "JOINS")
         + constants(
-            ("kDevices", DEVICES),
+            ("kDevices", MOST_DEVICES),
             ("kCheckMs", limits.CHECK_MS),
             ("kShorts", opcodes.SHORTS),
             ("kPowerHigh", opcodes.OPERAND_KINDS["power"].high),
@@ -144,7 +144,7 @@ def enumeration(name: str, rows: Sequence[tuple[str, int, str]]) -> str:
 def ways() -> str:
     """Return what says which second bytes there are: those of a MOVE and of a WATCH of its own."""
     same = {"GO": "MOVE", "WATCH_GO": "WATCH"}
-    for code, op in opcodes.ESCAPED.items():
+    for code, op in opcodes.ESCAPED_OPS.items():
         base, _, direction = op.name.rpartition("_")
         twin = opcodes.BY_NAME[f"{same[base]}_{direction}"]
         assert (twin.code, twin.control_role, twin.pops) == (
@@ -152,8 +152,8 @@ def ways() -> str:
             op.control_role,
             op.pops,
         ) and not op.operands
-    mask, value = 0xF4, min(opcodes.ESCAPED)
-    assert {code for code in range(256) if code & mask == value} == set(opcodes.ESCAPED)
+    mask, value = 0xF4, min(opcodes.ESCAPED_OPS)
+    assert {code for code in range(256) if code & mask == value} == set(opcodes.ESCAPED_OPS)
     return (
         "// Whether a second byte is that of GO or of WATCH_GO: the code of MOVE or of WATCH.\n"
         "constexpr bool is_way(uint8_t code) {"

@@ -12,13 +12,13 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
-from tiniscript.base.languages import SOURCE, languages, text
+from tiniscript.base.languages import SOURCE_LANGUAGE, languages, text
 from tiniscript.base.words import WORDS
-from tiniscript.lessons.lesson import AREA, KINDS, WHATS, Kind
+from tiniscript.lessons.lesson import AREA_KEYS, DEVICE_KINDS, KINDS, Kind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools import ROOT, measures
 from tools.generate.poster import as_block
-from tools.site.documents import LIST, documents, sources
+from tools.site.documents import INDEX_PAGE, documents, sources
 
 PACKAGE = ROOT / "compiler" / "tiniscript"
 
@@ -79,13 +79,13 @@ def lessons_document() -> str:
 
 def bring_up_document(document: str, language: str) -> str:
     """Return a list for a real board, with the steps of the form that `tsc doctor` writes."""
-    from tiniscript.cli.commands.doctor import STEPS
+    from tiniscript.cli.commands.doctor import FORM_STEPS
     from tiniscript.cli.texts import text
 
     kinds = ("step", "do", "see")
     rows = [
         [number, *(text(f"{kind}_{step}", language) for kind in kinds)]
-        for number, step in enumerate(STEPS, 1)
+        for number, step in enumerate(FORM_STEPS, 1)
     ]
     head = [text(f"head_{kind}", language) for kind in kinds]
     return splice(_text(document), "steps", table(["", *head], rows))
@@ -116,7 +116,11 @@ def language_document(document: str, language: str) -> str:
 
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: title and first sentence of each, in all languages side by side."""
-    matches = [document for document in documents(ROOT) if document.sources.get(SOURCE) != LIST]
+    matches = [
+        document
+        for document in documents(ROOT)
+        if document.sources.get(SOURCE_LANGUAGE) != INDEX_PAGE
+    ]
     shown = [
         language for language in languages() if any(language in one.sources for one in matches)
     ]
@@ -209,9 +213,9 @@ def _key_list(kind: Kind) -> list[str]:
     """Return the keys, with their defaults where these say something."""
     result = ["`at`"] if kind.places else []
     if kind.words:
-        result.append("`what`" if kind.words in WHATS else "`words`")
+        result.append("`what`" if kind.words in DEVICE_KINDS else "`words`")
     for number in kind.numbers:
         is_said = number.default is not None and number.default < number.high
         result.append(f"`{number.key}`" + (f" ({number.default:g})" if is_said else ""))
-    result += [f"`{item}`" for item in (*kind.flags, *(AREA if kind.has_area else ()))]
+    result += [f"`{item}`" for item in (*kind.flags, *(AREA_KEYS if kind.has_area else ()))]
     return result

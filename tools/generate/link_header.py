@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import accumulate
 
-from tiniscript.base.languages import SOURCE, text
+from tiniscript.base.languages import SOURCE_LANGUAGE, text
 from tiniscript.link import messages
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES, SHARED_REPLIES, Field, Message
 from tools.generate.cpp_header import (
@@ -26,7 +26,7 @@ def header(command: str) -> str:
     """Return `messages.h`: every number of the link."""
     named = [(message.name, message.number, message.meaning) for message in MESSAGES]
     statuses = [
-        (name, number, text("statuses", f"{name}/said", SOURCE))
+        (name, number, text("statuses", f"{name}/said", SOURCE_LANGUAGE))
         for name, number in messages.STATUSES.items()
     ]
     parts = (
@@ -172,7 +172,9 @@ def status_rows() -> Rows:
     rows = []
     for name, number in messages.STATUSES.items():
         detail = messages.DETAILS.get(name, "")
-        rows.append((number, f"`{name}`", detail, text("statuses", f"{name}/said", SOURCE)))
+        rows.append(
+            (number, f"`{name}`", detail, text("statuses", f"{name}/said", SOURCE_LANGUAGE))
+        )
     return ("number", "status", "detail", "English"), rows
 
 

@@ -21,12 +21,12 @@ from tiniscript.conformance.kit import LINK_FORM, LINK_VERSION
 from tiniscript.link.messages import MAJOR, MINOR
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
-from tools.generate.machine_kit import STEPS, TINIBOT, USUAL, Run, arithmetic, documented_runs
+from tools.generate.machine_kit import MOST_STEPS, TINIBOT, USUAL, Run, arithmetic, documented_runs
 
 LONGEST_MS = 3000
 MOST_SHOWS = 40
 MOST_BYTES = 200  # of code: any robot has room for it
-OTHERWISE = ("TIME", "RANDOM")  # what nobody knows beforehand
+UNPREDICTABLE_WORDS = ("TIME", "RANDOM")  # what nobody knows beforehand
 KINDS = {">": "computer", "<": "robot", "did": "does", "tells": "tells", "outcome": "outcome"}
 BYTES = re.compile(r"((?:[0-9a-f]{2} ?)+)(?:   (.*))?$")
 
@@ -60,11 +60,15 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
             continue
         code = image.code
         words = disassemble(code).split()
-        if image.devices or len(code) > MOST_BYTES or any(word in words for word in OTHERWISE):
+        if (
+            image.devices
+            or len(code) > MOST_BYTES
+            or any(word in words for word in UNPREDICTABLE_WORDS)
+        ):
             continue
         robot = TracedRobot(run.kit, int)
         machine = Machine(code, robot, len(run.kit.readings))
-        while (status := machine.tick(robot.now_ms, STEPS)) == WAITING:
+        while (status := machine.tick(robot.now_ms, MOST_STEPS)) == WAITING:
             robot.now_ms = machine.wake_ms
             if robot.now_ms > LONGEST_MS:
                 break

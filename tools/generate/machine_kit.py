@@ -26,19 +26,21 @@ from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.support.random_programs import random_program
 from tiniscript import compile_text, robots
-from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
+from tiniscript.base.kit import MOST_DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import assemble
 from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused, pack, unpack, with_checksum
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ISA_MAJOR, ISA_MINOR, SHORTS, Op
 from tiniscript.bytecode.verify import Refused, load_image
-from tiniscript.conformance.kit import FORM, VERSION
+from tiniscript.conformance.kit import MACHINE_FORM, MACHINE_VERSION
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, RUNNING, Robot
 from tiniscript.vm.tasks import machine_of
 
 TINIBOT = robots.load("tinibot").kit
-STEPS = 100_000  # a case that runs more without a wait says nothing about its end: it is left out,
+MOST_STEPS = (
+    100_000  # a case that runs more without a wait says nothing about its end: it is left out,
+)
 CALLS = 1000  # and so is one of more calls at one time
 RANDOM_PROGRAMS = range(1000, 1030)
 TASK_PROGRAMS = range(1000, 1020)
@@ -106,8 +108,8 @@ def machine_kit(command: str) -> str:
             kits.append(run.kit)
         rows.append(json.dumps(case_of(run, kits.index(run.kit), answer), ensure_ascii=False))
     head = {
-        "form": FORM,
-        "version": VERSION,
+        "form": MACHINE_FORM,
+        "version": MACHINE_VERSION,
         "made_by": command,
         "isa": [ISA_MAJOR, ISA_MINOR],
         "kits": [[line.removesuffix("\n") for line in lines_of(kit)] for kit in kits],
@@ -187,7 +189,7 @@ def answer_of(
     calls = 0  # at the same time
     while calls < CALLS:
         robot.was_slow = False
-        status = machine.tick(begin + robot.now_ms, STEPS)
+        status = machine.tick(begin + robot.now_ms, MOST_STEPS)
         if status == DONE:
             robot.say("DONE", (), "DONE")
         elif status == FAULT:
@@ -303,12 +305,12 @@ def devices() -> Iterator[Run]:
     """Return a run with as many devices as a kit may have, by each way to name one."""
     kinds = ((NUMBER, "cm", -1000, 400_000), (YES_NO, "", 0, 1))
     kit = Kit(
-        tuple(Device(f"S{k}", *kinds[k % 3 == 1]) for k in range(DEVICES)),
-        tuple(Device(f"A{k}", *kinds[k % 3 == 2]) for k in range(DEVICES)),
+        tuple(Device(f"S{k}", *kinds[k % 3 == 1]) for k in range(MOST_DEVICES)),
+        tuple(Device(f"A{k}", *kinds[k % 3 == 2]) for k in range(MOST_DEVICES)),
     )
     code = b""
     for sensor, actuator in chain(
-        ((f" s{k}", f" a{DEVICES - 1 - k}") for k in range(DEVICES)),
+        ((f" s{k}", f" a{MOST_DEVICES - 1 - k}") for k in range(MOST_DEVICES)),
         ((f"_{k}", f"_{k}") for k in range(SHORTS)),
     ):
         for name in (f"READ{sensor}", f"PUSH_SENSOR{sensor}", f"SET{actuator}"):

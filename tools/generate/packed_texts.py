@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-END = 0  # of a text; the pairs are numbered from 1
+END_CODE = 0  # of a text; the pairs are numbered from 1
 FIRST_LETTER = 0x20  # the letters of ASCII begin here, and the codes of pairs end
 FIRST_COMMON = 8  # a half of a byte from here on is a code of its own
 COMMON = 16 - FIRST_COMMON
@@ -37,7 +37,7 @@ class Packed(NamedTuple):
 
 def pack(texts: Sequence[str]) -> Packed:
     """Return the texts in as few bytes as are found."""
-    rows = [[*text.encode("ascii"), END] for text in texts]
+    rows = [[*text.encode("ascii"), END_CODE] for text in texts]
     common = _most_common(rows)
     candidates = []
     for _ in range(ROUNDS):
@@ -58,7 +58,7 @@ def unpack(data: Packed) -> list[str]:
             code, at = 16 * halves[at] + halves[at + 1], at + 2
         else:
             break  # the rest of the last byte
-        if code == END:
+        if code == END_CODE:
             texts.append(text.decode("ascii"))
             text = bytearray()
         else:
@@ -82,7 +82,7 @@ def _most_common(rows: Sequence[Sequence[int]]) -> tuple[int, ...]:
     """Return the end and the most frequent letters, which take 4 bits."""
     uses = Counter(code for row in rows for code in row if code >= FIRST_LETTER)
     most = sorted(uses, key=lambda code: (-uses[code], code))[: COMMON - 1]
-    return (END, *sorted(most))
+    return (END_CODE, *sorted(most))
 
 
 def _pair_codes(
@@ -97,13 +97,13 @@ def _pair_codes(
         return 1 if code in common else 2
 
     while len(pairs) < FIRST_LETTER - 1:
-        uses = Counter(pair for row in items for pair in _row_pairs(row) if END not in pair)
+        uses = Counter(pair for row in items for pair in _row_pairs(row) if END_CODE not in pair)
         possible = [
             (count * (halves(pair[0]) + halves(pair[1]) - 2), pair)
             for pair, count in uses.items()
             if max(depths.get(item, 0) for item in pair) < DEEPEST
         ]
-        saved, pair = max(possible, default=(0, (END, END)))
+        saved, pair = max(possible, default=(0, (END_CODE, END_CODE)))
         if saved <= LEAST_SAVED:
             break
         code = 1 + len(pairs)

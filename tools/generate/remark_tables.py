@@ -5,11 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.codegen.text.problems import OF_DEFS, PROBLEMS, REMARKS, problem_text
+from tiniscript.codegen.text.problems import DEF_PROBLEMS, PROBLEMS, REMARKS, problem_text
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answer_languages, language_number
 from tiniscript.robots.text_levels import LEVELS
-from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, pack
+from tools.generate.packed_texts import (
+    DEEPEST,
+    END_CODE,
+    FIRST_COMMON,
+    FIRST_LETTER,
+    letters_of,
+    pack,
+)
 from tools.generate.text_tables import bytes_of_table, file_of, numbers_of
 
 SMALLEST = "uno"
@@ -48,7 +55,7 @@ def texts_header(command: str) -> str:
             "// A code is the end of a text, a pair, or a letter from kFirstLetter on, in ASCII.",
             "// The high half of a byte comes first. A half from kFirstCommon on is a code of",
             "// packed_codes(), any other one the first half of a code.",
-            f"constexpr uint8_t kTextEnd = {END};",
+            f"constexpr uint8_t kTextEnd = {END_CODE};",
             f"constexpr uint8_t kFirstLetter = 0x{FIRST_LETTER:02x};",
             f"constexpr uint8_t kFirstCommon = {FIRST_COMMON};",
             "",
@@ -87,7 +94,7 @@ def _unused_remarks() -> set[tuple[str, str]]:
     """
     levels = {("remark", f"LEVEL_{name.upper()}") for name in LEVELS if name != SMALLEST}
     assert "DEF" in LEVELS[SMALLEST].lacks
-    words = {("problem", name) for name in OF_DEFS}
+    words = {("problem", name) for name in DEF_PROBLEMS}
     faults = {("fault", name) for _, name, _ in FAULTS if name.startswith("STUCK")}
     return levels | words | faults | {("remark", "NO_KEYS")}
 
@@ -169,4 +176,4 @@ def _tables(language: str, rows: Sequence[str]) -> list[str]:
 
 
 def _c_bytes(codes: Sequence[int]) -> str:
-    return "the end, " + ", ".join(f"'{chr(code)}'" for code in codes if code != END)
+    return "the end, " + ", ".join(f"'{chr(code)}'" for code in codes if code != END_CODE)

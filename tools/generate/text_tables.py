@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST
-from tiniscript.base.languages import SOURCE
+from tiniscript.base.languages import SOURCE_LANGUAGE
 from tiniscript.base.limits import BLOCKS
 from tiniscript.base.words import ALIASES, WORDS, Word
 from tiniscript.bytecode.image import STARTS
@@ -204,7 +204,9 @@ def problems_header(command: str) -> str:
 
 def numbers_of(name: str, keys: Sequence[str]) -> str:
     """Return an enum of what a robot says, with its English texts."""
-    rows = [(key, k, problem_text(name.lower(), key, SOURCE)) for k, key in enumerate(keys, 1)]
+    rows = [
+        (key, k, problem_text(name.lower(), key, SOURCE_LANGUAGE)) for k, key in enumerate(keys, 1)
+    ]
     return enumeration(name, [("NONE", 0, ""), *rows]).rstrip("\n")
 
 

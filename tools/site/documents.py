@@ -14,11 +14,11 @@ from collections.abc import Collection, Iterable
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
-from tiniscript.base.languages import SOURCE, about, languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, language_info, languages
 
-LIST = "docs/README.md"  # of all others, made from here
+INDEX_PAGE = "docs/README.md"  # of all others, made from here
 PAGES = "docs/en/"
-FRONT = "README.md"  # of each half of the site
+FRONT_PAGE = "README.md"  # of each half of the site
 PARTS = ("teach", "write", "wiring", "pupils", "teachers", "trust", "build")
 ENDING = re.compile(r"(?:\.en)?(\.\w+)$")
 
@@ -33,7 +33,7 @@ class Document(NamedTuple):
 
 def name_in(language: str, english: str) -> str:
     """Return what the file of a document is called in a language, whether it is there or not."""
-    if language == SOURCE:
+    if language == SOURCE_LANGUAGE:
         return english
     if english.startswith(PAGES):
         return f"docs/{language}/{english.removeprefix(PAGES)}"
@@ -43,7 +43,7 @@ def name_in(language: str, english: str) -> str:
 def language_of(name: str) -> str:
     """Return the language that a document is in, by the name of its file."""
     folder, code = PurePosixPath(name).parts[1:2], name.split(".")[-2:-1]
-    return next((item for item in (*folder, *code) if item in languages()), SOURCE)
+    return next((item for item in (*folder, *code) if item in languages()), SOURCE_LANGUAGE)
 
 
 def sources(root: Path, english: str) -> dict[str, str]:
@@ -52,7 +52,7 @@ def sources(root: Path, english: str) -> dict[str, str]:
     return {
         language: name
         for language, name in found.items()
-        if language == SOURCE or (root / name).is_file()
+        if language == SOURCE_LANGUAGE or (root / name).is_file()
     }
 
 
@@ -60,10 +60,14 @@ def links(language: str, english: str, others: Iterable[str]) -> list[str]:
     """Return the links on a document to itself in other languages."""
     here = PurePosixPath(name_in(language, english)).parent
     return [
-        f"[{about(other).name}]({Path(os.path.relpath(name_in(other, english), here)).as_posix()})"
+        f"[{language_info(other).name}]({_relative_path(name_in(other, english), here)})"
         for other in others
         if other != language
     ]
+
+
+def _relative_path(name: str, folder: PurePosixPath) -> str:
+    return Path(os.path.relpath(name, folder)).as_posix()
 
 
 def _rows(root: Path, part: str, *files: str, folder: str = "") -> list[Document]:
@@ -111,7 +115,7 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
         Document("library", "write", sources(root, f"{PAGES}api.md")),
         *_rows(root, "wiring", *_files(root, f"{PAGES}wiring/*.md"), folder="wiring/"),
         *_lessons(root),
-        Document("index", "trust", sources(root, FRONT)),
+        Document("index", "trust", sources(root, FRONT_PAGE)),
         *_guides(root, "trust", "comparison", "guarantees", "figures", "computer"),
         *_rows(root, "trust", "SECURITY.md", "CODE_OF_CONDUCT.md"),
         *_rows(root, "build", "CONTRIBUTING.md"),
@@ -120,16 +124,17 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
         *_pages(root, "conformance", "link", "owners", "network", "text", "store", "runs", "esp32"),
         *_guides(root, "build", "versions"),
         *_rows(root, "build", "CHANGELOG.md"),
-        Document("documents", "build", {SOURCE: LIST}),
+        Document("documents", "build", {SOURCE_LANGUAGE: INDEX_PAGE}),
     ]
     there = [
         document
         for document in matches
-        if document.sources[SOURCE] in built or (root / document.sources[SOURCE]).is_file()
+        if document.sources[SOURCE_LANGUAGE] in built
+        or (root / document.sources[SOURCE_LANGUAGE]).is_file()
     ]
     return [document._replace(sources=_with_built(built, document.sources)) for document in there]
 
 
 def _with_built(built: Collection[str], kept: dict[str, str]) -> dict[str, str]:
-    names = {language: name_in(language, kept[SOURCE]) for language in languages()}
+    names = {language: name_in(language, kept[SOURCE_LANGUAGE]) for language in languages()}
     return {value: name for value, name in names.items() if value in kept or name in built}

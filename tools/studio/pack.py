@@ -33,7 +33,7 @@ DATA = {
 }
 DATA_OF_LESSONS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md"),
                    "languages": ("*/lessons.texts",)}  # fmt: skip
-PRINTED = re.compile(r"((?:-|[0-9]{1,2}\.) +)?\[print\]")  # a line that is only on paper
+PRINTED_LINE = re.compile(r"((?:-|[0-9]{1,2}\.) +)?\[print\]")  # a line that is only on paper
 ON_PAGE = (0, 2, 3)  # sections of a pupil's page that are read beside the simulator: `page_lessons`
 ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")
 STAMP = (1980, 1, 1, 0, 0, 0)
@@ -106,13 +106,13 @@ class Packer:
 
 
 NO_LINES = 0xF8  # of instructions without a place in the source; their number less 1 is added
-UNITS = 8  # the most of one entry
+MOST_ENTRY_UNITS = 8  # the most of one entry
 
 
 def _without_lines(code: CodeType) -> CodeType:
     """Return code without the lines of its source, which are a fifth of it and pack badly."""
-    entries, rest = divmod(len(code.co_code) // 2, UNITS)
-    lines = bytes([NO_LINES + UNITS - 1] * entries + [NO_LINES + rest - 1] * (rest > 0))
+    entries, rest = divmod(len(code.co_code) // 2, MOST_ENTRY_UNITS)
+    lines = bytes([NO_LINES + MOST_ENTRY_UNITS - 1] * entries + [NO_LINES + rest - 1] * (rest > 0))
     constants = tuple(_without_lines(constant) if isinstance(constant, CodeType) else constant
                       for constant in code.co_consts)  # fmt: skip
     return code.replace(co_linetable=lines, co_consts=constants)
@@ -159,7 +159,7 @@ def on_page(written: str) -> str:
     for line in written.split("\n"):
         is_heading = line.startswith("## ")
         section += is_heading
-        if is_heading or (section in ON_PAGE and not PRINTED.match(line)):
+        if is_heading or (section in ON_PAGE and not PRINTED_LINE.match(line)):
             kept.append(line)
     return "\n".join(kept)
 

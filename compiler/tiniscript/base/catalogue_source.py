@@ -20,12 +20,12 @@ from string import Formatter
 from typing import Any
 
 PLURALS = ("zero", "one", "two", "few", "many", "other")  # as Unicode's CLDR names them
-UNKNOWN, DIGITS = "-", 8  # instead of a hash; of one
+UNKNOWN_HASH, HASH_DIGITS = "-", 8  # instead of a hash; of one
 _GAP = re.compile(r"\{@?\w+\}")
-_HEAD = re.compile(r"""\s*("(?:[^"\\]|\\.)*"|'[^']*'|[\w-]+)\s*(\.\s*[\w-]+\s*)*=""")
-_TABLE = re.compile(r"\s*\[.*\]\s*(#.*)?")
+_ROW_START = re.compile(r"""\s*("(?:[^"\\]|\\.)*"|'[^']*'|[\w-]+)\s*(\.\s*[\w-]+\s*)*=""")
+_TABLE_HEADER = re.compile(r"\s*\[.*\]\s*(#.*)?")
 _QUOTES = re.compile(r'"""|\'\'\'')
-_PLACE = re.compile(r" \(at (line \d+, column \d+|end of document)\)$")
+_TOML_PLACE = re.compile(r" \(at (line \d+, column \d+|end of document)\)$")
 
 Forms = dict[str, str]  # of a text: by their names, or one that has none
 Problem = tuple[int, str]  # a line of a file, and a sentence
@@ -44,7 +44,7 @@ class Entry:
     key: str
     english: str
     plural: str = ""
-    said: Forms = field(default_factory=dict)
+    translation: Forms = field(default_factory=dict)
     seen: str = ""
     notes: list[str] = field(default_factory=list)
     is_same: bool = False
@@ -58,15 +58,15 @@ class Entry:
     @property
     def hash(self) -> str:
         """Return what stands for the English text in a file of what is seen."""
-        return sha256("\0".join(self.forms.values()).encode()).hexdigest()[:DIGITS]
+        return sha256("\0".join(self.forms.values()).encode()).hexdigest()[:HASH_DIGITS]
 
     @property
     def is_stale(self) -> bool:
-        return self.seen not in ("", UNKNOWN, self.hash)
+        return self.seen not in ("", UNKNOWN_HASH, self.hash)
 
     @property
     def is_translated(self) -> bool:
-        return bool(self.said) and not self.is_stale
+        return bool(self.translation) and not self.is_stale
 
     @property
     def forms(self) -> Forms:
@@ -138,12 +138,14 @@ def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
     lines = re.findall(r".*\n|.+", text)
     at = 0
     while at < len(lines):
-        is_row = _HEAD.match(lines[at]) is not None
-        end = _end(lines, at) if is_row else at + 1
+        is_row = _ROW_START.match(lines[at]) is not None
+        end = _row_end(lines, at) if is_row else at + 1
         value, why = _parse_block(block := "".join(lines[at:end]))
         if why:  # the next row is what begins as one, whatever is open here
             problems.append((at + 1, f"this is no TOML: {why[1]}"))
-            end = next((k for k in range(at + 1, len(lines)) if _is_head(lines[k])), len(lines))
+            end = next(
+                (k for k in range(at + 1, len(lines)) if _is_row_start(lines[k])), len(lines)
+            )
             value, block = {_key(lines[at]): None} if is_row else {}, "".join(lines[at:end])
         if is_row:
             row = Row(*next(iter(value.items())), at + 1, block, above, table)
@@ -159,19 +161,19 @@ def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
     return sorted([*found.values(), *again], key=lambda row: row.line), above, problems
 
 
-def _is_head(line: str) -> bool:
+def _is_row_start(line: str) -> bool:
     """Return whether a row or a table begins with this line."""
-    return _HEAD.match(line) is not None or _TABLE.fullmatch(line.rstrip()) is not None
+    return _ROW_START.match(line) is not None or _TABLE_HEADER.fullmatch(line.rstrip()) is not None
 
 
-def _end(lines: list[str], at: int) -> int:
+def _row_end(lines: list[str], at: int) -> int:
     """Return where a row ends: a text of several lines or a list goes on."""
     quotes = ""
     if not _parse_block(lines[at])[1]:
         return at + 1
     for k in range(at, len(lines)):
-        if k > at and not quotes and (_is_head(lines[k]) or lines[k].strip()[:1] in ("", "#")):
-            if _is_head(lines[k]) or not _parse_block("".join(lines[at:k]))[1]:
+        if k > at and not quotes and (_is_row_start(lines[k]) or lines[k].strip()[:1] in ("", "#")):
+            if _is_row_start(lines[k]) or not _parse_block("".join(lines[at:k]))[1]:
                 return k
         for item in _QUOTES.findall(lines[k]):
             quotes = "" if quotes == item else quotes or item
@@ -189,7 +191,7 @@ def _parse_block(block: str) -> tuple[dict[str, Any], tuple[int, str] | None]:
         return tomllib.loads(block), None
     except ValueError as error:
         at = re.search(r"at line (\d+)", str(error))
-        return {}, (int(at[1]) - 1 if at else 0, _PLACE.sub("", str(error)))
+        return {}, (int(at[1]) - 1 if at else 0, _TOML_PLACE.sub("", str(error)))
 
 
 def _toml_problems(text: str) -> list[Problem]:
@@ -199,7 +201,7 @@ def _toml_problems(text: str) -> list[Problem]:
 
 
 def _key(line: str) -> str:
-    match = _HEAD.match(line)
+    match = _ROW_START.match(line)
     return match[1].strip("\"'") if match else ""
 
 
@@ -215,7 +217,9 @@ def load(path: Path) -> Catalogue:
         entries = []
         for item in row.value if isinstance(row.value, list) else [row.value]:
             form = item if isinstance(item, dict) else {"": item}
-            entries.append(entry := Entry(row.key, *_text(form), notes=notes, line=row.line))
+            entries.append(
+                entry := Entry(row.key, *_text_and_plural(form), notes=notes, line=row.line)
+            )
             entry.is_same = "same" in form or _GAP.fullmatch(entry.english) is not None
             if not entry.is_same and "own" not in form:
                 first = firsts.setdefault((entry.english, entry.plural), entry)
@@ -232,13 +236,13 @@ def load(path: Path) -> Catalogue:
     return catalogue
 
 
-def _text(form: dict[str, object]) -> tuple[str, str]:
+def _text_and_plural(form: dict[str, object]) -> tuple[str, str]:
     """Return a text and its plural, empty without one."""
     match form:
         case {"one": str(one), "other": str(other), **more} if not more:
             return one, other
-        case {"": str(said), **more} | {"own": str(said), **more} | {"same": str(said), **more}:
-            return "" if more else said, ""
+        case {"": str(text), **more} | {"own": str(text), **more} | {"same": str(text), **more}:
+            return "" if more else text, ""
     return "", ""
 
 
@@ -252,13 +256,13 @@ def _problem(entries: list[Entry]) -> str:
     try:
         for entry in entries:
             if entry.plural or not entry.is_same:
-                gaps(entry.english), gaps(entry.plural)
+                gap_names(entry.english), gap_names(entry.plural)
     except ValueError:
         return "a brace { or } has no other half"
     return ""
 
 
-def gaps(text: str) -> set[str]:
+def gap_names(text: str) -> set[str]:
     """Return the names of the gaps, with what follows a colon: how their value is written."""
     return {
         name + (":" + form if form else "")

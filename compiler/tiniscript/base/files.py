@@ -22,14 +22,16 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from time import monotonic, sleep, time
 
-NEW = ".new"  # the end of the name of a file that is not yet whole
+NEW_ENDING = ".new"  # the end of the name of a file that is not yet whole
 MOST_LINKS = 40  # on the way to a file
 NAME_CHARACTERS = 100  # of a file's name in that of its new one
-LOCK = ".lock"  # the end of the name of a file that commands lock while they change another one
+LOCK_ENDING = (
+    ".lock"  # the end of the name of a file that commands lock while they change another one
+)
 LOCK_S = 5.0  # for which a command waits for another one
 OPEN_S = 1.0  # for which a file may be open elsewhere until it cannot be replaced on Windows
-OWN = 0o700  # a folder that only its user may look into
-ABANDONED_S = 3600.0  # a new file that is older has lost its command
+OWNER_ONLY = 0o700  # a folder that only its user may look into
+ABANDONED_AFTER_S = 3600.0  # a new file that is older has lost its command
 
 
 def cache_folder() -> Path:
@@ -83,7 +85,7 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
         if not os.access(target, os.W_OK):
             raise PermissionError(13, os.strerror(13))
         mode = stat.S_IMODE(stat_result.st_mode) & 0o777 if mode is None else mode
-    new = target.with_name(f".{target.name[:NAME_CHARACTERS]}.{os.urandom(8).hex()}{NEW}")
+    new = target.with_name(f".{target.name[:NAME_CHARACTERS]}.{os.urandom(8).hex()}{NEW_ENDING}")
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL
     flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
     # nobody else may read what replaces a file that nobody else may read
@@ -96,7 +98,7 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
                 os.fsync(file)
         if mode is not None:
             new.chmod(mode)
-        _take_place(new, target)
+        _move_into_place(new, target)
     except BaseException:
         with suppress(OSError):
             new.unlink()
@@ -109,9 +111,9 @@ def keep(path: Path, data: bytes) -> bool:
     They may have a person's programs: nobody else may read them, nor what an older tsc has kept.
     """
     try:
-        path.parent.mkdir(mode=OWN, parents=True, exist_ok=True)
-        if stat.S_IMODE(path.parent.stat().st_mode) & ~OWN and sys.platform != "win32":
-            path.parent.chmod(OWN)
+        path.parent.mkdir(mode=OWNER_ONLY, parents=True, exist_ok=True)
+        if stat.S_IMODE(path.parent.stat().st_mode) & ~OWNER_ONLY and sys.platform != "win32":
+            path.parent.chmod(OWNER_ONLY)
         replace(path, data, 0o600)
     except (OSError, ValueError):
         return False
@@ -149,7 +151,7 @@ def _refuse_foreign_links(path: Path) -> None:
         rest = [*target.parts[1 if target.anchor else 0 :], *rest]
 
 
-def _take_place(new: Path, target: Path) -> None:
+def _move_into_place(new: Path, target: Path) -> None:
     """Put a file in the place of another one.
 
     Windows replaces no file that is open, and a virus scanner or another command may be reading it
@@ -173,7 +175,7 @@ def lock_file(path: Path, mode: int = 0o600) -> Iterator[None]:
     A process that ends unlocks what it has locked. One that stands still does not: then this ends
     with TimeoutError after some seconds.
     """
-    lock = path.with_name(path.name + LOCK)
+    lock = path.with_name(path.name + LOCK_ENDING)
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
     number = os.open(lock, flags, mode)
     try:
@@ -211,7 +213,7 @@ def remove_abandoned(folder: Path, names: list[str], kept: tuple[str, ...] = (".
     for name in names:
         if not name.endswith(kept):
             with suppress(OSError):
-                if (folder / name).lstat().st_mtime < time() - ABANDONED_S:
+                if (folder / name).lstat().st_mtime < time() - ABANDONED_AFTER_S:
                     (folder / name).unlink()
 
 

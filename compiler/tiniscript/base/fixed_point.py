@@ -27,7 +27,7 @@ def in_range(value: int) -> int:
     raise Fault("OVERFLOW")
 
 
-def quotient(numerator: int, denominator: int) -> int:
+def rounded_quotient(numerator: int, denominator: int) -> int:
     """Return the quotient of two integers rounded half away from zero."""
     if denominator < 0:
         numerator, denominator = -numerator, -denominator
@@ -51,7 +51,7 @@ def multiply(a: int, b: int) -> int:
 def divide(a: int, b: int) -> int:
     if b == 0:
         raise Fault("DIVIDE_BY_ZERO")
-    return in_range(quotient(a * ONE, b))
+    return in_range(rounded_quotient(a * ONE, b))
 
 
 def modulo(a: int, b: int) -> int:
@@ -82,7 +82,7 @@ def round_to(a: int, decimals: int) -> int:
     if places < -6:  # half of 10**7 is more than any number
         return 0
     unit: int = 10 ** (3 - places)
-    return in_range(quotient(a, unit) * unit)
+    return in_range(rounded_quotient(a, unit) * unit)
 
 
 def clamp(value: int, low: int, high: int) -> int:

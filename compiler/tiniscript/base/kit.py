@@ -9,13 +9,13 @@ import zlib
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import Fault, in_range, quotient, value_text
+from tiniscript.base.fixed_point import Fault, in_range, rounded_quotient, value_text
 from tiniscript.base.words import ROLES, Argument, Word
 
 NUMBER = "number"
 YES_NO = "yes/no"
 
-DEVICES = 32  # the most sensors of a kit, and the most actuators
+MOST_DEVICES = 32  # the most sensors of a kit, and the most actuators
 DEVICES_POLYNOMIAL = 0x2D  # x^16 + x^5 + x^3 + x^2 + 1 without its first term: primitive
 
 
@@ -55,7 +55,7 @@ REMOTE = (
 )
 # What stands on its keys, in every language.
 REMOTE_SIGNS = dict(zip((device.name for device in REMOTE), "↑↓←→AB↔↕", strict=True))
-OWN_BESIDE_REMOTE = 8  # sensors at most: sets of readings have 16 bits
+MOST_SENSORS_BESIDE_REMOTE = 8  # sensors at most: sets of readings have 16 bits
 
 # Words of kits that are younger than 0.2: they give way to a program's own names.
 KIT_WORDS_SINCE = {device.name: "0.3" for device in REMOTE}
@@ -77,7 +77,7 @@ class Kit(NamedTuple):
     @property
     def has_remote(self) -> bool:
         """Whether there is room for the readings of a remote control."""
-        return len(self.sensors) <= OWN_BESIDE_REMOTE
+        return len(self.sensors) <= MOST_SENSORS_BESIDE_REMOTE
 
     @property
     def readings(self) -> tuple[Device, ...]:
@@ -107,7 +107,7 @@ class Kit(NamedTuple):
         per_second = (self.turn if turns else self.speed) * power  # in thousandths of a percent
         if not per_second:
             raise Fault("NO_POWER")
-        return in_range(quotient(way * 100_000, per_second))
+        return in_range(rounded_quotient(way * 100_000, per_second))
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -20,11 +20,14 @@ if TYPE_CHECKING:
     from tiniscript.base.catalogue_source import Catalogue
 
 FOLDER = Path(__file__).parent.parent / "languages"
-SOURCE = "en"  # what is translated, and said where there is no translation
-ITSELF, SEEN = "language.toml", "seen.txt"  # what a language says of itself, and what it is of
-NAMES = "names"  # the catalogue whose keys are the English texts
-KEPT = ".texts"  # the end of the name of what is made of sources
-KEPT_FORM = 2  # of `marshal`: every Python reads it
+SOURCE_LANGUAGE = "en"  # what is translated, and said where there is no translation
+ABOUT_FILE, SEEN_FILE = (
+    "language.toml",
+    "seen.txt",
+)  # what a language says of itself, and what it is of
+NAMES_CATALOGUE = "names"  # the catalogue whose keys are the English texts
+CACHE_ENDING = ".texts"  # the end of the name of what is made of sources
+MARSHAL_VERSION = 2  # of `marshal`: every Python reads it
 
 Forms = dict[str, str]  # of a text that counts, by their names in Unicode's CLDR
 Texts = dict[str, "str | Forms"]
@@ -50,15 +53,15 @@ class ByLanguage(dict[str, T]):
     in the first language, as the catalogue `names` translates it."""
 
     def __missing__(self, language: str) -> T:
-        return _with_name(self.get(SOURCE) or next(iter(self.values())), language)
+        return _translate_name(self.get(SOURCE_LANGUAGE) or next(iter(self.values())), language)
 
     def __repr__(self) -> str:
         return f"ByLanguage({super().__repr__()})"
 
 
-def _with_name(name: T, language: str) -> T:
+def _translate_name(name: T, language: str) -> T:
     if isinstance(name, dict):
-        return {key: _with_name(value, language) for key, value in name.items()}  # type: ignore[return-value]
+        return {key: _translate_name(value, language) for key, value in name.items()}  # type: ignore[return-value]
     return find_text("names", name, language) or name  # type: ignore[arg-type, return-value]
 
 
@@ -66,10 +69,10 @@ def _with_name(name: T, language: str) -> T:
 def languages() -> tuple[str, ...]:
     """Return the codes of all languages, the one that is translated first."""
     result = (path.name for path in FOLDER.iterdir() if path.is_dir() and path.name[0] != "_")
-    return tuple(sorted(result, key=lambda code: (code != SOURCE, code)))
+    return tuple(sorted(result, key=lambda code: (code != SOURCE_LANGUAGE, code)))
 
 
-def find(name: str) -> str:
+def find_language(name: str) -> str:
     """Return the language of a locale, `es_PE.UTF-8` or Windows' `Spanish_Peru`, else English."""
     code = name.lower().replace("-", "_").partition(".")[0].partition("@")[0]
     for item in (code, code.partition("_")[0]):
@@ -77,9 +80,11 @@ def find(name: str) -> str:
             return item
     team = code.partition("_")[0]
     by_team = (
-        {about(language).english_name.lower(): language for language in languages()} if team else {}
+        {language_info(language).english_name.lower(): language for language in languages()}
+        if team
+        else {}
     )
-    return by_team.get(team, SOURCE)
+    return by_team.get(team, SOURCE_LANGUAGE)
 
 
 def table(language: str, name: str) -> str:
@@ -88,23 +93,23 @@ def table(language: str, name: str) -> str:
     return path.read_text(encoding="utf-8-sig") if path.is_file() else ""
 
 
-def about(language: str) -> Language:
+def language_info(language: str) -> Language:
     """Return what a language says of itself."""
-    return _load_language(language if language in languages() else SOURCE)
+    return _load_language(language if language in languages() else SOURCE_LANGUAGE)
 
 
 @cache
 def _load_language(language: str) -> Language:
-    path = FOLDER / language / ITSELF
+    path = FOLDER / language / ABOUT_FILE
     return Language(
-        *_load_cached(path.with_suffix(KEPT), [path], lambda: _catalogue_texts(language))
+        *_load_cached(path.with_suffix(CACHE_ENDING), [path], lambda: _catalogue_texts(language))
     )
 
 
 def _catalogue_texts(language: str) -> tuple[Any, ...]:
     from tiniscript.base.translations import read_language
 
-    result = read_language(FOLDER / language / ITSELF)
+    result = read_language(FOLDER / language / ABOUT_FILE)
     return result.name, result.english_name, result.forms, result.form_of
 
 
@@ -122,18 +127,20 @@ def text(name: str, key: str, language: str) -> str:
     raise KeyError(key)
 
 
-def keys(name: str) -> list[str]:
+def plain_text_keys(name: str) -> list[str]:
     """Return the keys of a catalogue's texts, without those that count."""
-    return [key for key, said in catalogue(name, SOURCE).items() if isinstance(said, str)]
+    return [
+        key for key, value in catalogue(name, SOURCE_LANGUAGE).items() if isinstance(value, str)
+    ]
 
 
 def translated_languages(name: str, key: str) -> list[str]:
     """Return the languages in which a text is there, the one that is translated first."""
-    english = text(name, key, SOURCE)
+    english = text(name, key, SOURCE_LANGUAGE)
     return [
         language
         for language in languages()
-        if language == SOURCE or text(name, key, language) != english
+        if language == SOURCE_LANGUAGE or text(name, key, language) != english
     ]
 
 
@@ -141,7 +148,7 @@ def plural_text(name: str, key: str, count: int, language: str) -> str:
     """Return the form of a text with a plural that goes with a number."""
     forms = catalogue(name, language)[key]
     assert isinstance(forms, dict), key
-    text = about(language)
+    text = language_info(language)
     number = count if count < 100 else 100 + count % 100
     return forms.get(text.forms[int(text.form_of[number])]) or forms["other"]
 
@@ -149,14 +156,14 @@ def plural_text(name: str, key: str, count: int, language: str) -> str:
 @cache
 def catalogue(name: str, language: str) -> Texts:
     """Return the texts of a catalogue by key; of an unknown language they are English."""
-    language = language if language in languages() else SOURCE
-    own, path = files(name, language)[1], FOLDER / language / (name + KEPT)
+    language = language if language in languages() else SOURCE_LANGUAGE
+    own, path = files(name, language)[1], FOLDER / language / (name + CACHE_ENDING)
     if not own.is_file() and (is_clone() or not path.is_file()):
-        if language != SOURCE:  # nothing is translated, or a page has not fetched it
-            return catalogue(name, SOURCE)
+        if language != SOURCE_LANGUAGE:  # nothing is translated, or a page has not fetched it
+            return catalogue(name, SOURCE_LANGUAGE)
         if not is_clone():
             return {}
-    beside = (own.with_name(item) for item in (SEEN, ITSELF))
+    beside = (own.with_name(item) for item in (SEEN_FILE, ABOUT_FILE))
     result: Texts = _load_cached(
         path, [*files(name, language), *beside], lambda: texts(name, language)
     )
@@ -174,21 +181,21 @@ def entries(name: str, language: str) -> Catalogue:
     """Return the English texts of a catalogue with what a language has of them."""
     from tiniscript.base.catalogue_source import load
     from tiniscript.base.translations import (
-        Own,
+        TranslationFile,
         catalogue_of_names,
         merge_translations,
         read_language,
-        read_own,
         read_seen,
+        read_translation_file,
     )
 
     source, path = files(name, language)
-    own = read_own(path) if language != SOURCE else Own()
-    english = load(source) if name != NAMES else catalogue_of_names(own)
+    own = read_translation_file(path) if language != SOURCE_LANGUAGE else TranslationFile()
+    english = load(source) if name != NAMES_CATALOGUE else catalogue_of_names(own)
     for line, why in english.problems:
         raise WrongTexts(f"{source}:{line}: {why}")
-    seen, _ = read_seen(path.with_name(SEEN))
-    return merge_translations(english, name, own, seen, read_language(path.with_name(ITSELF)))
+    seen, _ = read_seen(path.with_name(SEEN_FILE))
+    return merge_translations(english, name, own, seen, read_language(path.with_name(ABOUT_FILE)))
 
 
 def _load_cached(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -> Any:
@@ -200,42 +207,46 @@ def _load_cached(path: Path, sources: Iterable[Path], make: Callable[[], Any]) -
 
     result = make()
     with suppress(OSError, ValueError):  # a folder that nobody may write to, a full disk
-        replace(path, marshal.dumps(result, KEPT_FORM))
+        replace(path, marshal.dumps(result, MARSHAL_VERSION))
     return result
 
 
-def forget() -> None:
+def forget_languages() -> None:
     """Read all languages again when they are next asked for: their folder is another one now."""
     for lru_cache_wrapper in (languages, catalogue, _load_language):
         lru_cache_wrapper.cache_clear()
 
 
-def kept_files() -> dict[str, bytes]:
+def cache_files() -> dict[str, bytes]:
     """Return all catalogues as a package has them, by their paths in FOLDER."""
-    names = sorted({path.stem for path in FOLDER.glob("*/*.toml") if path.name != ITSELF})
+    names = sorted({path.stem for path in FOLDER.glob("*/*.toml") if path.name != ABOUT_FILE})
     made: dict[str, Any] = {}
     for language in languages():
         made |= {f"{language}/{name}": texts(name, language) for name in names}
-        made[f"{language}/{ITSELF.removesuffix('.toml')}"] = _catalogue_texts(language)
-    return {name + KEPT: marshal.dumps(value, KEPT_FORM) for name, value in made.items()}
+        made[f"{language}/{ABOUT_FILE.removesuffix('.toml')}"] = _catalogue_texts(language)
+    return {
+        name + CACHE_ENDING: marshal.dumps(value, MARSHAL_VERSION) for name, value in made.items()
+    }
 
 
 def is_clone() -> bool:
     """Return whether the sources are there: a package has none."""
-    return (FOLDER / SOURCE / ITSELF).is_file()
+    return (FOLDER / SOURCE_LANGUAGE / ABOUT_FILE).is_file()
 
 
 def files(name: str, language: str) -> tuple[Path, Path]:
     """Return the English source of a catalogue, and what a language has of it."""
-    return FOLDER / SOURCE / f"{name}.toml", FOLDER / language / f"{name}.toml"
+    return FOLDER / SOURCE_LANGUAGE / f"{name}.toml", FOLDER / language / f"{name}.toml"
 
 
 def _is_fresh(path: Path, sources: Iterable[Path]) -> bool:
     """Return whether a file is there, and no source is newer: a package has none at all."""
-    return path.is_file() and _time(path) >= max(map(_time, sources))
+    return path.is_file() and _modification_time_ns(path) >= max(
+        map(_modification_time_ns, sources)
+    )
 
 
-def _time(path: Path) -> int:
+def _modification_time_ns(path: Path) -> int:
     try:
         return path.stat().st_mtime_ns
     except OSError:

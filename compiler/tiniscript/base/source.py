@@ -11,8 +11,8 @@ from bisect import bisect_right
 from collections.abc import Iterable
 from typing import NamedTuple
 
-LARGEST_SOURCE = 1_000_000  # bytes
-PROGRAM_ENDS = (".ts", ".tini", ".ts.txt", ".tini.txt")  # of a name; editors of Windows add .txt
+LARGEST_SOURCE_BYTES = 1_000_000  # bytes
+PROGRAM_ENDINGS = (".ts", ".tini", ".ts.txt", ".tini.txt")  # of a name; editors of Windows add .txt
 # of all keyboards and phones, as a set of a regular expression has them
 SPACES = r" \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff"
 
@@ -101,8 +101,8 @@ def decode(data: bytes) -> str:
     Raises Unreadable where it is too large, holds NUL bytes or is no UTF-8. UTF-16 with its mark,
     which Windows calls Unicode, is text in another encoding, in spite of its NUL bytes.
     """
-    if len(data) > LARGEST_SOURCE:
-        raise Unreadable("too_large", LARGEST_SOURCE)
+    if len(data) > LARGEST_SOURCE_BYTES:
+        raise Unreadable("too_large", LARGEST_SOURCE_BYTES)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as failure:
@@ -115,7 +115,7 @@ def decode(data: bytes) -> str:
     return text
 
 
-INSTEAD = "?"  # of a character that is not printable
+REPLACEMENT_SIGN = "?"  # of a character that is not printable
 
 
 def printable(text: str, most: int | None = None) -> str:
@@ -125,5 +125,5 @@ def printable(text: str, most: int | None = None) -> str:
     """
     cut = text if most is None else text[:most]
     if not cut.isprintable():
-        cut = "".join(letter if letter.isprintable() else INSTEAD for letter in cut)
+        cut = "".join(letter if letter.isprintable() else REPLACEMENT_SIGN for letter in cut)
     return cut + "…" if len(cut) < len(text) else cut

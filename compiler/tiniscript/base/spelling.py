@@ -36,9 +36,9 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     return best
 
 
-def is_slip(word: str, of: str) -> bool:
+def is_slip(word: str, known: str) -> bool:
     """Whether a word is one slip away from another, which may be short: its place says the rest."""
-    return len(word) > 1 and abs(len(word) - len(of)) < 2 and _edits(word, of) == 1
+    return len(word) > 1 and abs(len(word) - len(known)) < 2 and _edits(word, known) == 1
 
 
 def _edits(one: str, other: str) -> int:
@@ -56,10 +56,10 @@ def _edits(one: str, other: str) -> int:
     return last[-1]
 
 
-_ALIKE = 4  # letters that a word needs where only its sound is the same
-_SWAPPED = 5  # … where two neighbours are exchanged
-_SLIPPED = 6  # … where a letter is wrong, missing or too much
-_LONGEST = 24
+_LEAST_SOUND_LETTERS = 4  # letters that a word needs where only its sound is the same
+_LEAST_SWAP_LETTERS = 5  # … where two neighbours are exchanged
+_LEAST_SLIP_LETTERS = 6  # … where a letter is wrong, missing or too much
+_MOST_LETTERS = 24
 
 
 @cache
@@ -81,21 +81,21 @@ class Speller:
         self._by_sound: dict[tuple[int, str], str] = {}
         self._by_rest: dict[str, list[str]] = {}
         for word in words:
-            for sound in _sound_keys(word) if len(word) >= _ALIKE else ():
+            for sound in _sound_keys(word) if len(word) >= _LEAST_SOUND_LETTERS else ():
                 self._by_sound.setdefault(sound, word)
-            if len(word) >= _SWAPPED:
+            if len(word) >= _LEAST_SWAP_LETTERS:
                 for rest in _deletions(word):
                     self._by_rest.setdefault(rest, []).append(word)
 
     def find_sound_alike(self, word: str) -> str | None:
         """Return the word that sounds like `word`, or None."""
-        if not _ALIKE <= len(word) <= _LONGEST:
+        if not _LEAST_SOUND_LETTERS <= len(word) <= _MOST_LETTERS:
             return None
         return next(filter(None, map(self._by_sound.get, _sound_keys(word))), None)
 
     def find_near_miss(self, word: str) -> str | None:
         """Return a word that is one slip of the finger away from `word`, or None."""
-        if not _SWAPPED <= len(word) <= _LONGEST or not word.isalpha():
+        if not _LEAST_SWAP_LETTERS <= len(word) <= _MOST_LETTERS or not word.isalpha():
             return None
         for rest in _deletions(word):
             for other in self._by_rest.get(rest, ()):
@@ -128,6 +128,10 @@ def _is_one_edit_away(one: str, other: str) -> bool:
     one, other = one[k:], other[k:]
     if len(one) == len(other) and one[:2] == other[1::-1] and one[2:] == other[2:]:
         return True
-    if min(len(one), len(other)) + k < _SLIPPED:  # `AVNZA`: a vowel that nobody texts
-        return len(other) + k >= _SLIPPED and other[:1] in tuple("AEIOU") and one == other[1:]
+    if min(len(one), len(other)) + k < _LEAST_SLIP_LETTERS:  # `AVNZA`: a vowel that nobody texts
+        return (
+            len(other) + k >= _LEAST_SLIP_LETTERS
+            and other[:1] in tuple("AEIOU")
+            and one == other[1:]
+        )
     return one[1:] in (other, other[1:]) or one == other[1:]

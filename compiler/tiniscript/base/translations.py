@@ -16,23 +16,23 @@ from pathlib import Path
 from typing import Any
 
 from tiniscript.base.catalogue_source import (
-    DIGITS,
+    HASH_DIGITS,
     PLURALS,
-    UNKNOWN,
+    UNKNOWN_HASH,
     Catalogue,
     Entry,
     Forms,
     Problem,
     Row,
     decode_file,
-    gaps,
+    gap_names,
     rows,
 )
 
-NUMBERS = 200  # after the first hundred a rule of plurals repeats itself each hundred
-_SEEN = re.compile(rf"(\w+ .+?)((?: (?:{UNKNOWN}|[0-9a-f]{{{DIGITS}}}))+) *")
-_RULE = "n != 1"
-_FORMS = ("one", "other")
+NUMBERS_TRIED = 200  # after the first hundred a rule of plurals repeats itself each hundred
+_SEEN_ROW = re.compile(rf"(\w+ .+?)((?: (?:{UNKNOWN_HASH}|[0-9a-f]{{{HASH_DIGITS}}}))+) *")
+_ENGLISH_RULE = "n != 1"
+_ENGLISH_FORMS = ("one", "other")
 
 
 @dataclass
@@ -43,8 +43,8 @@ class Language:
 
     name: str
     english_name: str
-    forms: tuple[str, ...] = _FORMS
-    rule: str = _RULE
+    forms: tuple[str, ...] = _ENGLISH_FORMS
+    rule: str = _ENGLISH_RULE
     form_of: str = ""
     read_by: str = ""
     is_complete: bool = False
@@ -59,25 +59,35 @@ def read_language(path: Path) -> Language:
     language.problems += problems
     known: dict[str, Any] = {"name": str, "english_name": str, "read_by": str, "is_complete": bool,
                              "forms": list, "which_form": str}  # fmt: skip
-    said: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for row in read:
         if row.key not in known:
             language.problems.append((row.line, f"{row.key}: a language does not say that"))
-        elif row.key in said:
+        elif row.key in values:
             language.problems.append((row.line, f"{row.key}: it is there twice"))
         elif isinstance(row.value, known[row.key]):
-            said[row.key] = row.value
+            values[row.key] = row.value
         elif row.value is not None:
             language.problems.append((row.line, f"{row.key}: it is no {_KINDS[known[row.key]]}"))
-    language.name = said.get("name", language.name)
-    language.english_name = said.get("english_name", language.english_name)
-    language.read_by, language.is_complete = said.get("read_by", ""), said.get("is_complete", False)
-    names, rule = tuple(said.get("forms", _FORMS)), said.get("which_form", _RULE)
+    language.name = values.get("name", language.name)
+    language.english_name = values.get("english_name", language.english_name)
+    language.read_by, language.is_complete = (
+        values.get("read_by", ""),
+        values.get("is_complete", False),
+    )
+    names, rule = (
+        tuple(values.get("forms", _ENGLISH_FORMS)),
+        values.get("which_form", _ENGLISH_RULE),
+    )
     form_of, why = _form_of(rule, names)
     if why:
         line = next((row.line for row in read if row.key in ("which_form", "forms")), 1)
         language.problems.append((line, why))
-        names, rule, (form_of, _) = _FORMS, _RULE, _form_of(_RULE, _FORMS)
+        names, rule, (form_of, _) = (
+            _ENGLISH_FORMS,
+            _ENGLISH_RULE,
+            _form_of(_ENGLISH_RULE, _ENGLISH_FORMS),
+        )
     language.forms, language.rule, language.form_of = names, rule, form_of
     return language
 
@@ -93,7 +103,7 @@ def _form_of(rule: str, names: tuple[object, ...]) -> tuple[str, str]:
         return "", f"forms: it is no list of some of {', '.join(PLURALS)}"
     try:
         rule_of = c2py(rule)
-        digits = [int(rule_of(number)) for number in range(NUMBERS)]
+        digits = [int(rule_of(number)) for number in range(NUMBERS_TRIED)]
     except (ValueError, ArithmeticError, RecursionError) as error:
         return "", f"which_form: {error}"
     if {*digits} <= {*range(len(names))}:
@@ -106,7 +116,7 @@ def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
     found: dict[str, list[str]] = {}
     text, problems = decode_file(path) if path.is_file() else ("", [])
     for number, line in enumerate(text.split("\n"), 1):
-        row = _SEEN.fullmatch(line)
+        row = _SEEN_ROW.fullmatch(line)
         if not line.strip() or line[0] == "#":
             continue
         if row is None:
@@ -119,7 +129,7 @@ def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
 
 
 @dataclass
-class Own:
+class TranslationFile:
     """A file of a language: its rows, the forms of each text of a key, what is wrong."""
 
     rows: list[Row] = field(default_factory=list)
@@ -129,9 +139,9 @@ class Own:
     below: str = ""
 
 
-def read_own(path: Path) -> Own:
+def read_translation_file(path: Path) -> TranslationFile:
     """Read the texts of a language; of a file that is not there none."""
-    own = Own()
+    own = TranslationFile()
     if not path.is_file():
         return own
     text, own.problems = decode_file(path)
@@ -162,13 +172,17 @@ def _forms(value: object) -> Forms | None:
     return None
 
 
-def catalogue_of_names(own: Own) -> Catalogue:
+def catalogue_of_names(own: TranslationFile) -> Catalogue:
     """Return the texts of a file whose keys are the English texts."""
     return Catalogue({(key, key): Entry(key, key) for key in own.texts})
 
 
 def merge_translations(
-    english: Catalogue, name: str, own: Own, seen: dict[str, list[str]], language: Language
+    english: Catalogue,
+    name: str,
+    own: TranslationFile,
+    seen: dict[str, list[str]],
+    language: Language,
 ) -> Catalogue:
     """Return English texts with those of a language, and what is wrong with these."""
     catalogue = Catalogue(
@@ -177,22 +191,22 @@ def merge_translations(
     groups = catalogue.groups()
     for key, texts in own.texts.items():
         line, group = own.lines[key], groups.get(key, [])
-        unknown = [entry.hash if entry.english == key else UNKNOWN for entry in group]
+        unknown = [entry.hash if entry.english == key else UNKNOWN_HASH for entry in group]
         hashes = seen.get(f"{name} {key}", unknown)
-        hashes = [*hashes, *[UNKNOWN] * len(texts)][: len(texts)]
+        hashes = [*hashes, *[UNKNOWN_HASH] * len(texts)][: len(texts)]
         if not group:
             catalogue.problems.append((line, f"{key}: there is no such English text"))
-        elif why := pair(group, texts, hashes):
+        elif why := assign_translations(group, texts, hashes):
             catalogue.problems.append((line, f"{key}: {why}"))
         for entry in group:
             entry.line = line
             for why in misfits(entry, language):
                 catalogue.problems.append((line, f"{key}: {why}"))
-                entry.said, entry.seen = {}, ""
+                entry.translation, entry.seen = {}, ""
     for entry in catalogue.entries.values():
-        if entry.like and not entry.said:
+        if entry.like and not entry.translation:
             first = catalogue.entries[entry.like, entry.english]
-            entry.said = first.said if first.is_translated else {}
+            entry.translation = first.translation if first.is_translated else {}
     return catalogue
 
 
@@ -201,7 +215,7 @@ def without_translation(entry: Entry) -> Entry:
     return Entry(*at, notes=entry.notes, is_same=entry.is_same, like=entry.like, line=entry.line)
 
 
-def pair(group: list[Entry], texts: list[Forms], hashes: list[str]) -> str:
+def assign_translations(group: list[Entry], texts: list[Forms], hashes: list[str]) -> str:
     """Give each English text of a key its translation; return why one has no text, or nothing."""
     own = {place: entry.hash for place, entry in enumerate(group)}
     given = {place for place, forms in enumerate(texts) if forms}
@@ -210,15 +224,15 @@ def pair(group: list[Entry], texts: list[Forms], hashes: list[str]) -> str:
         if places := [at for at, value in own.items() if value == hashes[place]]:
             at = place if place in places else places[0]
             has_moved |= at != place
-            group[at].said, group[at].seen = texts[place], hashes[place]
+            group[at].translation, group[at].seen = texts[place], hashes[place]
             del own[at]
             given.remove(place)
     for place in sorted(given):
-        if hashes[place] == UNKNOWN and has_moved:
+        if hashes[place] == UNKNOWN_HASH and has_moved:
             return "its English texts have other places now: first run  python -m tools.languages"
         if place not in own:
             return f"it has {len(texts)} texts, and English {len(group)}"
-        group[place].said, group[place].seen = texts[place], hashes[place]
+        group[place].translation, group[place].seen = texts[place], hashes[place]
     return ""
 
 
@@ -228,17 +242,17 @@ def misfits(entry: Entry, language: Language) -> list[str]:
         return []
     used = {language.forms[int(digit)] for digit in language.form_of}
     wanted, known = (used, {*language.forms, "other"}) if entry.plural else ({""}, {""})
-    if not wanted <= entry.said.keys() <= known:
-        has, needs = (", ".join(sorted(item)) or "one text" for item in (entry.said, wanted))
+    if not wanted <= entry.translation.keys() <= known:
+        has, needs = (", ".join(sorted(item)) or "one text" for item in (entry.translation, wanted))
         return [f"it has {has}, and needs {needs}"]
-    places = gaps(entry.english) | gaps(entry.plural)
+    places = gap_names(entry.english) | gap_names(entry.plural)
     matches = []
-    for said in entry.said.values():
+    for form in entry.translation.values():
         try:
-            own = gaps(said)
+            own = gap_names(form)
         except ValueError:
             return ["a brace { or } has no other half"]
-        matches += [f"{{{gap}}} is missing" for gap in sorted(gaps(entry.english) - own)]
+        matches += [f"{{{gap}}} is missing" for gap in sorted(gap_names(entry.english) - own)]
         matches += [f"{{{gap}}} is no gap of the English text" for gap in sorted(own - places)]
     return list(dict.fromkeys(matches))
 
@@ -249,6 +263,6 @@ def texts_of(catalogue: Catalogue) -> dict[str, str | Forms]:
     texts: dict[str, str | Forms] = {}
     for key, group in catalogue.groups().items():
         for number, entry in enumerate(group, 1):
-            forms = entry.said if entry.is_translated else entry.forms
+            forms = entry.translation if entry.is_translated else entry.forms
             texts[f"{key}/{number}" if number > 1 else key] = forms.get("", forms)
     return texts

@@ -11,7 +11,7 @@ from functools import cache, lru_cache
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST
-from tiniscript.base.languages import SOURCE, languages, table
+from tiniscript.base.languages import SOURCE_LANGUAGE, languages, table
 
 
 class Argument(NamedTuple):
@@ -139,19 +139,19 @@ BLOCK_ENDS = {
 # Names and signs, in the order of their numbers in instructions.
 COMPARATORS = ("EQ", "="), ("NE", "<>"), ("LT", "<"), ("LE", "<="), ("GT", ">"), ("GE", ">=")
 # Words that are younger than 0.2: a program of then may use one as a name.
-SINCE = dict.fromkeys(
+VERSION_OF_WORD = dict.fromkeys(
     ("CM", "DEG", "TASK", "WHEN", "END_TASK", "END_WHEN", "ENDTASK", "ENDWHEN"), "0.3"
 )
 TASKS = ("TASK", "WHEN")  # blocks that run beside the rest of the program
 
-OTHER_WAY = {"F": "B", "B": "F", "L": "R", "R": "L"}  # the moves, and those that undo them
+OPPOSITE_MOVES = {"F": "B", "B": "F", "L": "R", "R": "L"}  # the moves, and those that undo them
 # What other languages do, and this one does not: pins, jumps, clocks. What the robot knows instead.
-_INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)", "leaves": "END_DEF"}
+_REPLACEMENT_HINTS = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)", "leaves": "END_DEF"}
 
 # fmt: on
 
 
-class Said(NamedTuple):
+class LexiconEntry(NamedTuple):
     """What the lexicon says of a word: `kind` is a word of TiniScript, or what its `value` is.
 
     A unit has how many thousandths of it the word stands for, too: `unit s 60000`.
@@ -163,20 +163,20 @@ class Said(NamedTuple):
 
 
 @cache
-def lexicon() -> dict[str, list[Said]]:
+def lexicon() -> dict[str, list[LexiconEntry]]:
     """What each word means: all that the languages say of it, English last."""
-    result: dict[str, list[Said]] = {}
-    for language in (*languages()[1:], SOURCE):
+    result: dict[str, list[LexiconEntry]] = {}
+    for language in (*languages()[1:], SOURCE_LANGUAGE):
         for row in table(language, "lexicon.txt").split("\n"):
             if not row.startswith("#"):
                 meaning, _, words = row.partition("|")
                 for word in words.split():
-                    result.setdefault(word, []).append(Said(*meaning.split()))
+                    result.setdefault(word, []).append(LexiconEntry(*meaning.split()))
     return result
 
 
 @lru_cache(4000)
-def said_of(word: str, *kinds: str) -> tuple[str, ...]:
+def lexicon_meaning(word: str, *kinds: str) -> tuple[str, ...]:
     """Return what the lexicon says of a word, of these kinds: `("s", "1000")` of SEG, `unit`."""
     for kind, value, scale in lexicon().get(word, ()):
         if kind in kinds:
@@ -189,7 +189,7 @@ def expand_short(word: str) -> list[str]:
     return [entry.value for entry in lexicon().get(word, ()) if entry.kind == "short"]
 
 
-def concept_of(word: str) -> str | None:
+def lexicon_concept(word: str) -> str | None:
     """Return the word of the language or of a kit that the lexicon says a word for."""
     for kind, value, _ in lexicon().get(word, ()):
         if kind.isupper() and not value:
@@ -199,15 +199,15 @@ def concept_of(word: str) -> str | None:
 
 def names_argument(word: str, argument: Argument) -> bool:
     """Whether a word is what documents and pupils call a value of a call: POTENCIA, VEL, T."""
-    text = said_of(word, "value") or said_of(word, "letter")
+    text = lexicon_meaning(word, "value") or lexicon_meaning(word, "letter")
     return text[:1] == (argument.name if argument in (LEFT, RIGHT) else argument.unit,)
 
 
-def hints_for_foreign(word: str) -> dict[str, str]:
+def foreign_word_hints(word: str) -> dict[str, str]:
     """Return what a message says of a word of another language that has no like here."""
     if word.startswith("MOTOR"):
         return {"motors": "M(left, right)"}
-    return {kind: hint for kind, hint in _INSTEAD.items() if said_of(word, kind)}
+    return {kind: hint for kind, hint in _REPLACEMENT_HINTS.items() if lexicon_meaning(word, kind)}
 
 
 def other_name(word: str) -> str:

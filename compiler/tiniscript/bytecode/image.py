@@ -28,7 +28,7 @@ class Field(NamedTuple):
 MAGIC = b"TS"
 # What code may need, and a machine may lack.
 TASKS, GO = NEEDS_TASKS, NEEDS_GO
-EVERYTHING = TASKS | GO
+ALL_NEEDS = TASKS | GO
 STARTS = ("SI", "SB", "PING")
 
 # The first fields lie where they lay in version 1, so that whoever finds a stored program of any
@@ -101,12 +101,12 @@ def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int =
     its verdict says.
     """
     assert len(code) <= CODE_BYTES
-    values = (MAGIC, *isa_of(needs), STARTS.index(start), HEADER_BYTES + len(later),
+    values = (MAGIC, *isa_for_needs(needs), STARTS.index(start), HEADER_BYTES + len(later),
               devices, len(code), 0, needs)  # fmt: skip
     return with_checksum(struct_pack(_LAYOUT, *values) + later + code)
 
 
-def isa_of(needs: int) -> tuple[int, int]:
+def isa_for_needs(needs: int) -> tuple[int, int]:
     """Return the smallest version of the instruction set that has what code needs."""
     return ISA_MAJOR, 1 if needs else 0
 
@@ -122,7 +122,7 @@ def checksum(image: bytes) -> int:
     return int.from_bytes(image[_CHECKSUM_AT:_AFTER_CHECKSUM], "little")
 
 
-def unpack(data: bytes, has: int = EVERYTHING) -> Image:
+def unpack(data: bytes, has: int = ALL_NEEDS) -> Image:
     """Return the image in `data`, whose code and devices are not verified yet.
 
     `has` is what the machine has of `needs`. Raises ImageRefused with the name of the reason.

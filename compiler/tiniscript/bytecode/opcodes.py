@@ -166,7 +166,7 @@ def _comparison_ops(code: int, name: str, operands: str, effect: str, role: str,
 _MOVES = ("F", "forward"), ("B", "backward"), ("L", "left"), ("R", "right")
 
 # The numbers that one byte pushes: what programs count with, and their powers.
-PUSHED = (*range(11), *range(20, 101, 10))
+PUSHED_NUMBERS = (*range(11), *range(20, 101, 10))
 
 OPS = (
     #    code  name              operands               stack effect      role     meaning
@@ -279,7 +279,7 @@ OPS = (
     *_shorts(0x98, "READ",        "sensor",   "--",         "read",  "Take a reading of sensor {} and keep it."),
     *_shorts(0xA0, "SET_VAR",     "variable", "value --",   "plain", "Put the value into variable {}."),
     *_shorts(0xA8, "SET",         "actuator", "value --",   "plain", "Set actuator {} to the value, rounded and limited to its range."),
-    *(_op(0xB0 + i, f"PUSH_NUM_{n}", "", "-- n", "value", f"Push the whole number {n}.") for i, n in enumerate(PUSHED)),
+    *(_op(0xB0 + i, f"PUSH_NUM_{n}", "", "-- n", "value", f"Push the whole number {n}.") for i, n in enumerate(PUSHED_NUMBERS)),
     # with a constant to compare to
     *_comparison_ops(0xC8, "UNTIL8",   "n:u8",               "a --", "until", "As UNTIL: `stop` is `a {} n`."),
     *_comparison_ops(0xD0, "UNTIL16",  "n:i16",              "a --", "until", "As UNTIL: `stop` is `a {} n`."),
@@ -299,17 +299,17 @@ FAULTS = (
     (6, "STUCK_RIGHT",    "In such a move, the right wheel does not turn, but the left one does."),
     (255, "BAD_CODE",     "A check has failed that verified code always passes: memory has changed."),
 )
-_GOES = tuple(op.name for op in OPS if op.needs == NEEDS_GO)
-_UNTILS = tuple(op.name for op in OPS if op.control_role == "until")
-_MEASURED = (*(f"GO_{d}" for d, _ in _MOVES), *_UNTILS)
+_GO_OPS = tuple(op.name for op in OPS if op.needs == NEEDS_GO)
+_UNTIL_OPS = tuple(op.name for op in OPS if op.control_role == "until")
+_MEASURED_OPS = (*(f"GO_{d}" for d, _ in _MOVES), *_UNTIL_OPS)
 # Which instructions of verified code can fault.
-FAULTING = {
-    "OVERFLOW":       ("TIME", "RANDOM", "ADD", "SUB", "MUL", "DIV", "NEG", "ABS", "ROUND", "ADD_VAR8", "ADD_VAR", "INC_VAR", "DEC_VAR", *_GOES),
+FAULTING_OPS = {
+    "OVERFLOW":       ("TIME", "RANDOM", "ADD", "SUB", "MUL", "DIV", "NEG", "ABS", "ROUND", "ADD_VAR8", "ADD_VAR", "INC_VAR", "DEC_VAR", *_GO_OPS),
     "DIVIDE_BY_ZERO": ("DIV", "MOD"),
-    "NO_POWER":       _GOES,
-    "STUCK":          _MEASURED,
-    "STUCK_LEFT":     _MEASURED,
-    "STUCK_RIGHT":    _MEASURED,
+    "NO_POWER":       _GO_OPS,
+    "STUCK":          _MEASURED_OPS,
+    "STUCK_LEFT":     _MEASURED_OPS,
+    "STUCK_RIGHT":    _MEASURED_OPS,
     "BAD_CODE":       (),
 }
 # fmt: on
@@ -317,11 +317,11 @@ FAULTING = {
 UNO_OPS = tuple(op for op in OPS if not op.needs)  # an Uno has what every machine has
 BY_NAME = {op.name: op for op in OPS}
 BY_CODE: list[Op | None] = [None] * 256
-ESCAPED: dict[int, Op] = {}  # by the second byte
+ESCAPED_OPS: dict[int, Op] = {}  # by the second byte
 for _each in OPS:
     if _each.code > 0xFF:
-        assert _each.code >> 8 == ESCAPE and _each.code & 0xFF not in ESCAPED
-        ESCAPED[_each.code & 0xFF] = _each
+        assert _each.code >> 8 == ESCAPE and _each.code & 0xFF not in ESCAPED_OPS
+        ESCAPED_OPS[_each.code & 0xFF] = _each
         continue
     assert BY_CODE[_each.code] is None, f"code {_each.code:02x} is used twice"
     BY_CODE[_each.code] = _each
@@ -333,7 +333,7 @@ def op_at(code: bytes, at: int) -> Op | None:
     """Return the instruction that begins at an offset, or None if none does."""
     if code[at] != ESCAPE:
         return BY_CODE[code[at]]
-    return ESCAPED.get(code[at + 1]) if at + 1 < len(code) else None
+    return ESCAPED_OPS.get(code[at + 1]) if at + 1 < len(code) else None
 
 
 def time8_ms(time: int) -> int:

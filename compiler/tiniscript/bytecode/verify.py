@@ -24,7 +24,7 @@ from tiniscript.base.limits import (
     STACK_VALUES,
     TASKS,
 )
-from tiniscript.bytecode.image import EVERYTHING, Image, ImageRefused, unpack
+from tiniscript.bytecode.image import ALL_NEEDS, Image, ImageRefused, unpack
 from tiniscript.bytecode.opcodes import (
     CONTROL_ROLES,
     ESCAPE,
@@ -106,7 +106,7 @@ class _Join(NamedTuple):
 
 
 _IF, _REPEAT, _COUNT = "if", "repeat", "count"  # what a block is; a REPEAT loop does not count
-_WORDS = {_IF: 1, _REPEAT: 2, _COUNT: 2}
+_NEST_WORDS = {_IF: 1, _REPEAT: 2, _COUNT: 2}
 
 
 class _Block:
@@ -242,7 +242,7 @@ class _Verifier:
 
     def place(self, op: Op) -> None:
         """Whether it may stand here: what is no part of an expression leaves an empty stack."""
-        if op.control_role in _IN_EXPRESSIONS:
+        if op.control_role in _EXPRESSION_ROLES:
             if op.family == "PUSH_READ" and (self.depth > 1 or self.joins):
                 self.reads_inside = True
                 if len(self.tasks) > 1:  # it would end a turn with values on the stack
@@ -250,7 +250,7 @@ class _Verifier:
             return
         if self.depth or self.joins or (op.control_role in (_TASK, _WHEN) and self.reads_inside):
             self.refuse("STACK_NOT_EMPTY")
-        if self.check and op.control_role not in _IN_CHECKS:
+        if self.check and op.control_role not in _CHECK_ROLES:
             self.refuse("INSIDE_CHECK")
 
     def finish(self) -> None:
@@ -280,7 +280,7 @@ class _Verifier:
                 self.refuse("BAD_TARGET")
             if kind == _IF and end == around.end:
                 return  # it shares the block around it
-        if sum(_WORDS[block.kind] for block in self.blocks) + _WORDS[kind] > NEST_WORDS:
+        if sum(_NEST_WORDS[block.kind] for block in self.blocks) + _NEST_WORDS[kind] > NEST_WORDS:
             self.refuse("TOO_DEEP")
         self.blocks.append(_Block(kind, self.after, end))
         if kind == _COUNT:
@@ -413,11 +413,11 @@ _STEPS: dict[str, Callable[[_Verifier], object]] = {
     "look": lambda verifier: verifier.end_check(_WHEN),
 }
 assert _STEPS.keys() == CONTROL_ROLES.keys()
-_IN_EXPRESSIONS = ("end", "value", "join")
-_IN_CHECKS = ("read", "until", "look")
+_EXPRESSION_ROLES = ("end", "value", "join")
+_CHECK_ROLES = ("read", "until", "look")
 
 
-def load_image(data: bytes, kit: Kit, has: int = EVERYTHING) -> Image:
+def load_image(data: bytes, kit: Kit, has: int = ALL_NEEDS) -> Image:
     """Return the image in `data`, for a machine that has so much of `needs`.
 
     Looks at its header, its code, and the devices that the code uses, as every machine does.

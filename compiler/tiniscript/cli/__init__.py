@@ -2,7 +2,7 @@
 
 Finds the verb, runs it, and turns each failure into a sentence and an exit code:
 0 done, 1 the program is wrong, 2 wrong use of `tsc`, 3 the robot or the link. If the reader of a
-pipe has left, the code is CLOSED, without a sentence, as with other shell commands.
+pipe has left, the code is EXIT_OF_CLOSED_PIPE, without a sentence, as with other shell commands.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tiniscript.cli.texts import language_of, say, say_aside, text
 from tiniscript.cli.texts.options import LANGUAGE, chosen
 from tiniscript.cli.texts.verbs import VERBS
 
-CLOSED = 141  # 128 and the number of SIGPIPE
+EXIT_OF_CLOSED_PIPE = 141  # 128 and the number of SIGPIPE
 # Most commands end before there is garbage, and imported modules are none. A collection after each
 # 700 new objects, and one of all objects at the end, takes a sixth of the time of `tsc compile`.
 NEW_OBJECTS = 50_000
@@ -35,7 +35,7 @@ def main(arguments: list[str] | None = None) -> int:
         return _main(sys.argv[1:] if arguments is None else arguments)
     except BrokenPipeError:
         _drop_output()
-        return CLOSED
+        return EXIT_OF_CLOSED_PIPE
     except KeyboardInterrupt:  # before the language is known
         return 2
     except WrongTexts as failure:
@@ -91,7 +91,7 @@ def _repair_streams() -> None:
         if hasattr(stream, "reconfigure"):
             is_unicode = (stream.encoding or "").lower().startswith("utf")
             streams.register()
-            stream.reconfigure(errors="backslashreplace" if is_unicode else streams.NAME)
+            stream.reconfigure(errors="backslashreplace" if is_unicode else streams.ERROR_HANDLER)
         if stream.isatty():
             setattr(sys, name, streams.Wrapping(stream))
     if hasattr(sys.stdin, "reconfigure"):
@@ -105,7 +105,7 @@ def _drop_output() -> None:
     os.dup2(nowhere, 2)
 
 
-def _tell_missing(language: str) -> None:
+def _tell_missing_parts(language: str) -> None:
     """Say which parts that are made before a wheel are not in this installation."""
     from tiniscript.flash import ready
     from tiniscript.studio import serving
@@ -128,7 +128,7 @@ def _verb(arguments: list[str], language: str) -> int:
         from tiniscript.base.version import __version__
 
         print(f"tsc (TiniScript) {__version__}")
-        _tell_missing(language)
+        _tell_missing_parts(language)
         return 0
     try:
         name = arguments[0]

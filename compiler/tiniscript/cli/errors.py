@@ -16,7 +16,7 @@ class CommandError(Exception):
         super().__init__(key)
         self.exit_code = exit_code
         self.key = key
-        self.values = {name: _printable_value(value) for name, value in values.items()}
+        self.values = {name: _value_text(value) for name, value in values.items()}
 
     def sentence(self, language: str) -> str:
         result = text(self.key, language).format(**self.values)
@@ -34,7 +34,7 @@ class CommandError(Exception):
         return self.sentence(language).removeprefix("tsc: ")
 
 
-def _printable_value(value: str | Exception) -> str:
+def _value_text(value: str | Exception) -> str:
     return (value.strerror if isinstance(value, OSError) else None) or str(value)
 
 

@@ -25,9 +25,9 @@ from tiniscript.cli.texts import text
 from tiniscript.flash import children
 from tiniscript.library import install_advice
 
-LOG = "fetch.log"  # what the last program that failed has said, in the folder of the cache
+LOG_FILE = "fetch.log"  # what the last program that failed has said, in the folder of the cache
 MEASURED_EVERY_S = 1.0
-PUTTING = "Installing collected packages"  # what pip says when it has fetched everything
+INSTALLING_MESSAGE = "Installing collected packages"  # what pip says when it has fetched everything
 _NO_ROOM = re.compile(r"ENOSPC|No space left", re.IGNORECASE)
 _OFFLINE = re.compile(
     r"ENOTFOUND|EAI_AGAIN|ECONN|ETIMEDOUT|EHOSTUNREACH|ENETUNREACH|connection|No matching dist"
@@ -75,7 +75,7 @@ def size_of(folder: Path) -> int:
     return result
 
 
-def agree(
+def ask_to_fetch(
     missing: str, parts: Sequence[Part], minutes: int, options: Namespace, language: str
 ) -> None:
     """Say what is missing and what is fetched, and ask. Raises CommandError without a yes."""
@@ -105,7 +105,7 @@ def install(extra: str, part: Part, language: str) -> None:
             lambda said: Step(f"{part.key}_now", progress.percent()),
             language,
             variables,
-            lambda said: PUTTING not in said,  # half of a package looks whole
+            lambda said: INSTALLING_MESSAGE not in said,  # half of a package looks whole
         )
     invalidate_caches()  # of this process, where the package was not there
 
@@ -145,7 +145,7 @@ def run(
 
 def _failure(doing: str, log: str) -> CommandError:
     """Return the sentence for a program that has failed, and keep what it has said."""
-    kept = files.cache_folder() / LOG
+    kept = files.cache_folder() / LOG_FILE
     files.keep(kept, log.encode("utf-8", "replace"))  # else the sentence has to do
     kinds = (("fetch_no_room", _NO_ROOM), ("fetch_offline", _OFFLINE))
     key = next((key for key, pattern in kinds if pattern.search(log)), "fetch_failed")

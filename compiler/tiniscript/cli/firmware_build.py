@@ -21,13 +21,13 @@ from tiniscript.library import install_advice
 from tiniscript.robots.ports import AVRS, ESP32S
 from tiniscript.robots.profile import ProfileRefused, Robot
 
-LOG = "build.log"  # the output of the last failed build, in the folder of the ready files
+LOG_FILE = "build.log"  # the output of the last failed build, in the folder of the ready files
 # Of fetching and building, for whoever fetches 10 Mbit a second or more.
 MINUTES, MINUTES_ESP32 = 3, 10
-BOARDS = tuple(AVRS)  # that avrdude writes to
+AVR_BOARDS = tuple(AVRS)  # that avrdude writes to
 
 
-def on_boards(name: str | None, language: str, boards: Sequence[str] = BOARDS) -> list[Robot]:
+def on_boards(name: str | None, language: str, boards: Sequence[str] = AVR_BOARDS) -> list[Robot]:
     """Return a robot once for each of the boards that its profile fits.
 
     It answers text in `language`, if its profile names none.
@@ -133,14 +133,14 @@ def _fetch(robot: Robot, values: dict[str, str], options: Namespace, language: s
         return
     minutes = MINUTES_ESP32 if robot.board.chip in ESP32S else MINUTES
     missing = text("flash_missing", language).format(**values)
-    fetching.agree(missing, parts, minutes, options, language)
+    fetching.ask_to_fetch(missing, parts, minutes, options, language)
     if not has_platformio:
         fetching.install(install_advice.FIRMWARE, platformio, language)
 
 
 def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:
     """Return the sentence for a failed build, and save the build's output."""
-    log = ready.cache() / LOG
+    log = ready.cache() / LOG_FILE
     if why.log:
         files.keep(log, why.log.encode("utf-8", "replace"))  # else the sentence has to do
     how = install_advice.command(install_advice.FIRMWARE)

@@ -14,19 +14,19 @@ from textwrap import wrap
 from tiniscript.cli.terminal import pager
 from tiniscript.cli.texts.options import PROGRAM, Option, shown_of
 from tiniscript.cli.texts.verbs import (
-    FIRST,
+    FIRST_COMMANDS,
     NOTES,
     STEPS,
     VERBS,
     command_words,
-    of_verb,
     steps_of,
+    verb_sentence,
     verb_text,
 )
 
 WIDTH = 80  # columns, where the terminal has as many
-NARROWEST = 40
-SET = "set"
+LEAST_WIDTH = 40
+SET_COMMAND = "set"
 
 Row = tuple[str, str]  # the command, and its description
 
@@ -47,10 +47,10 @@ def help_of(command: str, language: str, width: int = WIDTH) -> str:
     steps = steps_of(command)
     parts = [
         _paragraphs("\n".join(usage(command, language)), width),
-        _paragraphs(of_verb(command, "says", language), width),
+        _paragraphs(verb_sentence(command, "says", language), width),
         "\n".join(_options(table, language, width)),
         "\n".join(_steps(steps, language, width)) if steps else "",
-        _paragraphs(of_verb(command, "ends", language), width),
+        _paragraphs(verb_sentence(command, "ends", language), width),
     ]
     return "\n\n".join(part for part in parts if part) + "\n"
 
@@ -64,7 +64,7 @@ def overview(language: str, width: int = WIDTH) -> str:
     """Return the help of `tsc`: the verbs that most people need, with an example each."""
     parts = [
         _paragraphs(verb_text("title", language), width),
-        list_commands(FIRST, language, width).rstrip("\n"),
+        list_commands(FIRST_COMMANDS, language, width).rstrip("\n"),
         "\n".join(_options(shown_of("tsc"), language, width)),
         _paragraphs(verb_text("more", language), width),
     ]
@@ -88,20 +88,20 @@ def groups(language: str) -> list[tuple[str, list[Row]]]:
     """Return the headings of all verbs with the commands below each, and what these do."""
     found: dict[str, list[Row]] = {}
     for verb, group in VERBS.items():
-        own = [] if verb == SET else [verb]  # which does nothing without a word after it
+        own = [] if verb == SET_COMMAND else [verb]  # which does nothing without a word after it
         rows = [_row(command, language) for command in (*own, *steps_of(verb))]
         found.setdefault(verb_text(f"group/{group}", language), []).extend(rows)
     return list(found.items())
 
 
 def _row(command: str, language: str) -> Row:
-    summary = of_verb(command, "summary", language).replace("`", "")
-    return f"tsc {of_verb(command, 'example', language)}", summary
+    summary = verb_sentence(command, "summary", language).replace("`", "")
+    return f"tsc {verb_sentence(command, 'example', language)}", summary
 
 
 def usage(command: str, language: str) -> list[str]:
     """Return how a command is used: a line for each way."""
-    if ways := of_verb(command, "usage", language):
+    if ways := verb_sentence(command, "usage", language):
         head = STEPS[command].head if command in STEPS else command
         return [f"tsc {head} {way}" for way in ways.split("\n")]
     words = [f"tsc {begins(command, language)}"]
@@ -193,4 +193,4 @@ def _width() -> int:
     """Return how many columns help has: on a narrow terminal fewer."""
     if not sys.stdout.isatty():
         return WIDTH
-    return max(NARROWEST, min(WIDTH, get_terminal_size().columns))
+    return max(LEAST_WIDTH, min(WIDTH, get_terminal_size().columns))

@@ -9,7 +9,7 @@ from tiniscript.bytecode.verify import Refused, check
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.library import source_map
-from tiniscript.library.compiling import Compiled, for_robot, image_of
+from tiniscript.library.compiling import Compiled, fit_to_robot, image_of
 from tiniscript.library.known_kits import find_robot_for, missing_need
 from tiniscript.library.other_robots import is_other_robots
 from tiniscript.library.source_map import Map
@@ -53,7 +53,7 @@ def ready(
         if is_other_robots(compiled.diagnostics):
             raise OtherRobot(compiled)
     if is_strict:
-        compiled = for_robot(compiled, robot)
+        compiled = fit_to_robot(compiled, robot)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return None

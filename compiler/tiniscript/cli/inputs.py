@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 from tiniscript import robots
 from tiniscript.base.files import is_pipe
-from tiniscript.base.source import LARGEST_SOURCE, printable
+from tiniscript.base.source import LARGEST_SOURCE_BYTES, printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
 from tiniscript.cli.texts import Sentence, say_aside
 from tiniscript.library import named_robot
 from tiniscript.robots.profile import ProfileRefused, Robot
 
-SHOWN = 200  # characters of a file's name
+MOST_NAME_CHARACTERS = 200  # characters of a file's name
 
 
 class Input(NamedTuple):
@@ -56,7 +56,7 @@ def _program(options: Namespace) -> Input:
     if texts:
         return Input("-e", texts[0].encode("utf-8", "surrogateescape"), None)
     if options.program == "-":
-        return Input("-", sys.stdin.buffer.read(LARGEST_SOURCE + 1), None)
+        return Input("-", sys.stdin.buffer.read(LARGEST_SOURCE_BYTES + 1), None)
     name = real_name(options.program)
     if name != options.program:
         say_aside("file_really", options.language, file=options.program, real=name)
@@ -75,7 +75,7 @@ def file(name: str, typed: str | None = None) -> Input:
         raise CommandError(2, "file_no_file", file=said)
     try:
         with path.open("rb") as opened:
-            return Input(name, opened.read(LARGEST_SOURCE + 1), path)
+            return Input(name, opened.read(LARGEST_SOURCE_BYTES + 1), path)
     except FileNotFoundError:
         raise CommandError(2, "file_missing", file=said) from None
     except IsADirectoryError:
@@ -96,7 +96,7 @@ def port(name: str) -> str:
 
 def printable_name(name: str) -> str:
     """Return a file's name as a message can print it."""
-    return printable(name, SHOWN)
+    return printable(name, MOST_NAME_CHARACTERS)
 
 
 def robot(options: Namespace, language: str) -> Robot:
@@ -125,7 +125,7 @@ def robot_for(given: Input, options: Namespace, language: str) -> Robot:
 
     What the program names counts from now on as if `--robot` had named it.
     """
-    named = named_robot.name_in(given.data)
+    named = named_robot.shipped_name_in(given.data)
     if options.robot is None:
         options.robot = named
     result = robot(options, language)

@@ -22,7 +22,7 @@ from typing import NamedTuple
 from rich.cells import cell_len, set_cell_size
 
 from tiniscript import robots
-from tiniscript.base.source import PROGRAM_ENDS, Unreadable, decode, printable
+from tiniscript.base.source import PROGRAM_ENDINGS, Unreadable, decode, printable
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError, missing_package_error
 from tiniscript.cli.options import whole_number
@@ -36,18 +36,18 @@ from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.marking import Marking
 from tiniscript.lessons.running import Run
 from tiniscript.lessons.sentences import sentence
-from tiniscript.library.compiling import Compiled, for_robot, image_maker
-from tiniscript.library.named_robot import name_in, robot_of
+from tiniscript.library.compiling import Compiled, fit_to_robot, image_maker
+from tiniscript.library.named_robot import robot_of, shipped_name_in
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused
 
-PROGRAMS = 200  # of a folder
+MOST_PROGRAMS = 200  # of a folder
 LEAST_COLUMNS = 24  # of a sentence beside its program; below that it stands under it
-TEXTS = (*PROGRAM_ENDS, ".txt")
-LIKE_NOTES = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
+TEXT_ENDINGS = (*PROGRAM_ENDINGS, ".txt")
+NOTES_NAME = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
 # A line of a program begins so, also a wrong one: `SI|`, `SI`, `F 2`, `ADELANTE (2)`, `x = 3`.
-LIKE_A_PROGRAM = re.compile(
+PROGRAM_LINE = re.compile(
     r"[ \t]*(?:\w+(?:[ \t]*[|=]|\(|[ \t]+\([ \t]*\d)|S[IB][ \t]*(?:[;:,.]|$)|[A-Z][ \t]*\d)",
     re.IGNORECASE,
 )
@@ -133,13 +133,13 @@ class _Marker:
             )
         robot = robot_of(given.data, self.robot)
         compiled = compiling.compile_input(given, robot, is_strict=True, names_robots=False)
-        return for_robot(compiled, robot)
+        return fit_to_robot(compiled, robot)
 
     def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:
         if not compiled.is_right:
             return Mark(given.name, MISTAKES, 0, tuple(self._mistakes(compiled)))
         robot = robot_of(given.data, self.robot)
-        lesson = self.lesson._replace(robot=name_in(given.data) or self.lesson.robot)
+        lesson = self.lesson._replace(robot=shipped_name_in(given.data) or self.lesson.robot)
         marking = Marking(compiled.source.text, image_maker(robot), robot, lesson, self.seeds)
         try:
             outcome = marking.run_to_end()
@@ -192,9 +192,11 @@ def _programs(options: Namespace) -> Iterator[tuple[str, ProgramFile]]:
         raise CommandError(
             2, "lesson_folder", file=inputs.printable_name(folder), why=why
         ) from None
-    names = list(islice(in_folder(folder, TEXTS), PROGRAMS + 1))
-    if len(names) > PROGRAMS:
-        raise CommandError(2, "lesson_many", file=inputs.printable_name(folder), most=str(PROGRAMS))
+    names = list(islice(in_folder(folder, TEXT_ENDINGS), MOST_PROGRAMS + 1))
+    if len(names) > MOST_PROGRAMS:
+        raise CommandError(
+            2, "lesson_many", file=inputs.printable_name(folder), most=str(MOST_PROGRAMS)
+        )
     for name in names:
         yield os.path.relpath(name, folder), read(name)
 
@@ -215,18 +217,18 @@ def _is_note(file: ProgramFile) -> bool:
 
     In doubt it is a program: what a pupil has handed in is marked, however wrong it is.
     """
-    if file.name.lower().endswith(PROGRAM_ENDS) or file.problem is not None:
+    if file.name.lower().endswith(PROGRAM_ENDINGS) or file.problem is not None:
         return False
     letters = unicodedata.normalize("NFD", Path(file.name).name)
     plain = "".join(letter for letter in letters if not unicodedata.combining(letter))
-    if LIKE_NOTES.match(plain) is None:
+    if NOTES_NAME.match(plain) is None:
         return False
 
     try:
         text = decode(file.data)
     except Unreadable:
         return False
-    return bool(text.strip()) and not any(map(LIKE_A_PROGRAM.match, text.splitlines()))
+    return bool(text.strip()) and not any(map(PROGRAM_LINE.match, text.splitlines()))
 
 
 def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: str) -> None:

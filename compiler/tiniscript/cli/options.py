@@ -30,8 +30,8 @@ _MESSAGES = {
 
 
 # What an option was that is none any more: the command that does it.
-WAS_OPTION = {("run", "--replay"): "run run.tsr"}
-OTHER_RUN = {"run": "upload", "upload": "run"}  # a program without a robot, and with one
+FORMER_OPTIONS = {("run", "--replay"): "run run.tsr"}
+OTHER_RUN_VERB = {"run": "upload", "upload": "run"}  # a program without a robot, and with one
 
 
 class Options(ArgumentParser):
@@ -109,20 +109,20 @@ class Options(ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         unknown = message.partition("unrecognized arguments: ")[2].partition(" ")[0]
-        was = WAS_OPTION.get((self.verb, unknown.partition("=")[0]))
+        was = FORMER_OPTIONS.get((self.verb, unknown.partition("=")[0]))
         if was:
             raise CommandError(2, "was_option", was=unknown.partition("=")[0], now=was)
-        other = OTHER_RUN.get(self.verb)
+        other = OTHER_RUN_VERB.get(self.verb)
         if other and _has(other, unknown):
             raise CommandError(2, "option_of_other", option=unknown, verb=self.verb, other=other)
-        self._refuse_of_step(unknown.partition("=")[0])
+        self._refuse_option_of_step(unknown.partition("=")[0])
         suggestion = self._suggestion(unknown)
         for key, pattern in _MESSAGES.items():
             if match := re.fullmatch(pattern, message):
                 message = verb_text(f"wrong/{key}", self.language).format(*match.groups())
         raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=suggestion)
 
-    def _refuse_of_step(self, unknown: str) -> None:
+    def _refuse_option_of_step(self, unknown: str) -> None:
         """Say with which step of the verb an option goes that is unknown here."""
         verb = self.verb.split()[0]
         others = [name for name in (verb, *steps_of(verb)) if _has(name, unknown)]

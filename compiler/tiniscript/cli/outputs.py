@@ -11,7 +11,7 @@ from tiniscript.cli.streams import has_colors
 from tiniscript.cli.texts import Sentence, say_aside, text
 from tiniscript.library.compiling import Compiled
 
-SHOWN = 20  # diagnostics that are printed; a person mends the first ones first
+MOST_DIAGNOSTICS = 20  # diagnostics that are printed; a person mends the first ones first
 
 
 def write(path: Path, data: bytes, how: str, mode: int | None = None) -> None:
@@ -30,7 +30,7 @@ def write(path: Path, data: bytes, how: str, mode: int | None = None) -> None:
         raise unwritable_error(how, printable_name(str(path)), why) from None
 
 
-def put(name: str | None, data: bytes) -> bool:
+def write_output(name: str | None, data: bytes) -> bool:
     """Write into the file that `-o` names, or to standard output; return whether into a file.
 
     Text is UTF-8 there, whatever the locale. Raises CommandError.
@@ -51,13 +51,13 @@ def print_diagnostics(compiled: Compiled, language: str) -> None:
     from tiniscript.diagnostics.rendering import as_text, message
 
     color = has_colors(sys.stderr)
-    for diagnostic in compiled.diagnostics[:SHOWN]:
+    for diagnostic in compiled.diagnostics[:MOST_DIAGNOSTICS]:
         text = message(diagnostic, compiled.source, language)
         rows = as_text(text, compiled.source, language, color).split("\n")
         frame = rows[: 2 * bool(compiled.source.text)]
         print(*frame, *map(Sentence, rows[len(frame) :]), "", sep="\n", file=sys.stderr)
-    if len(compiled.diagnostics) > SHOWN:
-        say_aside("and_more", language, n=len(compiled.diagnostics) - SHOWN)
+    if len(compiled.diagnostics) > MOST_DIAGNOSTICS:
+        say_aside("and_more", language, n=len(compiled.diagnostics) - MOST_DIAGNOSTICS)
     if len(compiled.diagnostics) > 1:
         print(_count(compiled, language), file=sys.stderr)
 

@@ -17,7 +17,7 @@ from tiniscript.studio import building, serving
 
 NODE, NPM = Part("fetch_node", building.NODE_MB), Part("fetch_npm", building.NPM_MB)
 STEPS = ("fetch_npm_now", "studio_types", "studio_packing", "studio_bundling")
-PERCENT = (0, 0, 40, 95)  # of the whole build, when a step begins
+STEP_PERCENT = (0, 0, 40, 95)  # of the whole build, when a step begins
 
 
 def prepare(options: Namespace, language: str) -> None:
@@ -39,7 +39,7 @@ def build(options: Namespace, language: str) -> None:
         how = install_advice.command(install_advice.STUDIO)
         raise CommandError(2, "studio_no_node", oldest=str(building.OLDEST_NODE), how=how)
     missing = text("studio_missing", language)
-    fetching.agree(missing, parts, building.MINUTES, options, language)
+    fetching.ask_to_fetch(missing, parts, building.MINUTES, options, language)
     if not has_node:
         fetching.install(install_advice.STUDIO, NODE, language)
     growing = fetching.FolderProgress(building.MODULES, building.NODE_MODULES_MB)
@@ -47,7 +47,7 @@ def build(options: Namespace, language: str) -> None:
     def read_step(said: str) -> Step:
         step = max(building.step(said), 0 if NPM in parts else 1)
         is_fetching = STEPS[step] == "fetch_npm_now"
-        return Step(STEPS[step], growing.percent() if is_fetching else PERCENT[step])
+        return Step(STEPS[step], growing.percent() if is_fetching else STEP_PERCENT[step])
 
     fetching.run([sys.executable, "-m", building.MODULE], building.CLONE, read_step, language)
 

@@ -23,16 +23,18 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import robots
-from tiniscript.base.source import PROGRAM_ENDS
+from tiniscript.base.source import PROGRAM_ENDINGS
 from tiniscript.bytecode.image import MAGIC
 from tiniscript.cli.errors import CommandError, unwritable_error
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import OPTIONS
 
 # Inputs by their name in `Namespace`: the sentence that describes the input.
-READS = {option.name: option.kind.reads for option in OPTIONS if option.kind and option.kind.reads}
+READ_OPTIONS = {
+    option.name: option.kind.reads for option in OPTIONS if option.kind and option.kind.reads
+}
 # Outputs: the name of the option, and the sentence for a file that cannot be written.
-WRITES = {
+WRITE_OPTIONS = {
     option.name: (option.flags, option.kind.writes)
     for option in OPTIONS
     if option.kind and option.kind.writes
@@ -69,9 +71,11 @@ def check(options: Namespace, language: str) -> None:
                 raise CommandError(2, "over_input", option=output.label, file=output.path,
                               what=read.label, other=read.path)  # fmt: skip
     for output in outputs:
-        if getattr(options, output.dest) is not None and output.dest in WRITES:
-            _refuse_unwritable(output.path, WRITES[output.dest][1], language)
-        if output.dest not in READS and output.dest != "export":  # else it is changed in place,
+        if getattr(options, output.dest) is not None and output.dest in WRITE_OPTIONS:
+            _refuse_unwritable(output.path, WRITE_OPTIONS[output.dest][1], language)
+        if (
+            output.dest not in READ_OPTIONS and output.dest != "export"
+        ):  # else it is changed in place,
             _refuse_foreign(output)  # or whatever is there stays
 
 
@@ -90,15 +94,15 @@ def real_name(program: str) -> str:
     """
     if os.path.exists(program):  # noqa: PTH110 - a name that no file can have gets no Path
         return program
-    for real in (f"{program}.txt", *(program + end for end in PROGRAM_ENDS)):
-        if os.path.isfile(real):  # noqa: PTH113
-            return real
+    for candidate in (f"{program}.txt", *(program + end for end in PROGRAM_ENDINGS)):
+        if os.path.isfile(candidate):  # noqa: PTH113
+            return candidate
     return program
 
 
 def _output_paths(options: Namespace) -> Iterator[NamedPath]:
     values = vars(options)
-    for dest, (label, _) in WRITES.items():
+    for dest, (label, _) in WRITE_OPTIONS.items():
         path = values.get(dest)
         if isinstance(path, str) and not (dest == "output" and path == "-"):
             yield NamedPath(dest, path, label)
@@ -116,7 +120,7 @@ def _output_paths(options: Namespace) -> Iterator[NamedPath]:
 
 def _read(options: Namespace, language: str) -> Iterator[NamedPath]:
     values = vars(options)
-    for dest, key in READS.items():
+    for dest, key in READ_OPTIONS.items():
         result = values.get(dest)
         for path in result if isinstance(result, list) else [result]:
             if isinstance(path, str) and path != "-" and not _is_shipped(dest, path):
@@ -217,10 +221,10 @@ _OLDER_ROWS = (b"ms,event,value\n", b"robot,id,ms,event,value\n")
 RECORDING = b'{"tiniscript_run":'
 OLDER_RECORDING = b'{"tiniscript_recording":'
 GENERATOR = "TiniScript"  # in a page, and in a picture
-_PAGE = f'<meta name="generator" content="{GENERATOR}">'.encode()
-_PICTURE = re.compile(rb"\x89PNG\r\n.*tEXtSoftware\0" + GENERATOR.encode(), re.DOTALL)
-_LINE = re.compile(rb"[ -}]*~[0-9A-F]{8}\r?\n?")
-_MAP = re.compile(rb'\{"version": \d+, "name": "')
+_PAGE_MARK = f'<meta name="generator" content="{GENERATOR}">'.encode()
+_PICTURE_MARK = re.compile(rb"\x89PNG\r\n.*tEXtSoftware\0" + GENERATOR.encode(), re.DOTALL)
+_CHECKED_LINE = re.compile(rb"[ -}]*~[0-9A-F]{8}\r?\n?")
+_MAP_START = re.compile(rb'\{"version": \d+, "name": "')
 
 
 def is_recording(data: bytes) -> bool:
@@ -243,11 +247,11 @@ def _is_ours(head: bytes) -> bool:
     is_image = head.startswith(MAGIC) and len(head) > len(MAGIC) and head[len(MAGIC)] < 0x20
     begins = (
         head.startswith((HEADER, ROWS, CLASS_ROWS, *_OLDER_ROWS, RECORDING, OLDER_RECORDING))
-        or _PAGE in head
+        or _PAGE_MARK in head
     )
     return is_image or begins or _is_report(head) or _is_table(head) or any(
-        pattern.match(head) is not None for pattern in (_PICTURE, _MAP)
-    ) or _LINE.fullmatch(head) is not None  # fmt: skip
+        pattern.match(head) is not None for pattern in (_PICTURE_MARK, _MAP_START)
+    ) or _CHECKED_LINE.fullmatch(head) is not None  # fmt: skip
 
 
 def _is_table(head: bytes) -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.base.source import PROGRAM_ENDS
+from tiniscript.base.source import PROGRAM_ENDINGS
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
@@ -48,7 +48,7 @@ def _is_folder(name: str) -> bool:
     return os.path.isdir(name)  # noqa: PTH112 - a name that no file can have gets no Path
 
 
-def in_folder(top: str, ends: tuple[str, ...] = PROGRAM_ENDS) -> Iterator[str]:
+def in_folder(top: str, ends: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[str]:
     """Yield the names of programs in a folder and those below, in order; none that is hidden.
 
     `ends` are the ends of their names. A folder that cannot be read is yielded itself.

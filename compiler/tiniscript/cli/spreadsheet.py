@@ -21,7 +21,7 @@ TABLES = ("check", "lesson")
 # What begins a formula: at the beginning of a cell; in a name wherever a cell may begin, too, since
 # whoever opens the file chooses what ends its cells. Ours end with a comma or a semicolon.
 _SIGN = "(?=[=+\\-@＝＋－＠])"
-_FIRST = re.compile(rf"(^)(\s*){_SIGN}")
+_FORMULA_START = re.compile(rf"(^)(\s*){_SIGN}")
 _AFTER_END = re.compile(rf"(^|[;|\"])(\s*){_SIGN}")
 _AFTER_ANY = re.compile(rf"(^|[,;|\"])(\s*){_SIGN}")
 
@@ -58,4 +58,6 @@ def _name(value: object) -> str:
 
 def _cell(value: object) -> object:
     """Return a number, or a sentence, of which nothing but a first sign can be a formula."""
-    return _FIRST.sub(r"\1\2'", printable(value, LONGEST)) if isinstance(value, str) else value
+    return (
+        _FORMULA_START.sub(r"\1\2'", printable(value, LONGEST)) if isinstance(value, str) else value
+    )

@@ -22,26 +22,26 @@ from typing import Any, TextIO
 from tiniscript.cli.texts import Sentence
 
 UNREAD_S = 1.0  # timeout for a reader when a command is interrupted
-NAME = "tiniscript_plain"  # of the handler of errors
+ERROR_HANDLER = "tiniscript_plain"  # of the handler of errors
 # for drawings: as wide as what they stand for
 _SAME_WIDTH = ("│─├┤█▌▐♪↑↖←↙↓↘→↗", "|-||#==~^\\</v\\>/")
-DRAWN = str.maketrans(_SAME_WIDTH[0] + "…", _SAME_WIDTH[1] + ".")
+DRAWING_SUBSTITUTES = str.maketrans(_SAME_WIDTH[0] + "…", _SAME_WIDTH[1] + ".")
 _WORDS = {
     "Ω": "ohm", "−": "-", "–": "-", "—": "-", "…": "...", "‘": "'", "’": "'", "“": '"',
     "”": '"', "×": "x", "\N{REPLACEMENT CHARACTER}": "?",
 }  # fmt: skip
-PLAIN = {**dict(zip(*_SAME_WIDTH, strict=True)), **_WORDS}
+PLAIN_SUBSTITUTES = {**dict(zip(*_SAME_WIDTH, strict=True)), **_WORDS}
 
 
 def register() -> None:
     """Make the handler known to Python's streams."""
-    codecs.register_error(NAME, _replacement)
+    codecs.register_error(ERROR_HANDLER, _replacement)
 
 
 def _replacement(error: UnicodeError) -> tuple[str | bytes, int]:
     if isinstance(error, UnicodeEncodeError):
         end = error.start + 1
-        result = PLAIN.get(error.object[error.start : end])
+        result = PLAIN_SUBSTITUTES.get(error.object[error.start : end])
         if result is not None:
             return result, end
         error.end = end
@@ -53,7 +53,7 @@ PROCESSED_OUTPUT = 0x0001
 VIRTUAL_TERMINAL_PROCESSING = 0x0004
 
 
-def are_read(stream: TextIO) -> bool:
+def reads_sequences(stream: TextIO) -> bool:
     """Return whether sequences that are written to a stream are read. Asks the console to."""
     if not stream.isatty():
         return False
@@ -79,7 +79,7 @@ def are_read(stream: TextIO) -> bool:
 
 def has_colors(stream: TextIO) -> bool:
     """Return whether a stream shows colors, and the person has not declined them."""
-    return not os.environ.get("NO_COLOR") and are_read(stream)
+    return not os.environ.get("NO_COLOR") and reads_sequences(stream)
 
 
 def drop_unread() -> None:

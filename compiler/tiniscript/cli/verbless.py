@@ -15,25 +15,34 @@ from pathlib import Path
 from typing import NoReturn
 
 from tiniscript.base.languages import languages
-from tiniscript.base.source import PROGRAM_ENDS
+from tiniscript.base.source import PROGRAM_ENDINGS
 from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts.options import chosen, options_of
-from tiniscript.cli.texts.verbs import COMMANDS, STEPS, VERBS, WAS, command_words, verb_text
-from tiniscript.cli.texts.verbs import of_verb as said_of
+from tiniscript.cli.texts.verbs import (
+    COMMANDS,
+    FORMER_COMMANDS,
+    STEPS,
+    VERBS,
+    command_words,
+    verb_text,
+)
+from tiniscript.cli.texts.verbs import verb_sentence as said_of
 
 
 def refuse(name: str, words: list[str], language: str) -> NoReturn:
     """Raise CommandError where a word stands in place of a verb, with `words` after it."""
-    if name in WAS:
-        raise CommandError(2, "was_verb", was=name, now=_now(WAS[name], words, language))
+    if name in FORMER_COMMANDS:
+        raise CommandError(
+            2, "was_verb", was=name, now=_present_command(FORMER_COMMANDS[name], words, language)
+        )
     refuse_program(name)
     raise CommandError(2, "no_verb", found=name, near=guess_verb(name))
 
 
-def _now(command: str, words: list[str], language: str) -> str:
+def _present_command(command: str, words: list[str], language: str) -> str:
     """Return what is typed for a command that was a verb: with the words after it, if they fit."""
     head = STEPS[command].head if command in STEPS else command
     for item in (head, command_words(command)):
@@ -53,8 +62,8 @@ def guess_verb(name: str) -> str:
         for item in (*COMMANDS, "--version")
         if _without_accents(name) in _names_in_languages(item).split()
     )
-    suggestion = next(called, None) or nearest(name, (*VERBS, *WAS)) or ""
-    return command_words(WAS.get(suggestion, suggestion))
+    suggestion = next(called, None) or nearest(name, (*VERBS, *FORMER_COMMANDS)) or ""
+    return command_words(FORMER_COMMANDS.get(suggestion, suggestion))
 
 
 def is_help(name: str) -> bool:
@@ -72,7 +81,7 @@ def refuse_program(name: str) -> None:
 
     tsc does not choose a verb: a robot moves only when the user has asked for it.
     """
-    if name.lower().endswith((*PROGRAM_ENDS, ".bin")) or _is_file(name):
+    if name.lower().endswith((*PROGRAM_ENDINGS, ".bin")) or _is_file(name):
         raise CommandError(2, "file_without_verb", found=_quote(name))
     if "(" in name or "|" in name:
         raise CommandError(2, "text_without_verb", found=_quote(name, always=True))
@@ -91,9 +100,9 @@ def _quote(name: str, always: bool = False) -> str:
     return f'"{result}"' if always or " " in result else result
 
 
-MOST = 5  # verbs in an answer
-SHORTEST = 3  # letters of a word that says something
-STEM = 5  # letters in which forms of a word agree: connect, connected; conecta, conectar
+MOST_VERBS = 5  # verbs in an answer
+LEAST_LETTERS = 3  # letters of a word that says something
+STEM_LETTERS = 5  # letters in which forms of a word agree: connect, connected; conecta, conectar
 
 
 def verbs_for(said: str) -> list[str]:
@@ -110,7 +119,7 @@ def verbs_for(said: str) -> list[str]:
             scores[command] += texts[command][stem] * log(1 + len(COMMANDS) / len(having))
     best = max(scores.values())
     matches = [command for command in COMMANDS if scores[command] and scores[command] >= best / 2]
-    return sorted(matches, key=lambda verb: -scores[verb])[:MOST]
+    return sorted(matches, key=lambda verb: -scores[verb])[:MOST_VERBS]
 
 
 def _weights(verb: str) -> dict[str, int]:
@@ -131,8 +140,8 @@ def _weights(verb: str) -> dict[str, int]:
 
 def _stems(text: str) -> set[str]:
     words = re.findall("[a-z]+", _without_accents(text))
-    sentence = (word for word in words if len(word) >= SHORTEST and word not in _idle_words())
-    return {word.removesuffix("s")[:STEM] for word in sentence}  # port and ports are one
+    sentence = (word for word in words if len(word) >= LEAST_LETTERS and word not in _idle_words())
+    return {word.removesuffix("s")[:STEM_LETTERS] for word in sentence}  # port and ports are one
 
 
 @cache

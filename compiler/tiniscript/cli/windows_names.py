@@ -9,10 +9,10 @@ from __future__ import annotations
 import glob
 import ntpath
 
-DEVICES = {"con", "prn", "aux", "nul", "conin$", "conout$"} | {
+DEVICE_NAMES = {"con", "prn", "aux", "nul", "conin$", "conout$"} | {
     f"{name}{number}" for name in ("com", "lpt") for number in "0123456789¹²³"
 }
-FORBIDDEN = set('<>"|?*') | {chr(code) for code in range(32)}
+FORBIDDEN_CHARACTERS = set('<>"|?*') | {chr(code) for code in range(32)}
 
 
 def has_no_file(path: str) -> bool:
@@ -25,7 +25,7 @@ def has_no_file(path: str) -> bool:
 def is_device(path: str) -> bool:
     """Return whether Windows opens a device by this name: reading it would wait for a key, say."""
     parts = ntpath.splitdrive(path)[1].replace("/", "\\").split("\\")
-    return _stem(parts[-1]) in DEVICES
+    return _stem(parts[-1]) in DEVICE_NAMES
 
 
 def matching_files(pattern: str) -> list[str]:
@@ -44,4 +44,9 @@ def _stem(name: str) -> str:
 
 
 def _is_impossible(name: str) -> bool:
-    return _stem(name) in DEVICES or ":" in name or name[-1] in " ." or bool(FORBIDDEN & set(name))
+    return (
+        _stem(name) in DEVICE_NAMES
+        or ":" in name
+        or name[-1] in " ."
+        or bool(FORBIDDEN_CHARACTERS & set(name))
+    )

@@ -10,14 +10,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.base.source import Span
-from tiniscript.bytecode.opcodes import BY_NAME, PUSHED, SHORTS, Op
+from tiniscript.bytecode.opcodes import BY_NAME, PUSHED_NUMBERS, SHORTS, Op
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.semantics.optimizer import is_safe
 
 NEGATED = {"EQ": "NE", "NE": "EQ", "LT": "GE", "GE": "LT", "LE": "GT", "GT": "LE"}
-_SWAPPED = {"EQ": "EQ", "NE": "NE", "LT": "GT", "GT": "LT", "LE": "GE", "GE": "LE"}
-_SHORT = ("PUSH_VAR", "PUSH_SENSOR", "PUSH_READ", "READ", "SET_VAR", "SET")
-_LEFTS, _JOINS = ("AND_LEFT", "OR_LEFT"), ("AND", "OR")
+_MIRRORED = {"EQ": "EQ", "NE": "NE", "LT": "GT", "GT": "LT", "LE": "GE", "GE": "LE"}
+_SHORT_OPS = ("PUSH_VAR", "PUSH_SENSOR", "PUSH_READ", "READ", "SET_VAR", "SET")
+_LEFT_OPS, _JOIN_OPS = ("AND_LEFT", "OR_LEFT"), ("AND", "OR")
 _MAX_EAGER_TERMS = 6  # terms up to which evaluating a needless side costs less than a jump
 
 
@@ -56,7 +56,7 @@ class Emitter:
         self.mark(label)
         return label
 
-    def pops_read(self, sensor: int) -> bool:
+    def take_back_read(self, sensor: int) -> bool:
         """Take back `READ sensor` if it is the last instruction and no jump ends after it."""
         if self.plain or not self.items or self._last_mark == len(self.items):
             return False
@@ -81,7 +81,7 @@ class Emitter:
 
 def _shortest_op(name: str, *operands: int) -> tuple[Op, tuple[int, ...]]:
     """Return the instruction `name`, or the one of one byte that says the same."""
-    if name in _SHORT and operands[0] < SHORTS:
+    if name in _SHORT_OPS and operands[0] < SHORTS:
         return BY_NAME[f"{name}_{operands[0]}"], ()
     return BY_NAME[name], operands
 
@@ -112,7 +112,7 @@ def number_of(term: Term, low: int, high: int) -> int | None:
 def _push(value: int) -> tuple[Op, tuple[int, ...]]:
     """Return the shortest instruction that pushes `value` thousandths."""
     units, tenths = value // 1000, value // 100
-    if value % 1000 == 0 and units in PUSHED:
+    if value % 1000 == 0 and units in PUSHED_NUMBERS:
         return BY_NAME[f"PUSH_NUM_{units}"], ()
     if value % 1000 == 0 and 0 <= units <= 255:
         return BY_NAME["PUSH8"], (units,)
@@ -145,7 +145,7 @@ def push(out: Emitter, term: Term) -> None:
         out.add("PUSH_VAR", value)
     elif op == "SENSOR":
         span = out.span
-        out.add("PUSH_READ" if out.pops_read(value) else "PUSH_SENSOR", value)
+        out.add("PUSH_READ" if out.take_back_read(value) else "PUSH_SENSOR", value)
         out.span = span
     else:
         out.add(op)
@@ -155,15 +155,15 @@ def add_value(out: Emitter, expression: Expression) -> None:
     """Add instructions that leave the value of `expression` on the stack."""
     joins: list[int | None] = []
     for k, term in enumerate(expression):
-        if term.op in _LEFTS:
-            end = _matching_index(expression, range(k + 1, len(expression)), _LEFTS, _JOINS)
+        if term.op in _LEFT_OPS:
+            end = _matching_index(expression, range(k + 1, len(expression)), _LEFT_OPS, _JOIN_OPS)
             right = expression[k + 1 : end]
             if not out.plain and is_safe(right) and len(right) <= _MAX_EAGER_TERMS:
                 joins.append(None)
             else:
                 joins.append(out.new_label())
                 out.add("AND_THEN" if term.op == "AND_LEFT" else "OR_ELSE", to=joins[-1])
-        elif term.op in _JOINS:
+        elif term.op in _JOIN_OPS:
             join = joins.pop()
             if join is None:
                 out.add(term.op)
@@ -187,7 +187,7 @@ def emit_unless(out: Emitter, condition: Expression, otherwise: int) -> None:
         if operator == "NOT":
             pending.append((start, end - 1, not when))
         elif operator == ("OR" if when else "AND"):
-            split = _matching_index(condition, range(end - 2, -1, -1), _JOINS, _LEFTS)
+            split = _matching_index(condition, range(end - 2, -1, -1), _JOIN_OPS, _LEFT_OPS)
             pending.append((split + 1, end - 1, when))
             pending.append((start, split, when))
         else:
@@ -237,7 +237,7 @@ def _comparison_to_constant(expression: Expression) -> _Compared | None:
         return None
     value, right = expression[:-2], expression[-2]
     if len(expression) == 3 and expression[0].op == "NUMBER":
-        value, right, comparator = (right,), expression[0], _SWAPPED[comparator]
+        value, right, comparator = (right,), expression[0], _MIRRORED[comparator]
     number = number_of(right, -32768, 32767)
     if number is None:
         return None

@@ -12,7 +12,10 @@ from tiniscript.conformance.kit import MachineCase
 from tiniscript.conformance.machine_process import Problem
 
 AGREES, DIFFERS, LACKS = "agrees", "differs", "lacks"  # or what a Problem says
-LACKING = ["REFUSED UNKNOWN_NEEDS"], ["REFUSED OTHER_VERSION"]  # the second of a machine of 2.0
+LACKING_ANSWERS = (
+    ["REFUSED UNKNOWN_NEEDS"],
+    ["REFUSED OTHER_VERSION"],
+)  # the second of a machine of 2.0
 MOST_ENDLESS = 3  # answers that hang or flood; then nobody waits for more of them,
 MOST_SILENT = 20  # nor for a machine whose first so many runs gave no answer
 
@@ -65,7 +68,7 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
         else:
             answers += 1
             if case.needs and case.needs not in lacks:
-                refuses = list(got) in LACKING and list(got) != list(case.answer)
+                refuses = list(got) in LACKING_ANSWERS and list(got) != list(case.answer)
                 lacks[case.needs] = refuses
                 if refuses:
                     yield Verdict(case.name, LACKS)

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 FOLDER = Path(__file__).resolve().parent
-FORM = "tiniscript-machine-kit"
-VERSION = 5  # of the form; grows when a reader of the file, or a machine, must know more
+MACHINE_FORM = "tiniscript-machine-kit"
+MACHINE_VERSION = 5  # of the form; grows when a reader of the file, or a machine, must know more
 
 
 class MachineCase(NamedTuple):
@@ -74,7 +74,7 @@ def machine_cases() -> list[MachineCase]:
 
 def cases_in(found: Any) -> list[MachineCase]:
     """Return the cases of a file of this version, as JSON has it."""
-    assert (found["form"], found["version"]) == (FORM, VERSION)
+    assert (found["form"], found["version"]) == (MACHINE_FORM, MACHINE_VERSION)
     kits = [tuple(lines) for lines in found["kits"]]
     return [
         MachineCase(

@@ -18,7 +18,12 @@ import threading
 import time
 from typing import IO, NoReturn
 
-ENDS = ("DONE", "FAULT", "LIMIT", "REFUSED")  # a line with one of them is the last of an answer
+ENDING_WORDS = (
+    "DONE",
+    "FAULT",
+    "LIMIT",
+    "REFUSED",
+)  # a line with one of them is the last of an answer
 CHUNK_BYTES = 1 << 16
 SPARE_BYTES = 1 << 18  # that an answer may be longer than the right one
 TAIL_BYTES = 2000  # of what it writes to standard error, kept to show it
@@ -43,7 +48,9 @@ class CannotStart(Exception):
 def is_last(row: str) -> bool:
     """Whether a line ends an answer."""
     words = row.split(" ", 2)
-    return words[0] == "REFUSED" or (len(words) > 1 and words[0].isdigit() and words[1] in ENDS)
+    return words[0] == "REFUSED" or (
+        len(words) > 1 and words[0].isdigit() and words[1] in ENDING_WORDS
+    )
 
 
 class MachineProcess:

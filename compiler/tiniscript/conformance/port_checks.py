@@ -14,7 +14,7 @@ from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import RULES
 from tiniscript.conformance.comparing import Verdict, compare
 from tiniscript.conformance.kit import LinkProgram, LinkTestSuite
-from tiniscript.conformance.wire_robot import STARTS, Answer, Silent, WireRobot
+from tiniscript.conformance.wire_robot import HELLO_TRIES, Answer, Silent, WireRobot
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     BY_NAME,
@@ -36,7 +36,7 @@ STATES = ("IDLE", "RUNNING", "STOPPED", "FAULTED")
 NO_MESSAGE = 31  # a number that no message has
 EVENT_S = 3.0  # for an event after what has caused it
 BUSY_TRIES, BUSY_S = 50, 0.1
-HEADER = 10  # bytes of an image before its checksum
+HEADER_BYTES = 10  # bytes of an image before its checksum
 SILENCE_S = 5.0  # at most, until an attached program ends without a frame: it does after 1 s
 ATTENDED_S = 3.0
 
@@ -79,7 +79,7 @@ def ready(robot: WireRobot) -> None:
 
 def greet(robot: WireRobot) -> Answer:
     """Return the robot's answer to HELLO. Raises Silent."""
-    return robot.hello(STARTS)
+    return robot.hello(HELLO_TRIES)
 
 
 def all_checks(kit: LinkTestSuite) -> list[Check]:
@@ -137,7 +137,7 @@ def announce(robot: WireRobot, image: bytes, mode: int) -> Answer:
 
 def send_image(robot: WireRobot, image: bytes, mode: int) -> Answer:
     """Bring an image in pieces, as it is; return the first answer that is not OK, or the last."""
-    rest = image[HEADER + 4 :]
+    rest = image[HEADER_BYTES + 4 :]
     answer = announce(robot, image, mode)
     most = PAYLOAD_BYTES - 2
     for offset in range(0, len(rest), most):
@@ -147,7 +147,9 @@ def send_image(robot: WireRobot, image: bytes, mode: int) -> Answer:
         answer = robot.ask("DATA", {"offset": offset, "bytes": piece})
     if answer.status:
         return answer
-    return robot.ask("COMMIT", {"checksum": int.from_bytes(image[HEADER : HEADER + 4], "little")})
+    return robot.ask(
+        "COMMIT", {"checksum": int.from_bytes(image[HEADER_BYTES : HEADER_BYTES + 4], "little")}
+    )
 
 
 def _program_check(program: LinkProgram) -> Callable[[WireRobot], tuple[str, ...]]:
@@ -284,12 +286,12 @@ LINK_CHECKS = (
 
 # -- images ---------------------------------------------------------------------------------------
 
-LONG = pack("SI", 0, bytes.fromhex("310001") * 40)
+LONG_IMAGE = pack("SI", 0, bytes.fromhex("310001") * 40)
 
 
 def _change_byte(at: int, value: int) -> bytes:
     """Return the image with another byte and its old checksum."""
-    return LONG[:at] + bytes([value]) + LONG[at + 1 :]
+    return LONG_IMAGE[:at] + bytes([value]) + LONG_IMAGE[at + 1 :]
 
 
 def _image_check(image: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
@@ -297,22 +299,22 @@ def _image_check(image: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
 
 
 def _check_fetch(robot: WireRobot) -> tuple[str, ...]:
-    answer = send_image(robot, LONG, 0)
+    answer = send_image(robot, LONG_IMAGE, 0)
     if answer.status:
         return (answer_text(answer),)
     image = b""
-    while len(image) < len(LONG):
+    while len(image) < len(LONG_IMAGE):
         answer = robot.ask("FETCH", {"offset": len(image)})
         piece = answer.values.get("bytes")
         if answer.status or not isinstance(piece, bytes) or not piece:
             return (answer_text(answer),)
         image += piece
-    return ("the same image" if image == LONG else "another image",)
+    return ("the same image" if image == LONG_IMAGE else "another image",)
 
 
 def _check_incomplete(robot: WireRobot) -> tuple[str, ...]:
-    announce(robot, LONG, 0)
-    robot.ask("DATA", {"offset": 0, "bytes": LONG[HEADER + 4 : HEADER + 24]})
+    announce(robot, LONG_IMAGE, 0)
+    robot.ask("DATA", {"offset": 0, "bytes": LONG_IMAGE[HEADER_BYTES + 4 : HEADER_BYTES + 24]})
     gap = robot.ask("DATA", {"offset": 30, "bytes": b"?"})
     return (f"next {gap.number('next')}", answer_text(robot.ask("COMMIT", {"checksum": 0})))
 
@@ -323,8 +325,8 @@ IMAGE_CHECKS = (
           _image_check(_change_byte(2, ISA_MAJOR + 1))),
     Check("images: a later minor version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | ISA_MINOR}",),
           _image_check(_change_byte(3, ISA_MINOR + 1))),
-    Check("images: another checksum", ("DAMAGED",), _image_check(_change_byte(HEADER,
-        LONG[HEADER] ^ 1))),
+    Check("images: another checksum", ("DAMAGED",), _image_check(_change_byte(HEADER_BYTES,
+        LONG_IMAGE[HEADER_BYTES] ^ 1))),
     Check("images: a piece is missing", ("next 20", "INCOMPLETE 20"), _check_incomplete),
 )  # fmt: skip
 

@@ -27,7 +27,7 @@ from tiniscript.link.wire import Wire
 TRIES = 6
 HEARTBEAT_S = 0.2
 LOOK_MS = 20
-STARTS = 8  # HELLOs: a board may have been reset, or be in its bootloader
+HELLO_TRIES = 8  # HELLOs: a board may have been reset, or be in its bootloader
 
 
 class Silent(Exception):

@@ -1,9 +1,9 @@
 """Makes the sure repairs of a program, and holds what is offered to its law: it is right.
 
 What is offered is right: the text with it has no mistake that begins in what it writes, else the
-mistake is told without it (`without_wrong`). A repair is sure where the message leaves no choice:
-it drops or invents no number, it does not guess a name, and with it the program has fewer mistakes.
-All others are left to the reader.
+mistake is told without it (`drop_wrong_offers`). A repair is sure where the message leaves no
+choice: it drops or invents no number, it does not guess a name, and with it the program has fewer
+mistakes. All others are left to the reader.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from tiniscript.diagnostics.codes import Code, Diagnostic
 
 # The gap of a message that is to be written. What is only an example (`F(2, 80)` for F alone), or
 # names two ways, is no change.
-_WRITTEN = ("fix", "right", "near")  # the first of them that a diagnostic has
-_GAPS: dict[Code, tuple[str, ...]] = {
+_SHOWN_GAPS = ("fix", "right", "near")  # the first of them that a diagnostic has
+_GAPS_BY_CODE: dict[Code, tuple[str, ...]] = {
     **dict.fromkeys((codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.WANTS_CONDITION,
                      codes.MIXED_COMPARE, codes.NAMED_ARGUMENT, codes.NAME_WITH_SPACE,
-                     codes.WORDS_AFTER, codes.SEVERAL_ORDERS, codes.REPEATED), _WRITTEN),
+                     codes.WORDS_AFTER, codes.SEVERAL_ORDERS, codes.REPEATED), _SHOWN_GAPS),
     **dict.fromkeys((codes.MISSING_OPEN, codes.UNIT_PAIR, codes.OTHER_LANGUAGE,
                      codes.QUESTION_AFTER, codes.NOT_CALLABLE, codes.SWAPPED, codes.ZERO_BEFORE,
                      codes.LATE_CHECK, codes.FROZEN_UNTIL, codes.FROZEN_WHILE, codes.TURNED_ROUND,
@@ -30,7 +30,7 @@ _GAPS: dict[Code, tuple[str, ...]] = {
     codes.EMPTY_BRACKETS: ("word",), codes.OUT_OF_RANGE: ("fix", "most"),
     codes.LONG_TIME: ("fix", "way"),
 }  # fmt: skip
-_ELSEWHERE = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)  # without a place they show a way
+_CODES_ELSEWHERE = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)  # without a place they show a way
 
 
 def edits_of(diagnostic: Diagnostic) -> list[Edit] | None:
@@ -38,16 +38,16 @@ def edits_of(diagnostic: Diagnostic) -> list[Edit] | None:
     if diagnostic.repair is not None:
         return [*diagnostic.repair.edits] or None
     values, place = diagnostic.values, diagnostic.place
-    new = next((values[gap] for gap in _GAPS.get(diagnostic.code, ()) if gap in values), "")
-    if not new or (place is None and diagnostic.code in _ELSEWHERE):
+    new = next((values[gap] for gap in _GAPS_BY_CODE.get(diagnostic.code, ()) if gap in values), "")
+    if not new or (place is None and diagnostic.code in _CODES_ELSEWHERE):
         return None
     return [Edit(place or diagnostic.span, new)]
 
 
-MANY = 100  # diagnostics after which a program is not read on
-CHECKS = 400  # of one program, fewer of a long one
+MOST_DIAGNOSTICS = 100  # diagnostics after which a program is not read on
+MOST_CHECKS = 400  # of one program, fewer of a long one
 CHECKED_CHARACTERS = 600_000
-OFFERS = 20  # repairs of one text that are tried
+MOST_OFFERS = 20  # repairs of one text that are tried
 
 
 class Fixed(NamedTuple):
@@ -66,7 +66,7 @@ def repair_program(text: str, check: Check) -> Fixed:
 
     A long program takes long, and has many mistakes: it is not checked so often.
     """
-    left = min(CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
+    left = min(MOST_CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
     diagnostics = check(text)
     count = 0
     steps = _steps(diagnostics)
@@ -82,7 +82,11 @@ def repair_program(text: str, check: Check) -> Fixed:
 
 def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     """Give the sure repairs that do not touch, and then each one alone."""
-    sure = [item.repair.edits for item in diagnostics[:MANY] if item.repair and item.repair.is_sure]
+    sure = [
+        item.repair.edits
+        for item in diagnostics[:MOST_DIAGNOSTICS]
+        if item.repair and item.repair.is_sure
+    ]
     together: list[tuple[Edit, ...]] = []
     for edits in sure:
         if not any(overlap(edits, other) for other in together):
@@ -92,7 +96,9 @@ def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     yield from ([edits] for edits in sure)
 
 
-def offer(text: str, diagnostics: Sequence[Diagnostic], which: int, check: Check) -> list[Edit]:
+def edits_offered(
+    text: str, diagnostics: Sequence[Diagnostic], which: int, check: Check
+) -> list[Edit]:
     """Return the changes of one of a text's diagnostics that a reader may choose to make, or none.
 
     With them the program has fewer mistakes, or for a warning no more of them and the warning is
@@ -119,15 +125,17 @@ def _removes_warning(
     return left < before and _mistakes(after) <= _mistakes(diagnostics)
 
 
-def without_wrong(diagnostics: Sequence[Diagnostic], text: str, check: Check) -> list[Diagnostic]:
+def drop_wrong_offers(
+    diagnostics: Sequence[Diagnostic], text: str, check: Check
+) -> list[Diagnostic]:
     """Return diagnostics without what they offer where that is itself wrong.
 
     It may be right only together with what others offer, as the header of a block and its end, and
     another mistake in it may be told as well. In a long text what is told last is not looked at.
     """
-    left = min(CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
+    left = min(MOST_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
     told = list(diagnostics)
-    for _ in _WRITTEN:
+    for _ in _SHOWN_GAPS:
         offers = [
             edits_of(diagnostic) or [] if diagnostic.is_mistake else [] for diagnostic in told
         ]
@@ -205,7 +213,7 @@ class _InPlace:
             start = edit.span.start + shift
             shown += [Span(start, start + len(edit.text))] if edit in own_edits else []
             shift += len(edit.text) - (edit.span.end - edit.span.start)
-        text = next(filter(None, map(diagnostic.values.get, _WRITTEN)), "")
+        text = next(filter(None, map(diagnostic.values.get, _SHOWN_GAPS)), "")
         begin = self.text.find(text, max(0, shown[0].start - len(text)))
         if begin in range(shown[-1].end):
             shown.append(Span(begin, begin + len(text)))
@@ -223,7 +231,7 @@ class _InPlace:
 
 def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
     """Return a diagnostic without the changes that it asks for, and without the words for them."""
-    gaps = ("fix", "right") if diagnostic.repair else _GAPS.get(diagnostic.code, ("fix",))
+    gaps = ("fix", "right") if diagnostic.repair else _GAPS_BY_CODE.get(diagnostic.code, ("fix",))
     text = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
     gone = [text, "whole", "lines", "times"]
     gone += ["line"] if diagnostic.code is not codes.WRONG_END else []  # of its header

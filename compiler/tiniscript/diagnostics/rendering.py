@@ -55,7 +55,7 @@ class Message(NamedTuple):
 
 # What else belongs to what is to be tried: what is written then where it is used, what may be meant
 # as well, what it leaves out, and what of it nobody said.
-_BESIDE = ("carried", "rival", "lost", "sample")
+_SECONDARY_GAPS = ("carried", "rival", "lost", "sample")
 
 
 def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
@@ -68,7 +68,7 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
         end_line, last_column = source.position(end - 1)
         end_column = last_column + 1
     fix = _format_text(f"{number}/try", diagnostic.values, lang)
-    for gap in _BESIDE:
+    for gap in _SECONDARY_GAPS:
         if diagnostic.values.get(gap):
             fix = _format_text(f"label/{gap}", {**diagnostic.values, "fix": fix}, lang)
     return Message(
@@ -97,7 +97,7 @@ def as_text(message: Message, source: Source, lang: str, color: bool = False) ->
         label = f"{_label('line', lang)} {message.line}:  "
         line = source.line_text(message.line)
         end = message.end_column - 1 if message.end_line == message.line else len(line)
-        shown, blanks, carets = _picture(line, message.column - 1, end)
+        shown, blanks, carets = _line_window(line, message.column - 1, end)
         rows.append((label + shown).rstrip())
         rows.append(" " * (len(label) + blanks) + mark + "^" * carets + plain)
     text = f"{_label('warns', lang)} {message.message}" if is_warning else message.message
@@ -162,7 +162,7 @@ def _texts(key: str, lang: str) -> Iterator[str]:
 def names_found(diagnostic: Diagnostic) -> bool:
     """Whether a message says what was found, as it stands in the text."""
     key = f"{diagnostic.code.number}/message"
-    chosen = _first_filled_text(key, diagnostic.values, languages.SOURCE)
+    chosen = _first_filled_text(key, diagnostic.values, languages.SOURCE_LANGUAGE)
     return ("", "found") in _GAP.findall(chosen)
 
 
@@ -180,17 +180,17 @@ def _format_text(key: str, values: Mapping[str, str], lang: str) -> str:
 
     def gap(match: re.Match[str]) -> str:
         longest = FIX_CHARACTERS if match[2] in ("fix", "right", "whole") else VALUE_CHARACTERS
-        return _value(values.get(match[2], ""), match[1] == "@", lang, longest)
+        return _value_text(values.get(match[2], ""), match[1] == "@", lang, longest)
 
     return _GAP.sub(gap, chosen)
 
 
-def _value(value: str, is_translated: bool, lang: str, longest: int) -> str:
+def _value_text(value: str, should_translate: bool, lang: str, longest: int) -> str:
     """Return a value as a message can hold it: translated, short, in one row, printable."""
-    term = _term(value.removeprefix("@"), lang) if is_translated or value[:1] == "@" else None
+    term = _term(value.removeprefix("@"), lang) if should_translate or value[:1] == "@" else None
     if term is not None:
         return term
-    if is_translated:
+    if should_translate:
         value = _TERM_WORD.sub(lambda match: _term(match[0], lang) or match[0], value)
     value = " ".join(value[: longest * 4].split())
     if len(value) > longest:
@@ -217,7 +217,7 @@ def _shown_range(text: str, span: Span) -> tuple[int, int]:
     return (end - 1, end) if end else (0, min(1, len(text)))
 
 
-def _picture(line: str, start: int, end: int) -> tuple[str, int, int]:
+def _line_window(line: str, start: int, end: int) -> tuple[str, int, int]:
     """Return what is shown of a line, the columns before the carets, and how many carets.
 
     `start` and `end` count characters of the line from 0.

@@ -70,7 +70,7 @@ class Access(NamedTuple):
     users: tuple[str, ...]
 
 
-FREE = Access(True, "", False, ())
+FREE_ACCESS = Access(True, "", False, ())
 
 
 def chip_of(vendor: str, product: str) -> tuple[str, str] | None:
@@ -90,5 +90,5 @@ def looks_wireless(port: str, description: str = "") -> bool:
     return any(word in text for word in ("rfcomm", "bluetooth", "bthenum")) or is_module(text)
 
 
-def without_driver(adapters: Iterable[Adapter]) -> list[Adapter]:
+def adapters_without_driver(adapters: Iterable[Adapter]) -> list[Adapter]:
     return [adapter for adapter in adapters if not adapter.has_port]

@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 from tiniscript.doctor import line, linux, macos, windows
 from tiniscript.doctor.computer import (
-    FREE,
+    FREE_ACCESS,
     NONE,
     OFF,
     Access,
     Computer,
+    adapters_without_driver,
     looks_wireless,
-    without_driver,
 )
 from tiniscript.doctor.examination import Expectations, RobotAnswers, examine
 from tiniscript.doctor.findings import Finding, probably, sure
@@ -32,7 +32,7 @@ from tiniscript.link.connection import LinkConnection, stranger
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED
 from tiniscript.link.outcomes import ConnectionLost
-from tiniscript.link.port_names import PSEUDO, is_address, same_for_all
+from tiniscript.link.port_names import PSEUDO_TERMINALS, canonical_port, is_address
 from tiniscript.link.sharing.shared_connection import OtherVersion
 from tiniscript.link.wire import Wire
 
@@ -50,7 +50,7 @@ def access(system: System, port: str) -> Access:
     is_told = system.platform != "win32" and not is_address(port)
     owner = system.owner(port) if is_told else None
     if owner is None:
-        return FREE
+        return FREE_ACCESS
     look = macos.access if system.platform == "darwin" else linux.access
     return look(system, port, owner)
 
@@ -102,7 +102,7 @@ def diagnose(doors: Doors, question: Question) -> Diagnosis:
     computer = inspect_computer(doors.system)
     port = question.port or question.last or _only_port(computer, question.virtual)
     if port is None:
-        return Diagnosis(None, _without_port(computer, question.virtual), computer, False)
+        return Diagnosis(None, _missing_port_findings(computer, question.virtual), computer, False)
     question = question._replace(expected=question.expected._replace(port=port))
     client = None
     try:
@@ -118,7 +118,7 @@ def diagnose(doors: Doors, question: Question) -> Diagnosis:
     held = _port_in_use(doors.system, computer, port)
     if held is not None:
         return Diagnosis(port, (held,), computer, False)
-    is_radio = doors.is_radio(port) or port.startswith(PSEUDO)
+    is_radio = doors.is_radio(port) or port.startswith(PSEUDO_TERMINALS)
     if not is_radio and _is_listed(doors.system, computer, port) and not doors.may_open(port):
         return Diagnosis(port, (sure("not_opened"),), computer, False)
     return _diagnose_open_port(doors, question, computer, port, is_radio)
@@ -133,7 +133,7 @@ def _diagnose_open_port(
         return Diagnosis(
             port, (_open_failure(failure, computer, port, doors.system),), computer, False
         )
-    is_radio = is_radio and not port.startswith(PSEUDO)
+    is_radio = is_radio and not port.startswith(PSEUDO_TERMINALS)
     asked = Line(question.baud, is_radio, question.nonce)
     expected, heard = question.expected, list[RobotAnswers]()
 
@@ -167,7 +167,7 @@ def _only_port(computer: Computer, virtual: tuple[str, ...]) -> str | None:
     return names[0] if len(names) == 1 else None
 
 
-def _without_port(computer: Computer, virtual: tuple[str, ...]) -> tuple[Finding, ...]:
+def _missing_port_findings(computer: Computer, virtual: tuple[str, ...]) -> tuple[Finding, ...]:
     """Return why there is no port to look at; ports that may be no robot's are named beside."""
     listed = ", ".join([*(port.port for port in computer.ports), *virtual])
     if len(computer.ports) > 1:
@@ -180,7 +180,7 @@ def _without_port(computer: Computer, virtual: tuple[str, ...]) -> tuple[Finding
 
 def _no_port_finding(computer: Computer) -> Finding:
     """Return why an adapter, or any at all, has no port."""
-    for adapter in without_driver(computer.adapters or ()):
+    for adapter in adapters_without_driver(computer.adapters or ()):
         if adapter.driver == "usbfs" or "brltty" in computer.programs:
             return Finding("brltty", "brltty" in computer.programs, {"chip": adapter.chip})
         return sure("driver_missing", chip=adapter.chip, driver=adapter.wants or adapter.chip)
@@ -208,12 +208,12 @@ def _diagnose_shared(
 
 def _port_in_use(system: System, computer: Computer, port: str) -> Finding | None:
     """Return why this user cannot have the port now, as far as it is known without opening it."""
-    who = access(system, same_for_all(port))
+    who = access(system, canonical_port(port))
     if not who.may_use and who.is_joined:
         return sure("login_again", group=who.group)
     if not who.may_use:
         return sure("no_permission", group=who.group)
-    if port.startswith(PSEUDO):
+    if port.startswith(PSEUDO_TERMINALS):
         return None  # whoever has made it has it open, too
     if "ModemManager" in who.users:
         return sure("modem_manager")
@@ -266,6 +266,6 @@ def _missing_port(computer: Computer, port: str, system: System) -> Finding:
             return sure("not_paired")
         if computer.platform == "linux" and "rfcomm" in port:
             return Finding("no_rfcomm", bool(computer.has_module), {"number": port[-1:]})
-    if without_driver(computer.adapters or ()) or not computer.ports:
+    if adapters_without_driver(computer.adapters or ()) or not computer.ports:
         return _no_port_finding(computer)
     return sure("port_missing", ports=", ".join(port.port for port in computer.ports))

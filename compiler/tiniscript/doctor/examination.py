@@ -34,8 +34,8 @@ from tiniscript.link.requests import OK, Reply
 from tiniscript.link.robot_state import line_error_count
 
 PINGS = 20
-PAUSE_MS = 50  # between two of them
-LOSSY = 2  # of 20 that were not answered at once, or that the robot heard damaged
+PING_PAUSE_MS = 50  # between two of them
+MOST_LOST = 2  # of 20 that were not answered at once, or that the robot heard damaged
 LOOKS = 6  # whether it is still the same robot, and was not restarted meanwhile
 LOOK_MS = 250
 _STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
@@ -97,7 +97,11 @@ def examine(
         return [_other_link(first)]
     if doubt := expected.doubts(expected.port, hello):
         return [sure(doubt, id=f"{hello.id:08x}")]
-    findings = [*_versions(hello), *_kit(hello, expected), *_owner(robot, hello, expected)]
+    findings = [
+        *_version_findings(hello),
+        *_kit_findings(hello, expected),
+        *_owner_findings(robot, hello, expected),
+    ]
     if hello.features & WIFI_RESTS:
         findings.append(sure("wifi_rests"))
     expected.note(_report_fields(hello, expected))
@@ -112,7 +116,7 @@ def examine(
         restarts = _watch_restarts(robot, hello, watch_ms)
     after = robot.status() if before is not None else None
     if restarts:
-        findings += _restarts(restarts)
+        findings += _restart_findings(restarts)
     elif after is None:
         findings.append(probably("falls_silent"))
     elif row_name(RESETS, hello.reset) == _BROWN_OUT:
@@ -152,7 +156,7 @@ def _other_link(reply: Reply[SentReply]) -> Finding:
     return sure(cause, theirs=str(reply.detail), ours=str(MAJOR))
 
 
-def _versions(hello: HelloReply) -> list[Finding]:
+def _version_findings(hello: HelloReply) -> list[Finding]:
     """Compare versions: what a newer robot has more does no harm."""
     theirs, ours = (hello.isa_major, hello.isa_minor), (ISA_MAJOR, ISA_MINOR)
     is_newer = hello.isa_major > ISA_MAJOR or hello.major > MAJOR
@@ -165,7 +169,7 @@ def _versions(hello: HelloReply) -> list[Finding]:
     return [sure("firmware_newer" if is_newer else "firmware_older", **values)]
 
 
-def _kit(hello: HelloReply, expected: Expectations) -> list[Finding]:
+def _kit_findings(hello: HelloReply, expected: Expectations) -> list[Finding]:
     result = expected.names(hello.kit)
     kit = f"{hello.kit:04x}"
     if expected.kit is not None and hello.kit != expected.kit:
@@ -175,7 +179,7 @@ def _kit(hello: HelloReply, expected: Expectations) -> list[Finding]:
     return []
 
 
-def _owner(robot: Robot, hello: HelloReply, expected: Expectations) -> list[Finding]:
+def _owner_findings(robot: Robot, hello: HelloReply, expected: Expectations) -> list[Finding]:
     """Compare who may drive it: what is refused for that looks like a robot that does nothing."""
     is_open = not robot.has_shown_keys and expected.has_key(hello.id)
     is_others = hello.features & (OWNED | YOURS) == OWNED and not is_open
@@ -201,7 +205,7 @@ def _link_findings(
 ) -> tuple[list[Finding], tuple[float, ...]]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
     on_step("pings")
-    trips_ms = trips_of(robot, expected.pings, lambda: robot.pause(PAUSE_MS))
+    trips_ms = trips_of(robot, expected.pings, lambda: robot.pause(PING_PAUSE_MS))
     missed = expected.pings - len(trips_ms)
     after = robot.status()
     damaged_count = 0
@@ -211,9 +215,9 @@ def _link_findings(
     values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged_count)}
     expected.note({"good": str(len(trips_ms)), **values})
     lost = []
-    if max(missed, damaged_count) * PINGS >= LOSSY * expected.pings:
+    if max(missed, damaged_count) * PINGS >= MOST_LOST * expected.pings:
         lost = [sure("lossy", **values)] if after is not None else []
-    elif after is not None and line_error_count(before) >= 10 * LOSSY:
+    elif after is not None and line_error_count(before) >= 10 * MOST_LOST:
         lost = [probably("lossy", **{**values, "damaged": str(line_error_count(before))})]
     return lost, trips_ms
 
@@ -261,7 +265,7 @@ def _watch_restarts(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Rest
     return restarts
 
 
-def _restarts(restarts: list[Restart]) -> list[Finding]:
+def _restart_findings(restarts: list[Restart]) -> list[Finding]:
     """Return what restarts mean: it was the voltage for sure only where the chip tells it."""
     count = str(len(restarts))
     driving = [restart for restart in restarts if restart.was_running]

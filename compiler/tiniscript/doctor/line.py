@@ -16,7 +16,7 @@ from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
 from tiniscript.flash.bootloaders import MEGA, NANO_OLD, UNO, Bootloader
 from tiniscript.link import foreign
-from tiniscript.link.foreign import ECHO, Foreign
+from tiniscript.link.foreign import ECHO_SKETCH, Foreign
 from tiniscript.link.modules import dialects, talk
 from tiniscript.link.wire import Wire
 
@@ -29,10 +29,12 @@ GREETINGS: tuple[tuple[Bootloader, bytes, bytes], ...] = (
 BLINK_MS = 450  # Optiboot blinks first, and hears no more than two bytes meanwhile
 TRIES = 4
 ANSWER_MS = 200
-OVER_MS = 5000  # a bootloader that has heard nothing for so long has gone on to what is behind it
+BOOTLOADER_MS = (
+    5000  # a bootloader that has heard nothing for so long has gone on to what is behind it
+)
 
 
-def answers(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool] | None:
+def find_bootloader(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool] | None:
     """Restart the board and return the bootloader that answers, or None.
 
     The second value: it answers later on, too; then there is nothing behind it. `hear` gets what
@@ -40,7 +42,7 @@ def answers(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool
     """
     for line, greeting, answer in GREETINGS:
         wire.set_baud(line.baud)
-        wire.restart()
+        wire.reset_board()
         said = wire.receive(BLINK_MS, BLINK_MS)
         is_there = False
         for _ in range(TRIES):
@@ -49,7 +51,7 @@ def answers(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootloader, bool
             if is_there := answer in said:
                 break
         if is_there:
-            wire.receive(OVER_MS, OVER_MS)
+            wire.receive(BOOTLOADER_MS, BOOTLOADER_MS)
             return line, _greet(wire, greeting, answer)
         hear(said)
     return None
@@ -64,11 +66,11 @@ def _greet(wire: Wire, greeting: bytes, answer: bytes) -> bool:
 
 
 BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
-HELLOS = 5  # an old Nano's bootloader takes longer
+HELLO_TRIES = 5  # an old Nano's bootloader takes longer
 BAUDS = (9600, 115200, 57600, 38400, 19200)
 LISTEN_MS = 400  # at a speed, to what a sketch prints
 PROBE_MS, RADIO_PROBE_MS = 200, 500  # for an answer of a board that is not ours
-FEW = 4  # bytes: fewer say nothing
+LEAST_BYTES = 4  # bytes: fewer say nothing
 
 
 class Line(NamedTuple):
@@ -86,24 +88,24 @@ def diagnose_line(
     """Return what is at the other end. `on_step` gets what is done next, a short name."""
     on_step("listen")
     before = wire.receive(LISTEN_MS if line.is_radio else BOOT_MS)
-    robot = _robot(wire, line, expected)
+    robot = _wire_robot(wire, line, expected)
     on_step("hello")
-    reply = robot.hello(HELLOS)
+    reply = robot.hello(HELLO_TRIES)
     if reply is not None:
         return examine(robot, reply, expected, on_step=on_step)
     heard = before + robot.heard
     if _is_error(heard):
         return [sure("module_set_up", baud=str(line.baud))]
     others = _Others(wire, RADIO_PROBE_MS if line.is_radio else PROBE_MS)
-    found = others.find(heard, robot.spoken, partial(_echo, wire, line, expected))
+    found = others.find(heard, robot.spoken, partial(_identify_echo, wire, line, expected))
     if found is not None:
         return [found]
     if line.is_radio:
-        return [others.best_finding() or _by_radio(heard)]
-    return _by_cable(wire, line, expected, heard, others, on_step)
+        return [others.best_finding() or _diagnose_radio(heard)]
+    return _diagnose_cable(wire, line, expected, heard, others, on_step)
 
 
-def _robot(wire: Wire, line: Line, expected: Expectations) -> WireRobot:
+def _wire_robot(wire: Wire, line: Line, expected: Expectations) -> WireRobot:
     kit = expected.kit or 0
     return WireRobot(wire, line.nonce, kit, RADIO_MS if line.is_radio else CABLE_MS)
 
@@ -136,7 +138,7 @@ class _Others:
             found = self.ask(heard, not is_echo)
         if found is None and is_echo:
             said = _text_beside(heard, spoken)
-            found = sure(ECHO, said=said) if said else echo()
+            found = sure(ECHO_SKETCH, said=said) if said else echo()
         return found
 
     def look(self, heard: bytes) -> Finding | None:
@@ -144,7 +146,9 @@ class _Others:
         if foreign.is_robot(heard):
             return probably("one_way")
         found = foreign.identify_board(heard)
-        return None if found is not None and found.name in foreign.GENERAL else self._judge(found)
+        return (
+            None if found is not None and found.name in foreign.GENERAL_ROWS else self._judge(found)
+        )
 
     def ask(self, heard: bytes, may_be_text: bool) -> Finding | None:
         """Send the probes, and return what surely answers, or is surely text without them.
@@ -161,13 +165,13 @@ class _Others:
                 if found is not None:
                     return found
         if (best := self.best_finding()) is not None and best.cause == "at_firmware":
-            self._wire.send(foreign.ASKS_AT)
+            self._wire.send(foreign.AT_VERSION_QUESTION)
             found = self._judge(
                 foreign.identify_board(heard + self._wire.receive(dialects.ANSWER_MS))
             )
             if found is not None:
                 return found
-        return self._judge(foreign.stranger(heard)) if may_be_text else None
+        return self._judge(foreign.identify_stranger(heard)) if may_be_text else None
 
     def settle(self, heard: bytes) -> Finding | None:
         """Return what has sent these bytes, where no question would help."""
@@ -188,37 +192,37 @@ class _Others:
         return None
 
 
-def _echo(wire: Wire, line: Line, expected: Expectations) -> Finding:
+def _identify_echo(wire: Wire, line: Line, expected: Expectations) -> Finding:
     """Return what sends back: a sketch has one speed, a wire has every one."""
     if line.is_radio:
         return probably("echo")
     wire.set_baud(next(baud for baud in BAUDS if baud != line.baud))
-    robot = _robot(wire, line, expected)
+    robot = _wire_robot(wire, line, expected)
     robot.hello(1)
     if _is_echo(robot.heard, robot.spoken):
         return sure("echo")
-    return _echo_of_one_speed(wire, line.baud)
+    return _identify_echo_of_one_speed(wire, line.baud)
 
 
-def _echo_of_one_speed(wire: Wire, baud: int) -> Finding:
+def _identify_echo_of_one_speed(wire: Wire, baud: int) -> Finding:
     """Return what sends back at this speed only: what takes commands may do so, too."""
-    return _module(wire, (baud,)) or sure(ECHO, said="")
+    return _find_module(wire, (baud,)) or sure(ECHO_SKETCH, said="")
 
 
 def _text_beside(heard: bytes, spoken: bytes) -> str:
     """Return the text that came with what was sent and came back, if any did."""
     for frame in spoken.split(b"\0"):
         heard = heard.replace(frame, b"") if frame else heard
-    return foreign.readable(heard.replace(b"\0", b""))
+    return foreign.readable_line(heard.replace(b"\0", b""))
 
 
-def _module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
+def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
     """Return the module that answers commands, or the board that does as one does."""
     module = talk.find_module(wire, bauds, wakes=False)
     if module is None:
         return None
     if not module.version:  # no module has told which one it is
-        wire.send(foreign.ASKS_AT)
+        wire.send(foreign.AT_VERSION_QUESTION)
         found = foreign.identify_board(wire.receive(dialects.ANSWER_MS))
         if found is not None:
             return Finding(found.name, found.is_sure, {"said": found.said})
@@ -226,14 +230,14 @@ def _module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
     return sure(cause, baud=str(module.baud), module=module.dialect.name)
 
 
-def _by_radio(heard: bytes) -> Finding:
+def _diagnose_radio(heard: bytes) -> Finding:
     """The module has answered, for its port is open: what is behind it?"""
-    if len(heard) >= FEW:
+    if len(heard) >= LEAST_BYTES:
         return probably("module_baud", n=str(len(heard)))
     return probably("crossed")
 
 
-def _by_cable(
+def _diagnose_cable(
     wire: Wire, line: Line, expected: Expectations, heard: bytes, others: _Others,
     on_step: Callable[[str], None],
 ) -> list[Finding]:  # fmt: skip
@@ -244,25 +248,25 @@ def _by_cable(
         on_step("bauds")
         wire.set_baud(baud)
         more = wire.receive(LISTEN_MS)
-        robot = _robot(wire, line, expected)
+        robot = _wire_robot(wire, line, expected)
         reply = robot.hello(1)
         if reply is not None:
             finding = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
             rest = examine(robot, reply, expected, on_step=on_step)
             return [finding, *(finding for finding in rest if finding.cause != "fine")]
         more += robot.heard
-        alone = partial(_echo_of_one_speed, wire, baud)
+        alone = partial(_identify_echo_of_one_speed, wire, baud)
         found = others.find(more, robot.spoken, alone)
         if found is not None:
             return [found]
         garbage = max(garbage, len(more))
     on_step("module")
-    found = _module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))))
+    found = _find_module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))))
     if found is not None:
         return [found]
     on_step("bootloader")
     booted: list[bytes] = []
-    found_bootloader = answers(wire, booted.append)
+    found_bootloader = find_bootloader(wire, booted.append)
     for said in booted:
         found = others.look(said) or others.settle(said)
         if found is not None:
@@ -272,4 +276,7 @@ def _by_cable(
         return [sure("bootloader_only", board=board.name) if is_alone
                 else others.best_finding() or probably("other_sketch", said="")]  # fmt: skip
     kept = others.best_finding()
-    return [kept or (probably("garbled", n=str(garbage)) if garbage >= FEW else probably("silent"))]
+    return [
+        kept
+        or (probably("garbled", n=str(garbage)) if garbage >= LEAST_BYTES else probably("silent"))
+    ]

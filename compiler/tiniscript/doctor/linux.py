@@ -7,7 +7,7 @@ from tiniscript.doctor.system import Owner, System
 
 USB, BLUETOOTH, SWITCHES = "/sys/bus/usb/devices", "/sys/class/bluetooth", "/sys/class/rfkill"
 LOCKS = "/run/lock", "/var/lock"
-OF_INTEREST = {"brltty", "ModemManager"}
+PROGRAMS_OF_INTEREST = {"brltty", "ModemManager"}
 
 
 def inspect_linux(system: System) -> Computer:
@@ -18,7 +18,7 @@ def inspect_linux(system: System) -> Computer:
         tuple(_adapters(system)) if system.names(USB) else None,
         bluetooth,
         _paired_devices(system) if bluetooth == ON else (),
-        frozenset(OF_INTEREST & set(_programs(system).values())),
+        frozenset(PROGRAMS_OF_INTEREST & set(_programs(system).values())),
     )
 
 

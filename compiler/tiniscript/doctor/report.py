@@ -15,19 +15,19 @@ from tiniscript.doctor.computer import Computer, is_module
 from tiniscript.doctor.findings import Finding
 from tiniscript.link.port_names import is_address
 
-MARK = "TiniScript doctor report 1"  # the first line: the file is one of ours
+REPORT_MARK = "TiniScript doctor report 1"  # the first line: the file is one of ours
 SELFTEST_MARK = "TiniScript selftest report 1"  # that of `tsc doctor --selftest`
 HIDDEN = "…"
 # Values of findings that are made by others or tell whose robot it is: its name and number, what a
 # sketch prints, system messages.
-PRIVATE = ("name", "id", "said", "why", "by")
+PRIVATE_VALUES = ("name", "id", "said", "why", "by")
 PROGRAMS = ("ModemManager", "brltty", "avrdude", "arduino", "Arduino IDE", "screen", "minicom",
             "picocom", "putty", "tsc", "python", "python3", "java", "thonny", "code")  # fmt: skip
 
 
 def is_ours(data: bytes) -> bool:
     """Whether a file is a report, which a new one may replace."""
-    return data.split(b"\n", 1)[0].strip() in (MARK.encode(), SELFTEST_MARK.encode())
+    return data.split(b"\n", 1)[0].strip() in (REPORT_MARK.encode(), SELFTEST_MARK.encode())
 
 
 def head(mark: str, about: str, facts: Iterable[tuple[str, str]], port: str | None) -> list[str]:
@@ -59,7 +59,7 @@ def values_of(finding: Finding) -> dict[str, str]:
             names = [part if part in PROGRAMS else HIDDEN for part in value.split(", ") if part]
             values[key] = ", ".join(names)
         else:
-            values[key] = HIDDEN if key in PRIVATE and value else value
+            values[key] = HIDDEN if key in PRIVATE_VALUES and value else value
     return values
 
 

@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tiniscript.bytecode.image import isa_of
+from tiniscript.bytecode.image import isa_for_needs
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, encode_payload
@@ -20,10 +20,10 @@ from tiniscript.link.requests import OK, Reply, reply_of
 from tiniscript.link.wire import Wire
 
 TRIES = 3
-READS = 4  # of the wire in one try: what the robot tells by itself may come in between
+MOST_READS = 4  # of the wire in one try: what the robot tells by itself may come in between
 CABLE_MS, RADIO_MS = 300, 700  # for an answer
 SHARED_MS = 4000  # for one through another tsc, with its own retries
-SILENT = 3  # of these without an answer, one after another: the robot is asked no more
+MOST_UNANSWERED = 3  # of these without an answer, one after another: the robot is asked no more
 
 
 class Robot(ABC):
@@ -58,7 +58,7 @@ class WireRobot(Robot):
         self.heard = self.spoken = b""
         self._seq = 0
         self._epoch = 0
-        isa = isa_of(0)
+        isa = isa_for_needs(0)
         hello = {"major": MAJOR, "minor": MINOR, "isa_major": isa[0], "isa_minor": isa[1],
                  "kit": kit, "nonce": nonce}  # fmt: skip
         # without a value the robot tells the trim that it has
@@ -87,7 +87,7 @@ class WireRobot(Robot):
 
     def _answer(self, name: str, number: int) -> Reply[SentReply] | None:
         result = b""
-        for _ in range(READS):
+        for _ in range(MOST_READS):
             more = self.wire.receive(self.answer_ms)
             if not more:
                 break
@@ -127,7 +127,7 @@ class SharedRobot(Robot):
             request.limit_ms = SHARED_MS
             return request
 
-        if self._unanswered < SILENT:
+        if self._unanswered < MOST_UNANSWERED:
             reply: Reply[SentReply] = self._wait(self.line.begin(with_limit))
             if reply.status not in (LOST, CANCELLED):
                 self._unanswered = 0

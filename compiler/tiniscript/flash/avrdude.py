@@ -24,20 +24,20 @@ LEAVE_S = 5.0  # that it has after its last output
 WHOLE_S = 300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
 MOST_BYTES = 200_000  # limit of its output; about 2,000 are normal
 MOST_ATTEMPTS = 2  # of its ten, which take five seconds each
-MARKS = 50  # of a whole bar
+BAR_MARKS = 50  # of a whole bar
 
 WRITING, READING = "writing", "reading"
 # How it may end.
 DONE, NOBODY, OTHER_CHIP, DIFFERS = "done", "nobody", "other_chip", "differs"
-PORT, BROKEN_OFF, FAILED, ENDLESS = "port", "broken_off", "failed", "endless"
-ENDS = (DONE, NOBODY, OTHER_CHIP, DIFFERS, PORT, BROKEN_OFF, FAILED, ENDLESS)
+PORT_FAILED, BROKEN_OFF, FAILED, ENDLESS = "port", "broken_off", "failed", "endless"
+OUTCOMES = (DONE, NOBODY, OTHER_CHIP, DIFFERS, PORT_FAILED, BROKEN_OFF, FAILED, ENDLESS)
 
-_BAR = re.compile(r"(Writing|Reading)[^|\n]*\|[ \r]*(#*)")
+_PROGRESS_BAR = re.compile(r"(Writing|Reading)[^|\n]*\|[ \r]*(#*)")
 _ATTEMPT = re.compile(r"attempt (\d+) of")
 _CAUSES = (
     (OTHER_CHIP, r"expected signature|invalid device signature|signature .*(?:mismatch|wrong)"),
     (DIFFERS, r"verification (?:error|mismatch)|content mismatch|failed to verify"),
-    (PORT, r"(?:can't|cannot|unable to) open (?:device|port|serial)|permission denied"),
+    (PORT_FAILED, r"(?:can't|cannot|unable to) open (?:device|port|serial)|permission denied"),
     (NOBODY, r"not in sync|not responding|timeout|cannot set sck|unable to open programmer"
      r"|initialization failed|protocol error|can't communicate"),
 )  # fmt: skip
@@ -102,7 +102,7 @@ def write(
     words += ["-U", f"flash:w:{firmware}:i"]
     try:
         code, said = children.run(words, None, _Watch(look), leave_s=LEAVE_S)
-    except _Over as over:
+    except _Ended as over:
         return over.ended
     except subprocess.TimeoutExpired:
         return WriteResult(ENDLESS)
@@ -111,7 +111,7 @@ def write(
     return outcome(code, said)
 
 
-class _Over(Exception):
+class _Ended(Exception):
     """It is not waited for any longer."""
 
     def __init__(self, how: str) -> None:
@@ -133,12 +133,12 @@ class _Watch:
         if said != self._said:
             self._said, self._heard_s = said, now_s
         if now_s - self._began_s >= WHOLE_S or len(said) > MOST_BYTES:
-            raise _Over(ENDLESS)
+            raise _Ended(ENDLESS)
         if found is not None:
             if now_s - self._heard_s >= SILENCE_S:
-                raise _Over(BROKEN_OFF)
+                raise _Ended(BROKEN_OFF)
         elif now_s - self._heard_s >= NOBODY_S or _attempt(said) >= MOST_ATTEMPTS:
-            raise _Over(NOBODY)
+            raise _Ended(NOBODY)
 
 
 def _attempt(said: str) -> int:
@@ -148,13 +148,13 @@ def _attempt(said: str) -> int:
 
 def parse_progress(said: str) -> StepProgress | None:
     """Return the progress, from its whole output."""
-    bars = _BAR.findall(said)
+    bars = _PROGRESS_BAR.findall(said)
     names = [name for name, _ in bars]
     if "Writing" not in names:
         return None  # the bar before that is for the signature
     name, marks = bars[-1]
     phase = READING if name == "Reading" else WRITING
-    return StepProgress(phase, min(100, 100 * len(marks) // MARKS))
+    return StepProgress(phase, min(100, 100 * len(marks) // BAR_MARKS))
 
 
 def outcome(code: int, said: str) -> WriteResult:

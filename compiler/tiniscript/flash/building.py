@@ -26,9 +26,9 @@ from tiniscript.robots.profile import Robot
 
 PACKAGE = Path(__file__).resolve().parent.parent
 # A wheel brings the sources; in a clone they are beside `compiler`.
-PLACES = (PACKAGE / "flash" / "vm_arduino", PACKAGE.parent.parent / "vm_arduino")
-SETTINGS, PARTITIONS = "platformio.ini", "partitions.csv"
-HEADER = "src/boards/kits/own.h"
+SOURCE_FOLDERS = (PACKAGE / "flash" / "vm_arduino", PACKAGE.parent.parent / "vm_arduino")
+SETTINGS_FILE, PARTITIONS_FILE = "platformio.ini", "partitions.csv"
+HEADER_FILE = "src/boards/kits/own.h"
 MADE_BY = "tsc firmware, from a robot profile."
 
 FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
@@ -36,12 +36,12 @@ FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
 LESS_TASKS, LESS_REMOTE = "less_tasks", "less_remote"
 CORE_FILES = 26  # of Arduino's core, about
 # For a robot that does not fit on its board with all of it: one of more devices than tinibot.
-SMALLER = {
+SMALLER_FIRMWARE = {
     "uno": ("uno_without_tasks", LESS_TASKS),
     "nano": ("nano_without_remote", LESS_REMOTE),
 }
 # For a robot with discs on its wheels, which have the place of the reader of text.
-WITH_DISCS = {"uno": "uno_tinibot2", "nano": "nano_tinibot2"}
+ENVIRONMENT_WITH_DISCS = {"uno": "uno_tinibot2", "nano": "nano_tinibot2"}
 PLATFORMIO_MB = 4  # what pip fetches, measured
 # What PlatformIO fetches for a board with these chips: its platform, and the megabytes of compiler,
 # core and build tools, by estimate from what public indexes say of their archives for Linux.
@@ -49,13 +49,13 @@ _COMPILERS = {"esp32dev": ("espressif32", 350), "esp32c3": ("espressif32", 430)}
 _AVR_COMPILER = ("atmelavr", 50)
 
 # The user's PlatformIO settings that would change the build or its folder.
-_UNWANTED = re.compile(
+_UNWANTED_LINE = re.compile(
     r"PLATFORMIO_(.*FLAGS|EXTRA_SCRIPTS|DEFAULT_ENVS|FORCE_ANSI"
     r"|(SRC|INCLUDE|LIB|DATA|TEST|BUILD|WORKSPACE|SHARED|BUILD_CACHE)_DIR)"
 )
 _COMPILING = re.compile(r"^Compiling ", re.M)
 _INSTALLING = re.compile(r"^.*Manager: Installing (\S+)", re.M)
-_ONLINE = re.compile(r"Installing|HTTP|Internet|[Cc]onnection")  # what needs the internet
+_NETWORK_MESSAGE = re.compile(r"Installing|HTTP|Internet|[Cc]onnection")  # what needs the internet
 _WRITING = re.compile(r"Writing at 0x[0-9a-f]+.*?(\d+)(?:\.\d+)? ?%")  # esptool
 _PERCENT = re.compile(r"(\d+)%")
 _TOO_LARGE = re.compile(r"size \((\d+) bytes\) is greater than maximum allowed \((\d+) bytes")
@@ -98,11 +98,15 @@ class Sources(NamedTuple):
 
 def sources() -> Sources | None:
     """Return the sources, or None where this package has none."""
-    for place in PLACES:
-        if (place / SETTINGS).is_file():
-            paths = [place / SETTINGS, place / PARTITIONS, *sorted((place / "src").rglob("*"))]
+    for place in SOURCE_FOLDERS:
+        if (place / SETTINGS_FILE).is_file():
+            paths = [
+                place / SETTINGS_FILE,
+                place / PARTITIONS_FILE,
+                *sorted((place / "src").rglob("*")),
+            ]
             names = {path.relative_to(place).as_posix(): path for path in paths if path.is_file()}
-            names.pop(HEADER, None)
+            names.pop(HEADER_FILE, None)
             return Sources({name: path.read_bytes() for name, path in names.items()})
     return None
 
@@ -148,9 +152,9 @@ class _Project:
         self.folder = folder
         self.command = [*command, "run", "-d", str(folder), "-e"]
         chip = robot.board.chip
-        self.environment = WITH_DISCS.get(chip, chip) if robot.board.discs else chip
+        self.environment = ENVIRONMENT_WITH_DISCS.get(chip, chip) if robot.board.discs else chip
         self.files = sum(name.endswith((".cpp", ".S")) for name in made_from.files) + CORE_FILES
-        for name, data in {**made_from.files, HEADER: header(robot).encode()}.items():
+        for name, data in {**made_from.files, HEADER_FILE: header(robot).encode()}.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
 
@@ -176,7 +180,7 @@ class _Project:
         if too_large := _TOO_LARGE.search(log):
             raise CannotBuild(CannotBuild.TOO_LARGE, "{} > {}".format(*too_large.groups()), log)
         if code != 0 or (is_hex and not is_whole(self.hex_file)):
-            has_begun = _COMPILING.search(log) or not _ONLINE.search(log)
+            has_begun = _COMPILING.search(log) or not _NETWORK_MESSAGE.search(log)
             why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
             raise CannotBuild(why, children.reason(log) or f"exit code {code}", log)
 
@@ -191,9 +195,9 @@ def build(made_from: Sources, robot: Robot, look: Callable[[StepProgress], None]
         try:
             project.build(look, is_hex=True)
         except CannotBuild as why:
-            if why.why != CannotBuild.TOO_LARGE or project.environment not in SMALLER:
+            if why.why != CannotBuild.TOO_LARGE or project.environment not in SMALLER_FIRMWARE:
                 raise
-            project.environment, less = SMALLER[project.environment]
+            project.environment, less = SMALLER_FIRMWARE[project.environment]
             look(StepProgress(less, 0))
             project.build(look, is_hex=True)
         return project.hex_file.read_bytes()
@@ -224,7 +228,7 @@ def _folder() -> Iterator[Path]:
 
 
 def _environment() -> dict[str, str]:
-    own = {name: value for name, value in os.environ.items() if not _UNWANTED.fullmatch(name)}
+    own = {name: value for name, value in os.environ.items() if not _UNWANTED_LINE.fullmatch(name)}
     return {**own, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
 
 

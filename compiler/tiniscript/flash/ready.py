@@ -15,11 +15,11 @@ from tiniscript.robots.profile import Robot, language_number
 
 FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE = "NOTICE.txt"
-KEPT = 30  # files in the cache; the oldest go first
+MOST_FILES = 30  # files in the cache; the oldest go first
 NAME_CHARACTERS = 24  # of a title, in a file's name
-IMAGES = {"esp32dev": 0x1000, "esp32c3": 0}  # where an image begins in the flash of each
+IMAGE_OFFSETS = {"esp32dev": 0x1000, "esp32c3": 0}  # where an image begins in the flash of each
 MAGIC = b"\xe9"  # its first byte
-DATA, END = "00", "01"  # in the row of a HEX file
+DATA_RECORD, END_RECORD = "00", "01"  # in the row of a HEX file
 
 
 class Ready(NamedTuple):
@@ -34,7 +34,7 @@ class Ready(NamedTuple):
     def bytes(self) -> int:
         """How many bytes of flash it fills."""
         rows = self.path.read_text(encoding="ascii").splitlines()
-        return sum(int(row[1:3], 16) for row in rows if row[7:9] == DATA)
+        return sum(int(row[1:3], 16) for row in rows if row[7:9] == DATA_RECORD)
 
 
 def cache() -> Path:
@@ -71,8 +71,8 @@ def images(folder: Path = FOLDER) -> list[Ready]:
     result = []
     for path in sorted(folder.glob("*-*-*.bin")):
         title, board, digest = path.stem.rsplit("-", 2)
-        head = IMAGES.get(board, 0)
-        if board in IMAGES and path.read_bytes()[head : head + 1] == MAGIC:
+        head = IMAGE_OFFSETS.get(board, 0)
+        if board in IMAGE_OFFSETS and path.read_bytes()[head : head + 1] == MAGIC:
             result.append(Ready(title, board, digest, path))
     return result
 
@@ -93,7 +93,7 @@ def is_whole(path: Path) -> bool:
         sums = [sum(bytes.fromhex(row[1:])) % 256 for row in rows if row[0] == ":"]
     except (OSError, ValueError):
         return False
-    return bool(rows) and rows[-1][7:9] == END and sums == [0] * len(rows)
+    return bool(rows) and rows[-1][7:9] == END_RECORD and sums == [0] * len(rows)
 
 
 def keep(title: str, board: str, digest: str, data: bytes) -> Ready:
@@ -103,7 +103,7 @@ def keep(title: str, board: str, digest: str, data: bytes) -> Ready:
     path = folder / name_of(title, board, digest)
     replace(path, data)
     kept = sorted(folder.glob("*.hex"), key=lambda path: path.stat().st_mtime_ns)
-    for old in kept[:-KEPT]:
+    for old in kept[:-MOST_FILES]:
         if old != path:
             old.unlink(missing_ok=True)
     return Ready(title, board, digest, path)

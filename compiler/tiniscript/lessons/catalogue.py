@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from tiniscript import robots
-from tiniscript.base.languages import SOURCE
+from tiniscript.base.languages import SOURCE_LANGUAGE
 from tiniscript.lessons.lesson import Answer, Criterion, Lesson, LessonRefused
 from tiniscript.lessons.markdown import printed_part
 from tiniscript.lessons.reader import read, read_answers
@@ -99,7 +99,7 @@ def page(folder: Path, who: str, language: str) -> str:
 
 def whole_page(folder: Path, who: str, language: str) -> str:
     """Return a page of a lesson with its numbers and its marks. Raises LessonRefused."""
-    paths = [folder / f"{who}.{item}.md" for item in (language, SOURCE)]
+    paths = [folder / f"{who}.{item}.md" for item in (language, SOURCE_LANGUAGE)]
     path = next((path for path in paths if path.is_file()), None)
     if path is None:
         raise LessonRefused(("no_page", {"file": printable_value(paths[0].name)}))

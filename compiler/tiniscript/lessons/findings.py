@@ -43,7 +43,7 @@ class Task(NamedTuple):
         return point_of(criterion.places[number], self.run.world, self.mirrored)
 
 
-class On(NamedTuple):
+class TrackPoint(NamedTuple):
     """A point on the way: when, where, and how far the robot had driven."""
 
     ms: float
@@ -53,9 +53,9 @@ class On(NamedTuple):
     heading: float
 
 
-def points_between(track: tuple[Sample, ...]) -> list[On]:
+def points_between(track: tuple[Sample, ...]) -> list[TrackPoint]:
     """Return points of the way, at most a centimetre from each other."""
-    ons = [On(float(track[0].ms), *track[0].pose[:2], 0.0, track[0].pose.heading)]
+    ons = [TrackPoint(float(track[0].ms), *track[0].pose[:2], 0.0, track[0].pose.heading)]
     for sample in track[1:]:
         ms, x, y, way_cm, _ = ons[-1]
         step_cm = math.dist((x, y), sample.pose[:2])
@@ -63,7 +63,7 @@ def points_between(track: tuple[Sample, ...]) -> list[On]:
         for k in range(1, steps + 1):
             part = k / steps
             ons.append(
-                On(
+                TrackPoint(
                     ms + (sample.ms - ms) * part,
                     x + (sample.pose.x_cm - x) * part,
                     y + (sample.pose.y_cm - y) * part,

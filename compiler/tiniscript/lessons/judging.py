@@ -23,16 +23,18 @@ from tiniscript.virtual.geometry import join_points
 
 STILL_DEGREES = 5.0  # less is no turn
 EARLY_MS = 5000  # within them a robot that turns to the wrong side has lost its line
-STOOD_MS = 1000  # of a loop that took no time: so long it was where it is
-RESTED_MS = 3000  # without power at the end of the time: there it stays
+STANDING_LOOP_MS = 1000  # of a loop that took no time: so long it was where it is
+REST_MS = 3000  # without power at the end of the time: there it stays
 SAMPLE_CM = 5.0  # between two points of a line that is followed
 LATE_MS = 600  # after which a robot does what is held now
 OBEYED_CM, OBEYED_DEGREES = 3.0, 10.0  # more is a move, or a turn
-MOVING = frozenset({"ends_in", "reaches", "stands_before", "follows", "drives", "faces"})
-AT_END = frozenset({"ends_in", "stands_before", "faces"})  # where the robot is when it is over
-WHERE = AT_END | {"reaches"}
+MOVE_CRITERIA = frozenset({"ends_in", "reaches", "stands_before", "follows", "drives", "faces"})
+END_CRITERIA = frozenset(
+    {"ends_in", "stands_before", "faces"}
+)  # where the robot is when it is over
+PLACE_CRITERIA = END_CRITERIA | {"reaches"}
 # What is to be changed before the place of a wait or a sound.
-BEFORE = {"pauses": {"reaches"}, "beeps": {"reaches", "ends_in", "pauses"}}
+EARLIER_CRITERIA = {"pauses": {"reaches"}, "beeps": {"reaches", "ends_in", "pauses"}}
 
 
 def judge_run(run: Run, lesson: Lesson) -> list[Finding]:
@@ -43,14 +45,19 @@ def judge_run(run: Run, lesson: Lesson) -> list[Finding]:
         values = {"fault": run.fault, "seconds": in_seconds(run.end_ms)}
         return [Finding("", f"fault/{run.fault}", values)]
     kinds = {criterion.kind for criterion in lesson.criteria}
-    if kinds & MOVING and _is_still(run):
+    if kinds & MOVE_CRITERIA and _is_still(run):
         return [Finding("", "still/brief" if _had_power(run) else "still")]
     busy = [Finding("", "busy", {"seconds": in_seconds(run.end_ms)})]
     stood_ms = run.end_ms - run.track[-1].ms
-    if run.ending == BUSY and (stood_ms < STOOD_MS or _is_still(run)):
+    if run.ending == BUSY and (stood_ms < STANDING_LOOP_MS or _is_still(run)):
         return busy
     findings: list[Finding] = []
-    if run.ending == LIMIT and kinds & AT_END and "ends" not in kinds and not _ends_at_rest(run):
+    if (
+        run.ending == LIMIT
+        and kinds & END_CRITERIA
+        and "ends" not in kinds
+        and not _ends_at_rest(run)
+    ):
         findings.append(Finding("", "long", {"seconds": in_seconds(run.end_ms)}))
     task = Task(run, is_mirrored(lesson, run.seed))
     for criterion in lesson.criteria:
@@ -62,10 +69,10 @@ def judge_run(run: Run, lesson: Lesson) -> list[Finding]:
         run.ending == BUSY and not findings
     ):  # it stands where it should, and may drive on from there
         return busy
-    return _causes(findings)
+    return _drop_consequences(findings)
 
 
-def _causes(findings: list[Finding]) -> list[Finding]:
+def _drop_consequences(findings: list[Finding]) -> list[Finding]:
     """Leave out what follows from another finding: one misunderstanding gives one sentence."""
     kinds = {finding.kind for finding in findings}
     keys = {finding.key for finding in findings}
@@ -81,10 +88,10 @@ def _causes(findings: list[Finding]) -> list[Finding]:
     return [
         finding
         for finding in findings
-        if not (is_lost and finding.kind in WHERE)
+        if not (is_lost and finding.kind in PLACE_CRITERIA)
         and not (finding.key == "ends_in/gone" and has_missed)
         and not (finding.kind == "pauses" and "ends_in/gone" in keys)  # it may have waited there
-        and not ("/place" in finding.key and (is_lost or kinds & BEFORE[finding.kind]))
+        and not ("/place" in finding.key and (is_lost or kinds & EARLIER_CRITERIA[finding.kind]))
         and not (finding.kind == "order" and finding.key.rpartition("/")[2] in kinds)
     ]
 
@@ -103,10 +110,10 @@ def _had_power(run: Run) -> bool:
 
 
 def _ends_at_rest(run: Run) -> bool:
-    """Whether its motors were off at the end, and had been for RESTED_MS."""
+    """Whether its motors were off at the end, and had been for REST_MS."""
     driven = [k for k, (_, *powers) in enumerate(run.motors) if any(powers)]
     off = run.motors[driven[-1] + 1 :] if driven else ()
-    return not driven or bool(off and run.end_ms - off[0][0] >= RESTED_MS)
+    return not driven or bool(off and run.end_ms - off[0][0] >= REST_MS)
 
 
 # -- ways -----------------------------------------------------------------------------------------
@@ -319,12 +326,12 @@ def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
         return Finding("shows", "shows/nothing", values)
     right = 0
     for item in run.shown:
-        should = _should_show(item, what, wanted, run)
+        should = _expected_value(item, what, wanted, run)
         right += should is None or abs(item.value - should) <= slack
     if right >= times:
         return None
     last = run.shown[-1]
-    should = _should_show(last, what, wanted, run)
+    should = _expected_value(last, what, wanted, run)
     if should is None or right == len(run.shown):
         return Finding("shows", "shows/few", values)
     values |= {"value": as_text(last.value), "wanted": as_text(round(should / 100) * 100)}
@@ -332,7 +339,7 @@ def _judge_shown(criterion: Criterion, task: Task) -> Finding | None:
     return Finding("shows", f"shows/{key}", values)
 
 
-def _should_show(shown: ShownValue, what: str, wanted: float, run: Run) -> float | None:
+def _expected_value(shown: ShownValue, what: str, wanted: float, run: Run) -> float | None:
     """Return the thousandths that a value should be, or None for any."""
     if what == TIME:  # that of the moment, or of any since it has stopped
         return float(min(max(shown.value, _stopped_ms(shown, run)), shown.ms))

@@ -13,8 +13,8 @@ from tiniscript.lessons.running import DONE
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
 MOVES = frozenset("FBLRM")
-AHEAD = frozenset("FBM")  # what is more than a turn
-FIXED = frozenset({"TRUE", "FALSE", "NOT", "AND", "OR"})  # of a question
+FORWARD_MOVES = frozenset("FBM")  # what is more than a turn
+CONSTANT_WORDS = frozenset({"TRUE", "FALSE", "NOT", "AND", "OR"})  # of a question
 STATEMENTS = frozenset({"W", "S", "BEEP", "SHOW"})  # an UNTIL after them is not that of a move
 
 
@@ -96,7 +96,7 @@ def end_of_values(tokens: Sequence[Token], at: int) -> int:
 def count_ahead(tokens: Sequence[Token]) -> int:
     """Return how many moves a text has that are no turns on the spot."""
     return sum(
-        token.kind == WORD and token.text in AHEAD and not _is_turn(tokens, k)
+        token.kind == WORD and token.text in FORWARD_MOVES and not _is_turn(tokens, k)
         for k, token in enumerate(tokens)
     )
 
@@ -113,7 +113,7 @@ def _is_turn(tokens: Sequence[Token], at: int) -> bool:
 def count_unasked(tokens: Sequence[Token]) -> int:
     """Return how many UNTIL have nothing in their question that may change."""
     return sum(
-        token.text == "UNTIL" and not set(_words(tokens, k)) - FIXED
+        token.text == "UNTIL" and not set(_words(tokens, k)) - CONSTANT_WORDS
         for k, token in enumerate(tokens)
     )
 
@@ -123,7 +123,7 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
 
     `tokens` are those of a program without what nothing calls.
     """
-    moves = set(find_moves(tokens, AHEAD if is_turned else MOVES))
+    moves = set(find_moves(tokens, FORWARD_MOVES if is_turned else MOVES))
     questions: list[Question] = []
     blocks: list[_Block] = []
     movers = set[str]()  # words of DEF with a move

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.virtual.world import World
 
-PARTS = ("start", "walls", "boxes", "lines", "lamps")  # of a world
+WORLD_PARTS = ("start", "walls", "boxes", "lines", "lamps")  # of a world
 
 
 class LessonRefused(ProfileRefused):
@@ -102,7 +102,7 @@ class Answer(NamedTuple):
     said: Mapping[str, str]
 
 
-MOST = 10_000.0  # of any number
+LARGEST_NUMBER = 10_000.0  # of any number
 
 
 class Number(NamedTuple):
@@ -118,7 +118,7 @@ class Kind(NamedTuple):
     """What a criterion takes besides `kind`, and what it means.
 
     `places` are how many places at least; 0: it has none. `words` is what its words are: "" for
-    none, "word" of the language or a sensor, "event" of EVENTS, "block" of BLOCKS; or, as its
+    none, "word" of the language or a sensor, "event" of EVENTS, "block" of REMOVABLE_BLOCKS; or, as its
     `what`, "value" of a sensor or TIME, "sensor" with a place in the robot's body, "switch": an
     actuator that is on or off. `may_be_anywhere`: its places may
     be left out. `flags` are true or false, and false if they are left out. `has_area`: it may have AREA.
@@ -133,27 +133,27 @@ class Kind(NamedTuple):
     has_area: bool = False
 
 
-WHATS = ("value", "sensor", "switch")  # of `Kind.words`, whose key is `what`
-BLOCKS = ("LOOP", "DEF", "WHEN", "TASK")  # what a program may be tried without
+DEVICE_KINDS = ("value", "sensor", "switch")  # of `Kind.words`, whose key is `what`
+REMOVABLE_BLOCKS = ("LOOP", "DEF", "WHEN", "TASK")  # what a program may be tried without
 EVENTS = ("moves", "stops", "beeps", "shows")
 TIMES = Number("times", 1, 100, 1)
 WITHIN = Number("within_cm", 1, 500, 10)
-AREA = ("x_cm", "y_cm")  # from and to, around a place
+AREA_KEYS = ("x_cm", "y_cm")  # from and to, around a place
 
 # fmt: off
 KINDS: dict[str, Kind] = {
     "ends_in": Kind("at the end the robot is within `within_cm` of a place, or completely inside an area", (WITHIN,), places=1, has_area=True),
     "reaches": Kind("it comes within `within_cm` of each of these places, in order (`either_way`: or from the last to the first), in at most `by_seconds` and on a path of at most `by_cm`; with `what`, as that sensor measures it",
-                    (WITHIN, Number("by_seconds", 0.1, MOST, MOST), Number("by_cm", 1, MOST, MOST)), places=1, words="sensor", flags=("either_way",)),
+                    (WITHIN, Number("by_seconds", 0.1, LARGEST_NUMBER, LARGEST_NUMBER), Number("by_cm", 1, LARGEST_NUMBER, LARGEST_NUMBER)), places=1, words="sensor", flags=("either_way",)),
     "stays_in": Kind("it is never more than `within_cm` from a place, or its wheels never leave an area", (Number("within_cm", 1, 500, 500),), places=1, has_area=True),
     "stands_before": Kind("at the end it stands `low_cm` to `high_cm` before whatever is ahead of it; with `at`, before that place", (Number("low_cm", 0, 400), Number("high_cm", 0, 400)), places=1, may_be_anywhere=True),
     "faces": Kind("at the end it faces `heading`", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),
     "never_touches": Kind("it touches nothing; with `at`, until it has been within `within_cm` of this place", (WITHIN,), places=1, may_be_anywhere=True),
-    "follows": Kind("its line sensors stay on the black line for at least `at_least_cm`", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, MOST))),
-    "drives": Kind("it drives `at_least_cm` to `at_most_cm`", (Number("at_least_cm", 0, MOST, 0), Number("at_most_cm", 1, MOST, MOST))),
+    "follows": Kind("its line sensors stay on the black line for at least `at_least_cm`", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, LARGEST_NUMBER))),
+    "drives": Kind("it drives `at_least_cm` to `at_most_cm`", (Number("at_least_cm", 0, LARGEST_NUMBER, 0), Number("at_most_cm", 1, LARGEST_NUMBER, LARGEST_NUMBER))),
     "pauses": Kind("it waits `at_least_seconds` between two moves; with `at`, within `within_cm` of each of these places", (Number("at_least_seconds", 0.1, 600), TIMES, WITHIN), places=1, may_be_anywhere=True),
     "shows": Kind("it shows a value: any, this `value`, or that of a sensor or of TIME at that moment",
-                  (TIMES, Number("value", -MOST, MOST, MOST + 1), Number("tolerance", 0, MOST, 0)), words="value"),
+                  (TIMES, Number("value", -LARGEST_NUMBER, LARGEST_NUMBER, LARGEST_NUMBER + 1), Number("tolerance", 0, LARGEST_NUMBER, 0)), words="value"),
     "beeps": Kind("its buzzer sounds `times` times, at `pitches` different pitches; with `at`, within `within_cm` of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN), places=1, may_be_anywhere=True),
     "blinks": Kind("it switches `what` on `times` times while it moves", (TIMES,), words="switch"),
     "order": Kind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
@@ -166,4 +166,4 @@ KINDS: dict[str, Kind] = {
 # fmt: on
 
 TIME = "TIME"  # a value of `shows` that no sensor gives
-ANY_VALUE = MOST + 1  # of `shows`, where no value is asked for
+ANY_VALUE = LARGEST_NUMBER + 1  # of `shows`, where no value is asked for

@@ -19,7 +19,7 @@ from tiniscript.virtual.geometry import Point
 GOALS = ("ends_in", "reaches")
 MARGIN_CM = 6.0
 GRID_CM = 20
-DASHED = ' stroke-dasharray="4 2.5"'
+DASHES = ' stroke-dasharray="4 2.5"'
 
 
 def plan(lesson: Lesson, title: str) -> str:
@@ -30,7 +30,7 @@ def plan(lesson: Lesson, title: str) -> str:
     parts = [_grid(width, height)]
 
     def dash(part: str, number: int) -> str:
-        return DASHED if (part, number) in moved else ""
+        return DASHES if (part, number) in moved else ""
 
     def draw(kind: str, points: Iterable[Point], look: str, part: str, number: int) -> None:
         row = " ".join(f"{x:.1f},{height - y:.1f}" for x, y in points)
@@ -50,7 +50,7 @@ def plan(lesson: Lesson, title: str) -> str:
             f"{dash('lamps', number)}/>"
         )
     parts += _goals(lesson)
-    parts.append(_robot(lesson, DASHED if any(part == "start" for part, _ in moved) else ""))
+    parts.append(_robot(lesson, DASHES if any(part == "start" for part, _ in moved) else ""))
     if world.has_border:
         parts.append(
             f'<rect width="{width:g}" height="{height:g}" fill="none" stroke="#333"'

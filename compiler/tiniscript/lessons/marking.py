@@ -56,7 +56,7 @@ class Marking:
         self._all_seeds = list(seeds)
         self._seeds = list(seeds)
         self._text = text
-        self._of_text = judge_text(text, lesson)
+        self._text_findings = judge_text(text, lesson)
         self._trial: Trial | None = None  # none before a world
         self._needs = [
             (word, lesson._replace(criteria=lesson.criteria[:k]))
@@ -65,7 +65,7 @@ class Marking:
             for word in criterion.words
         ]
         self._done: Run | None = None  # the last run of the task, once it is done
-        self._without = ""  # the word that the program is tried without now
+        self._word_left_out = ""  # the word that the program is tried without now
 
     @property
     def seed(self) -> int:
@@ -90,30 +90,30 @@ class Marking:
         if run is None:
             return None
         result = judge_run(run, self._lesson)
-        if result and self._without:
+        if result and self._word_left_out:
             return self._next(run)
         findings = explain(result, self._text, self._lesson, run.ending)
         if findings:
             texts = {finding.key for finding in findings}
-            of_text = [finding for finding in self._of_text if finding.key not in texts]
-            return Outcome(FAILED, self.seed, (*findings, *of_text), run)
+            text_findings = [finding for finding in self._text_findings if finding.key not in texts]
+            return Outcome(FAILED, self.seed, (*findings, *text_findings), run)
         if len(self._seeds) > 1:
             del self._seeds[0]
             self._trial = None
             return None
-        if self._without:
+        if self._word_left_out:
             assert self._done is not None
-            return Outcome(FAILED, 0, (idle_finding(self._without, self._text),), self._done)
+            return Outcome(FAILED, 0, (idle_finding(self._word_left_out, self._text),), self._done)
         self._done = run
-        if self._of_text:
-            return Outcome(FAILED, 0, tuple(self._of_text), run)
+        if self._text_findings:
+            return Outcome(FAILED, 0, tuple(self._text_findings), run)
         return self._next(run)
 
     def _next(self, run: Run) -> Outcome | None:
         """Try the program without the next word that the lesson needs; it passes without more."""
         while self._needs:
-            self._without, self._lesson = self._needs.pop(0)
-            image = self._made(without_word(self._without, self._text))
+            self._word_left_out, self._lesson = self._needs.pop(0)
+            image = self._made(without_word(self._word_left_out, self._text))
             if image is not None:
                 self._image, self._seeds, self._trial = image, list(self._all_seeds), None
                 return None

@@ -9,8 +9,8 @@ from itertools import pairwise
 from tiniscript.lessons.findings import (
     STILL_CM,
     Finding,
-    On,
     Task,
+    TrackPoint,
     in_cm,
     in_seconds,
     points_between,
@@ -20,11 +20,11 @@ from tiniscript.lessons.running import DONE, LIMIT, STEP_MS, Run
 from tiniscript.lessons.variation import shape_of
 from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import Point, distance, nearest_seen
-from tiniscript.virtual.sensing import CONE
+from tiniscript.virtual.sensing import CONE_RADIANS
 
 BACK_CM = 5.0  # nearer than where it was farthest: then it was on its way back
 OTHER_WAY_DEGREES = 150.0
-STRETCH_CM, TOWARDS = 20.0, 0.9  # the end of a way, and how much of it must lead to a place
+STRETCH_CM, APPROACH_SHARE = 20.0, 0.9  # the end of a way, and how much of it must lead to a place
 
 
 def _end(run: Run) -> Pose:
@@ -84,7 +84,7 @@ def _judge_places(criterion: Criterion, task: Task) -> Finding | None:
     return finding
 
 
-def _gap(criterion: Criterion, task: Task, number: int, at: On) -> float:
+def _gap(criterion: Criterion, task: Task, number: int, at: TrackPoint) -> float:
     """Return how far a place is from the robot's middle, or a part of the world from a sensor."""
     if not criterion.words:
         return math.dist(task.point(criterion, number), (at.x_cm, at.y_cm))
@@ -129,7 +129,9 @@ def _count_reached(
     return len(order), _too_long(criterion, at)
 
 
-def _overshoot_cm(criterion: Criterion, task: Task, number: int, since: On, way: list[On]) -> float:
+def _overshoot_cm(
+    criterion: Criterion, task: Task, number: int, since: TrackPoint, way: list[TrackPoint]
+) -> float:
     """Return how far from a place that it had reached the robot stood for the first time."""
     for before, at in pairwise(way[way.index(since) :]):
         if at.way_cm == before.way_cm:
@@ -137,7 +139,7 @@ def _overshoot_cm(criterion: Criterion, task: Task, number: int, since: On, way:
     return 0.0
 
 
-def _too_long(criterion: Criterion, at: On) -> Finding | None:
+def _too_long(criterion: Criterion, at: TrackPoint) -> Finding | None:
     limit_s, limit_cm = criterion.numbers["by_seconds"], criterion.numbers["by_cm"]
     if at.ms > limit_s * 1000:
         values = {"seconds": in_seconds(at.ms), "limit": f"{limit_s:g}"}
@@ -149,7 +151,12 @@ def _too_long(criterion: Criterion, at: On) -> Finding | None:
 
 
 def _missed_sentence(
-    criterion: Criterion, task: Task, way: list[On], since: On, place: Point, nearest: On | None
+    criterion: Criterion,
+    task: Task,
+    way: list[TrackPoint],
+    since: TrackPoint,
+    place: Point,
+    nearest: TrackPoint | None,
 ) -> str:
     """Return the sentence for a place that the robot has missed.
 
@@ -177,12 +184,12 @@ def _missed_sentence(
     return "short" if is_straight and 0 < dx * ux + dy * uy < way_cm else "one"
 
 
-def _is_approaching(way: list[On], place: Point) -> bool:
+def _is_approaching(way: list[TrackPoint], place: Point) -> bool:
     """Whether the last STRETCH_CM led to a place, and never before it was nearer."""
     gaps_cm = [math.dist(place, (at.x_cm, at.y_cm)) for at in way]
     began = next(k for k, at in enumerate(way) if at.way_cm >= way[-1].way_cm - STRETCH_CM)
     gained_cm = gaps_cm[began] - gaps_cm[-1]
-    return gained_cm > STRETCH_CM * TOWARDS and gaps_cm[-1] < min(gaps_cm) + STILL_CM
+    return gained_cm > STRETCH_CM * APPROACH_SHARE and gaps_cm[-1] < min(gaps_cm) + STILL_CM
 
 
 def _judge_area(criterion: Criterion, task: Task) -> Finding | None:
@@ -219,7 +226,7 @@ def _judge_distance_to_obstacle(criterion: Criterion, task: Task) -> Finding | N
     ahead = run.world.obstacles()
     if criterion.places:
         ahead = shape_of(criterion.places[0], run.world, task.mirrored)
-    gap_cm = nearest_seen(ahead, eye, along, CONE)
+    gap_cm = nearest_seen(ahead, eye, along, CONE_RADIANS)
     low, high = criterion.numbers["low_cm"], criterion.numbers["high_cm"]
     values = {"low": f"{low:g}", "high": f"{high:g}"}
     if gap_cm is None:

@@ -11,21 +11,21 @@ from collections.abc import Mapping
 from tiniscript import robots
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import REMOTE
-from tiniscript.base.languages import SOURCE, ByLanguage, languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, ByLanguage, languages
 from tiniscript.base.languages import find_text as text_of
 from tiniscript.base.languages import text as said_in
 from tiniscript.base.spelling import nearest
 from tiniscript.base.words import WORDS
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import (
-    AREA,
-    BLOCKS,
+    AREA_KEYS,
+    DEVICE_KINDS,
     EVENTS,
     KINDS,
-    PARTS,
+    REMOVABLE_BLOCKS,
     TIME,
-    WHATS,
     WITHIN,
+    WORLD_PARTS,
     Answer,
     Criterion,
     Lesson,
@@ -45,13 +45,18 @@ LABEL_CHARACTERS = 80
 PROGRAM_CHARACTERS = 20_000
 MOST_SECONDS, MOST_WORLDS, MOST_NOISE = 600, 20, 20
 MOST_CM = 2000
-ROWS = 100  # criteria, variations, answers, presses
-GAP = re.compile(r"\{(\w+)\}")
+MOST_ROWS = 100  # criteria, variations, answers, presses
+GAP_NAME = re.compile(r"\{(\w+)\}")
 PART = re.compile(r"(start)|(walls|boxes|lines|lamps)\[([1-9][0-9]{0,2})\]")
 NO_LABELS = ByLanguage(
     {language: said_in("lessons", "place", language) for language in languages()}
 )
-OF_SENTENCES = ("word", "question", "what", "times")  # values of which a sentence is made besides
+SENTENCE_VALUES = (
+    "word",
+    "question",
+    "what",
+    "times",
+)  # values of which a sentence is made besides
 
 
 def read(text: str, world: World, name: str) -> Lesson:
@@ -92,9 +97,9 @@ def read_answers(text: str) -> tuple[list[Answer], list[Answer]]:
 
 def _rows(root: Table, key: str) -> list[Table]:
     tables = root.tables(key)
-    if len(tables) > ROWS:
-        root.complain("too_many_parts", key, found=str(len(tables)), most=str(ROWS))
-    return tables[:ROWS]
+    if len(tables) > MOST_ROWS:
+        root.complain("too_many_parts", key, found=str(len(tables)), most=str(MOST_ROWS))
+    return tables[:MOST_ROWS]
 
 
 def _answer(table: Table, is_wrong: bool) -> Answer:
@@ -113,12 +118,16 @@ def _sentences(says: Table) -> dict[str, str]:
     That one is `place`, or a text in each language.
     """
     key = says.text("key", 'key = "still"') or "still"
-    texts = (text_of("lessons", f"said/{item}", SOURCE) for item in (key, key.partition("/")[0]))
-    gaps = GAP.findall(next(filter(None, texts), ""))
-    names = dict.fromkeys([*gaps, "place", *languages(), *OF_SENTENCES])
+    texts = (
+        text_of("lessons", f"said/{item}", SOURCE_LANGUAGE) for item in (key, key.partition("/")[0])
+    )
+    gaps = GAP_NAME.findall(next(filter(None, texts), ""))
+    names = dict.fromkeys([*gaps, "place", *languages(), *SENTENCE_VALUES])
     values = {name: says.text(name) or "" for name in names if says.has(name)}
     places = {language: values[language] for language in languages() if language in values}
-    finding = Finding("", key, values, ByLanguage({SOURCE: values.get("place", ""), **places}))
+    finding = Finding(
+        "", key, values, ByLanguage({SOURCE_LANGUAGE: values.get("place", ""), **places})
+    )
     says.finish()
     try:
         return {language: sentence(finding, language) for language in languages()}
@@ -134,7 +143,9 @@ def _sentences(says: Table) -> dict[str, str]:
 def _labels(table: Table) -> dict[str, str]:
     """Return a text in each language that it is there in; one must be."""
     labels: ByLanguage[str] = ByLanguage()
-    for language in [language for language in languages() if table.has(language)] or [SOURCE]:
+    for language in [language for language in languages() if table.has(language)] or [
+        SOURCE_LANGUAGE
+    ]:
         labels[language] = table.label(language, LABEL_CHARACTERS, f'{language} = "…"') or ""
     return labels
 
@@ -182,7 +193,7 @@ def _known_words(robot: Robot) -> dict[str, tuple[str, ...]]:
     return {
         "word": (*WORDS, *(device.name for device in robot.kit.readings)),
         "event": EVENTS,
-        "block": BLOCKS,
+        "block": REMOVABLE_BLOCKS,
         "value": (*sensors, TIME),
         "sensor": tuple(sensor for sensor in sensors if sensor in robot.body.places),
         "switch": tuple(device.name for device in robot.kit.actuators if device.is_yes_no),
@@ -213,14 +224,14 @@ def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]])
             table.complain("low_above_high", low, other=table.path_of(high))
     places = _places(table, world, kind.places) if has_places else ()
     area = None
-    if kind.has_area and any(table.has(key) for key in AREA):
-        x_cm, y_cm = (_span(table, key, MOST_CM) for key in AREA)
+    if kind.has_area and any(table.has(key) for key in AREA_KEYS):
+        x_cm, y_cm = (_span(table, key, MOST_CM) for key in AREA_KEYS)
         area = x_cm, y_cm
     labels: dict[str, str] = NO_LABELS
     if has_places and any(map(table.has, languages())):
         labels = _labels(table)
     words: tuple[str, ...] = ()
-    if kind.words in WHATS:
+    if kind.words in DEVICE_KINDS:
         if kind.words == "switch" or table.has("what"):
             words = _asked_device(table, known[kind.words])
     elif kind.words:
@@ -288,7 +299,9 @@ def _part(table: Table, key: str, text: str, world: World) -> Place:
     """Return the part of a world that a text names, such as `boxes[2]`."""
     match = PART.fullmatch(text)
     if match is None:
-        table.complain("unknown_part", key, found=printable_value(text), parts=", ".join(PARTS[1:]))
+        table.complain(
+            "unknown_part", key, found=printable_value(text), parts=", ".join(WORLD_PARTS[1:])
+        )
         return Place("start", 0)
     if match[1]:
         return Place("start", 0)

@@ -1,8 +1,8 @@
 """Lets a program drive in the world of a seed, and notes what a teacher would see.
 
 The robot is the virtual one, in its own time: a run takes no longer than it must, and gives the
-same on every computer. A run is cut after the lesson's seconds, and after EVENTS actions, so that
-no program holds a checker up.
+same on every computer. A run is cut after the lesson's seconds, and after MOST_EVENTS actions, so
+that no program holds a checker up.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from tiniscript.base.trace import Event
 from tiniscript.bytecode.image import Image
 from tiniscript.lessons.lesson import Lesson, Press
 from tiniscript.lessons.variation import presses_of, vary
-from tiniscript.link.remote import NOTHING
+from tiniscript.link.remote import NOTHING_PRESSED
 from tiniscript.link.remote import pressed_of as held
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
@@ -23,7 +23,7 @@ from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
 
 STEP_MS = 20  # between two looks at where the robot is
-EVENTS = 200_000  # that a run may have
+MOST_EVENTS = 200_000  # that a run may have
 BRINGING_MS = 60_000  # limit for the way of a program to the robot
 PUSH_MS = 60
 
@@ -141,7 +141,7 @@ class Trial:
                 return None
             self.step(min(robot.now_ms + STEP_MS, self._limit_ms))
             witness.look()
-            if witness.events > EVENTS:
+            if witness.events > MOST_EVENTS:
                 robot.rest()
                 return witness.run(BUSY)
         return witness.run(FAULT if robot.fault else DONE)
@@ -158,7 +158,9 @@ class Trial:
             press.key for press in self._presses if press.at_seconds <= seconds < press.end_seconds
         )
         key = next(keys, "")
-        self._computer.session.press(*(held([key.removeprefix("KEY_")]) if key else NOTHING))
+        self._computer.session.press(
+            *(held([key.removeprefix("KEY_")]) if key else NOTHING_PRESSED)
+        )
         self._computer.wait(until_ms - robot.now_ms)
 
 

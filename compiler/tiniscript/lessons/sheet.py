@@ -84,12 +84,12 @@ def _words(words: str) -> str:
     return "".join(
         f"<code>{escape(part[1:-1])}</code>"
         if len(part) > 2 and part[0] == part[-1] == "`"
-        else re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", _with_blanks(escape(part)))
+        else re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", _fill_blanks(escape(part)))
         for part in parts
     )
 
 
-def _with_blanks(words: str) -> str:
+def _fill_blanks(words: str) -> str:
     """Return words with room for a pupil's answer where they have `____`."""
     return words.replace("____", '<span class="blank">&nbsp;</span>')
 

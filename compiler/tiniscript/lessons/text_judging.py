@@ -18,13 +18,13 @@ from tiniscript.lessons.lesson import Criterion, Lesson
 from tiniscript.syntax.lexer import NUMBER, WORD, Token, scan
 
 # What a run lacked altogether, by the sentence for it, and the word that does it.
-MISSING = {
+MISSING_KEYS = {
     "still": "move", "still/brief": "move", "order//moves": "move",
     "ends_in/turned": "move", "reaches/turned": "move",
     "shows/nothing": "SHOW", "order//shows": "SHOW", "beeps/none": "BEEP", "order//beeps": "BEEP",
 }  # fmt: skip
 TASKS = ("WHEN", "TASK")  # no block stands around them, and none of them in another one
-ACTS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
+ACTING_WORDS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
 
 
 def judge_text(text: str, lesson: Lesson) -> list[Finding]:
@@ -52,7 +52,7 @@ def explain(findings: Sequence[Finding], text: str, lesson: Lesson, ending: str)
     uncalled: list[Finding] = []
     explained = []
     for finding in findings:
-        word = MISSING.get(finding.key, "")
+        word = MISSING_KEYS.get(finding.key, "")
         name = _name_of_uncalled(word, tokens, words) if word else ""
         if name:
             uncalled = [Finding("uses", "uses/uncalled", {"name": _call_of(name, tokens)})]
@@ -143,7 +143,7 @@ def _judge_words(criterion: Criterion, tokens: Sequence[Token]) -> Finding | Non
     if "DEF" in criterion.words and len(own) - len(uncalled) < times and uncalled:
         return Finding("uses", "uses/uncalled", {"name": _call_of(uncalled[0], tokens)})
     if "LOOP" in criterion.words and not any(
-        ACTS.union(own).intersection(inside) for inside in _loop_bodies(words)
+        ACTING_WORDS.union(own).intersection(inside) for inside in _loop_bodies(words)
     ):
         return Finding("uses", "uses/idle")
     return None

@@ -26,11 +26,11 @@ def vary(lesson: Lesson, seed: int) -> World:
         dx, dy, turn = (
             chance.uniform(*span) for span in (variation.x_cm, variation.y_cm, variation.heading)
         )
-        world = _with_part_moved(world, variation, dx, dy, turn)
+        world = _move_part(world, variation, dx, dy, turn)
     return _mirror(world) if is_mirrored(lesson, seed) else world
 
 
-OTHER_SIDE = {"KEY_LEFT": "KEY_RIGHT", "KEY_RIGHT": "KEY_LEFT"}
+MIRRORED_KEYS = {"KEY_LEFT": "KEY_RIGHT", "KEY_RIGHT": "KEY_LEFT"}
 
 
 def presses_of(lesson: Lesson, seed: int) -> tuple[Press, ...]:
@@ -38,7 +38,7 @@ def presses_of(lesson: Lesson, seed: int) -> tuple[Press, ...]:
     if not is_mirrored(lesson, seed):
         return lesson.presses
     return tuple(
-        press._replace(key=OTHER_SIDE.get(press.key, press.key)) for press in lesson.presses
+        press._replace(key=MIRRORED_KEYS.get(press.key, press.key)) for press in lesson.presses
     )
 
 
@@ -74,9 +74,7 @@ def shape_of(place: Place, world: World, mirrored: bool) -> list[Segment]:
     return [Segment(point, point)]
 
 
-def _with_part_moved(
-    world: World, variation: Variation, dx: float, dy: float, turn: float
-) -> World:
+def _move_part(world: World, variation: Variation, dx: float, dy: float, turn: float) -> World:
     part, k = variation.place.part, variation.place.number - 1
 
     def shift(points: tuple[Point, ...]) -> tuple[Point, ...]:

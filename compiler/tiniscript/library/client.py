@@ -142,7 +142,7 @@ class Client:
 
         if ports.is_radio(self.port):  # else opening it has reset the board
             return self.wait(self.search())
-        sleep(opening.QUIET_S.get(board or self.profile.board.chip, 0.0))
+        sleep(opening.QUIET_S_BY_BOARD.get(board or self.profile.board.chip, 0.0))
         reply = self.wait(self.search(opening.CABLE_ANSWER_MS))
         if not self.line.heard:
             sleep(opening.LONG_QUIET_S)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from tiniscript.base.kit import KIT_WORDS_SINCE, Kit
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Source, Span, Unreadable, decode
-from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
+from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_for_needs, pack
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import SourceLocation, lower
 from tiniscript.diagnostics import codes
@@ -58,10 +58,10 @@ class Compiled(NamedTuple):
 def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
     compiled = analyze(text, kit, name)
-    return compiled if compiled.is_right else _with_findings(compiled, kit)
+    return compiled if compiled.is_right else _add_findings(compiled, kit)
 
 
-def _with_findings(compiled: Compiled, kit: Kit) -> Compiled:
+def _add_findings(compiled: Compiled, kit: Kit) -> Compiled:
     """Return a wrong program with what is told of it."""
     from tiniscript.recovery.told import told_of
 
@@ -111,7 +111,7 @@ def check_size(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
     return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
 
 
-def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
+def fit_to_robot(compiled: Compiled, robot: Robot) -> Compiled:
     """Return `compiled`, with a mistake and no image where the robot lacks what it uses.
 
     For what is about to be sent to a robot, a virtual one too.
@@ -175,7 +175,7 @@ def _compile(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
         from tiniscript.semantics.task_copies import copy_defs_per_task
 
         program = copy_defs_per_task(program)
-    yes_no = tuple(ir.are_yes_no(program, kit))
+    yes_no = tuple(ir.yes_no_variables(program, kit))
     program = optimize_program(program) if optimize else program
     lowered = lower(program)
     if len(lowered.code) > CODE_BYTES:
@@ -213,15 +213,15 @@ def compile_source(
         return Compiled(Source(text, name), [unknown])
     result = compile_text(text, robot.kit, name, optimize)
     if not result.is_right:
-        return with_robot_hints(result, robot, is_chosen) if names_robots else result
+        return add_robot_hints(result, robot, is_chosen) if names_robots else result
     return check_size(result, robot, is_strict)
 
 
-def with_robot_hints(compiled: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
+def add_robot_hints(compiled: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
     """Return `compiled` with hints to the robots that have a word that this robot lacks."""
-    from tiniscript.library.other_robots import with_robot_hints
+    from tiniscript.library.other_robots import add_robot_hints
 
-    named = with_robot_hints(compiled.diagnostics, compiled.source.text, robot, is_chosen)
+    named = add_robot_hints(compiled.diagnostics, compiled.source.text, robot, is_chosen)
     return compiled._replace(diagnostics=named)
 
 
@@ -240,7 +240,7 @@ def image_of(compiled: Compiled, robot: Robot) -> Image:
     assert compiled.program is not None and compiled.verdict is not None
     devices, needs = robot.kit.hash_of_used(compiled.verdict.uses), compiled.verdict.needs
     return Image(compiled.program.start, devices, compiled.code,
-                 checksum(compiled.image), isa_of(needs), needs=needs)  # fmt: skip
+                 checksum(compiled.image), isa_for_needs(needs), needs=needs)  # fmt: skip
 
 
 def image_maker(robot: Robot) -> Callable[[str], Image | None]:

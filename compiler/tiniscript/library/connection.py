@@ -204,7 +204,7 @@ class RobotConnection:
     def _concerns_us(self, follower: Follower, event: Event) -> bool:
         """The same for sentences of this connection, which knows from then on what has happened."""
         try:
-            return follower.is_about(event, opening.printable_name(self.port), self.language)
+            return follower.follow(event, opening.printable_name(self.port), self.language)
         except RobotError as error:
             self._is_replaced = error.reason == "replaced"
             raise
@@ -371,7 +371,9 @@ def connect(
     if port is None:
         port = _usual_port(language)
     elif not isinstance(port, str) or not port.strip() or not port.isprintable():
-        raise UsageError("bad_port", language, {"port": printable(repr(port), opening.SHOWN)})
+        raise UsageError(
+            "bad_port", language, {"port": printable(repr(port), opening.MOST_NAME_CHARACTERS)}
+        )
     return RobotConnection(port, profile, robot is not None, baud, language)
 
 
@@ -380,7 +382,7 @@ def _usual_port(language: Language) -> str:
     if (there := opening.last_port()) is not None:
         return there
     last = known_ports.remembered_ports().last
-    running = directory.for_all()
+    running = directory.unclaimed_robots()
     if len(running) == 1:
         return running[0].address
     listed = [item.port for item in ports.list_ports()]

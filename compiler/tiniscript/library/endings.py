@@ -19,7 +19,7 @@ class End(NamedTuple):
     fault: int | None = None
 
     @property
-    def is_the_programs(self) -> bool:
+    def is_by_program(self) -> bool:
         """Whether the program has ended by itself, by a fault of its own too."""
         return self.name == DONE or (self.fault is not None and self.fault < FIRST_LINK_FAULT)
 
@@ -31,7 +31,7 @@ class Follower:
         self.run = run
         self.has_begun = run is None  # earlier events are of another run
 
-    def is_about(self, event: Event, port: str, language: str = "en") -> bool:
+    def follow(self, event: Event, port: str, language: str = "en") -> bool:
         """Whether an event may be about the run. Raises RobotError if the robot is lost or has
         another program."""
         if event.name == "LOST":

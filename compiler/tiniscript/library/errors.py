@@ -21,13 +21,13 @@ def sentence(reason: str, language: str, values: Mapping[str, str]) -> str:
     The command has sentences of its own, which name its options; where they do not, they are those
     of the library, too.
     """
-    if languages.find_text("library", reason, languages.SOURCE) is not None:
+    if languages.find_text("library", reason, languages.SOURCE_LANGUAGE) is not None:
         return languages.text("library", reason, language).format(**values)
     text = languages.text("command", reason, language).removeprefix("tsc: ")
     return f"{text[:1].upper()}{text[1:]}".format(**values)
 
 
-_SAME = {
+_REASON_WITHOUT_HINT = {
     "port_missing_but": "port_missing",
     "port_not_found_but": "port_not_found",
     "port_forbidden_linux": "port_forbidden",
@@ -43,7 +43,7 @@ class TiniScriptError(Exception):
     ) -> None:  # fmt: skip
         """`said` replaces the sentence that `reason` has in the catalogue `library`."""
         self.key = reason  # of its sentence, which may say more than the reason
-        self.reason = _SAME.get(reason, reason)
+        self.reason = _REASON_WITHOUT_HINT.get(reason, reason)
         self.values = dict(values or {})
         super().__init__(sentence(reason, language, self.values) if said is None else said)
 

@@ -11,7 +11,7 @@ from tiniscript.robots.ports import AVR_328P, AVRS
 from tiniscript.robots.profile import Robot
 
 
-def shipped_of_kit(fingerprint: int) -> str | None:
+def shipped_name_of_kit(fingerprint: int) -> str | None:
     """Return the name of the shipped robot that has this kit."""
     for name in robots.names():
         if robots.load(name).kit.fingerprint == fingerprint:
@@ -19,7 +19,7 @@ def shipped_of_kit(fingerprint: int) -> str | None:
     return None
 
 
-def name_of(fingerprint: int) -> str | None:
+def robot_name_of_kit(fingerprint: int) -> str | None:
     """Return the name of the robot that has this kit, or None where this computer knows none."""
     robot = robot_of_kit(fingerprint)
     return None if robot is None else robot.name
@@ -27,7 +27,7 @@ def name_of(fingerprint: int) -> str | None:
 
 def robot_of_kit(fingerprint: int) -> Robot | None:
     """Return the profile that has this kit: a shipped one, or one that a user has given before."""
-    name = shipped_of_kit(fingerprint)
+    name = shipped_name_of_kit(fingerprint)
     return given.recall(fingerprint) if name is None else robots.load(name)
 
 

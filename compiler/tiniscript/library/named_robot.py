@@ -15,7 +15,7 @@ from tiniscript.robots.profile import Robot
 
 # A line of comment, or an empty one. In Portuguese it is a robô; a comment with more words than a
 # name tells people something.
-_LINE = re.compile(
+_ROBOT_LINE = re.compile(
     rf"[{SPACES}]*(?://+[{SPACES}]*rob(?:ot|o\u0302?|\u00f4)[{SPACES}]*:"
     rf"[{SPACES}]*(?P<name>[^{SPACES}\r\n]+)[{SPACES}]*|//[^\r\n]*)?(?:\r\n|\n|\r|\Z)",
     re.IGNORECASE,
@@ -32,7 +32,7 @@ class NamedRobot(NamedTuple):
 def named_robot(text: str) -> NamedRobot | None:
     """Return the robot that a program names first, or None."""
     at = 0
-    while at < len(text) and (line := _LINE.match(text, at)):
+    while at < len(text) and (line := _ROBOT_LINE.match(text, at)):
         if line["name"]:
             return NamedRobot(line["name"], Span(*line.span("name")))
         at = line.end()
@@ -47,11 +47,11 @@ def rename_robot(text: str, name: str) -> str:
 
 def robot_of(data: bytes, usual: Robot) -> Robot:
     """Return the shipped robot that a program's text names, else `usual`."""
-    name = name_in(data)
+    name = shipped_name_in(data)
     return usual if name in (None, usual.name) else robots.load(str(name))
 
 
-def name_in(data: bytes) -> str | None:
+def shipped_name_in(data: bytes) -> str | None:
     """Return the name of the shipped robot that a program's text names, or None."""
     result = (robot_name(data) or "").lower()
     return result if result in robots.names() else None

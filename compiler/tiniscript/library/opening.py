@@ -20,7 +20,7 @@ from tiniscript.library.errors import RobotError
 from tiniscript.link import errors, holders, known_ports, port_names
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
-from tiniscript.link.port_names import PSEUDO, is_address, is_at_broker, is_name
+from tiniscript.link.port_names import PSEUDO_TERMINALS, is_address, is_at_broker, is_name
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.shared_connection import OtherVersion, SharedConnection, join
 from tiniscript.virtual import directory
@@ -30,17 +30,17 @@ if TYPE_CHECKING:
 
 BUSY_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
 STOP_BUSY_S = 10.0  # the same for a stop: an owner with a silent robot gives up only slowly
-AGAIN_S = 0.05
+RETRY_S = 0.05
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 OPEN_S = 20.0  # timeout for opening a port
-SHOWN = 200  # characters of a name in a sentence
+MOST_NAME_CHARACTERS = 200  # characters of a name in a sentence
 
 ANSWER_MS = 6000  # timeout for HELLO by radio
 # By cable the timeout is shorter, and HELLO has two tries: an Uno takes 1.4 s after a reset.
 CABLE_ANSWER_MS = 2000
 # A Mega begins 0.9 s after a reset. Bytes that arrive earlier keep it in its bootloader until the
 # line has been silent for 4.2 s.
-QUIET_S = {"mega": 1.2}  # by board
+QUIET_S_BY_BOARD = {"mega": 1.2}  # by board
 LONG_QUIET_S = 4.5
 CONFIRM_S = 7.0  # timeout for the answer to a stop, a little longer than stops are sent
 
@@ -80,7 +80,7 @@ def connection_to(
             past = _connect_past_holder(address, baud, kit, limit_s, language, port, waited_s)
             if past is not None:
                 return past
-        sleep(AGAIN_S)
+        sleep(RETRY_S)
 
 
 def _is_suspended(address: str) -> bool:
@@ -99,7 +99,7 @@ def _connect_past_holder(
     """
     registration = registry.find_registration(address)
     path = str(registry.lock_of(address)) if is_address(address) else address
-    holder = holders.holder(path, None if registration is None else registration.pid)
+    holder = holders.find_holder(path, None if registration is None else registration.pid)
     if holder is not None and holder.is_suspended:
         if sys.platform == "linux" and not is_address(address):
             speed = baud if registration is None else registration.baud
@@ -141,7 +141,7 @@ def _open_line(
             raise RobotError("port_of_another", language, {"port": printable_name(port)})
         # who claims a robot has it before them: one of many, perhaps, at the same cable
         keys = KeyFile(is_for_virtual=is_virtual(address), accepts_all=verb == "set owner")
-        place = port_names.same_for_all(port)  # an address may be another robot's tomorrow
+        place = port_names.canonical_port(port)  # an address may be another robot's tomorrow
         nonce = int.from_bytes(os.urandom(4), "little")
         session = Session(nonce, baud, kit, keys=keys, place=place)
         line = PortConnection(device, session, lock, address)
@@ -188,14 +188,14 @@ def last_port() -> str | None:
 
 
 def is_virtual(port: str) -> bool:
-    if not is_address(port) and not port.startswith(PSEUDO):
+    if not is_address(port) and not port.startswith(PSEUDO_TERMINALS):
         return False
     return directory.is_virtual(port)
 
 
 def printable_name(name: str) -> str:
-    """Return a name in a form for sentences: printable, at most SHOWN characters."""
-    return printable(name, SHOWN)
+    """Return a name in a form for sentences: printable, at most MOST_NAME_CHARACTERS characters."""
+    return printable(name, MOST_NAME_CHARACTERS)
 
 
 def _join_shared(port: str, verb: str, baud: int | None, language: str) -> SharedConnection | None:

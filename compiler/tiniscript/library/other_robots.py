@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from tiniscript import robots
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span
-from tiniscript.base.words import said_of
+from tiniscript.base.words import lexicon_meaning
 from tiniscript.diagnostics.codes import (
     NO_BUTTON,
     OTHER_ROBOT,
@@ -18,31 +18,31 @@ from tiniscript.diagnostics.codes import (
     Repair,
 )
 from tiniscript.library.named_robot import named_robot
-from tiniscript.recovery.meanings import concept_of
+from tiniscript.recovery.meanings import lexicon_concept
 from tiniscript.robots import given
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.lexer import WORD, scan
 
 SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
-_UNKNOWN = (UNKNOWN_NAME, UNKNOWN_WORD)
+_UNKNOWN_CODES = (UNKNOWN_NAME, UNKNOWN_WORD)
 BUTTON = "BUTTON"  # of some kits; each robot has one that starts it
-_NUMBERS = ("first", "second", "third")
+_ORDINALS = ("first", "second", "third")
 
 
-def with_robot_hints(
+def add_robot_hints(
     diagnostics: list[Diagnostic], text: str, robot: Robot, is_chosen: bool
 ) -> list[Diagnostic]:
     """Return diagnostics with hints to the robots that have a word that `robot` lacks.
 
     `is_chosen`: somebody has chosen it, and what the program names does not count.
     """
-    if not any(diagnostic.code in (*_UNKNOWN, OTHER_ROBOT) for diagnostic in diagnostics):
+    if not any(diagnostic.code in (*_UNKNOWN_CODES, OTHER_ROBOT) for diagnostic in diagnostics):
         return diagnostics
     result = hints_among(_other_kits(), diagnostics, text, robot.name, robot.kit)
-    return result if is_chosen else [_with_robot_names(diagnostic, text) for diagnostic in result]
+    return result if is_chosen else [_add_robot_name(diagnostic, text) for diagnostic in result]
 
 
-def _with_robot_names(diagnostic: Diagnostic, text: str) -> Diagnostic:
+def _add_robot_name(diagnostic: Diagnostic, text: str) -> Diagnostic:
     """Return a hint to a robot that comes with tsc with what the program needs to name it."""
     first = diagnostic.values.get("first")
     if diagnostic.code is not OTHER_ROBOT or first not in robots.names():
@@ -63,26 +63,27 @@ def hints_among(
     """
     own = set(kit.names)
     known = {robot: set(own_kit.names) for robot, own_kit in others.items() if robot != name}
-    of_kits = own.union(*known.values())
+    kit_names = own.union(*known.values())
     texts = {token.text for token in scan(text).tokens if token.kind is WORD}
-    used = {word if word in of_kits else concept_of(word) for word in texts} & of_kits
+    used = {word if word in kit_names else lexicon_concept(word) for word in texts} & kit_names
     whole = [robot for robot, own_kit in known.items() if used <= own_kit]
     named: list[Diagnostic] = []
     messages: list[set[str]] = []  # robots that words have led to
-    codes = {*_UNKNOWN, NO_BUTTON} if used - own - {BUTTON} else {*_UNKNOWN}
+    codes = {*_UNKNOWN_CODES, NO_BUTTON} if used - own - {BUTTON} else {*_UNKNOWN_CODES}
     for diagnostic in diagnostics:
         word = diagnostic.values.get("found", "").upper()
         word = BUTTON if diagnostic.code is NO_BUTTON else word
-        word = word if word in of_kits else concept_of(word) or word
-        side = f"{''.join(said_of(word, 'stem')) or word}_L"  # `LINEA`, where others have LINE_L
-        word = side if side in of_kits - own else word
+        word = word if word in kit_names else lexicon_concept(word) or word
+        stem = "".join(lexicon_meaning(word, "stem"))
+        side = f"{stem or word}_L"  # `LINEA`, where others have LINE_L
+        word = side if side in kit_names - own else word
         having = [robot for robot, own_kit in known.items() if word in own_kit - own]
         if diagnostic.code in codes and having:
             having = [item for item in having if item in whole] or having
             if any(item <= {*having} for item in messages):
                 continue
             messages.append({*having})
-            values = {"found": word, "own": name, **dict(zip(_NUMBERS, having, strict=False))}
+            values = {"found": word, "own": name, **dict(zip(_ORDINALS, having, strict=False))}
             diagnostic = Diagnostic(OTHER_ROBOT, diagnostic.span, values)
         named.append(diagnostic)
     return named
@@ -93,7 +94,9 @@ def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
     if any(diagnostic.code is OTHER_ROBOT for diagnostic in diagnostics):
         return True
     words = {
-        diagnostic.values.get("found") for diagnostic in diagnostics if diagnostic.code in _UNKNOWN
+        diagnostic.values.get("found")
+        for diagnostic in diagnostics
+        if diagnostic.code in _UNKNOWN_CODES
     }
     # of profiles with paths that are too long for a message
     return bool(words) and any(words & set(robot.kit.names) for _, robot in given.profiles())

@@ -8,7 +8,7 @@ from pathlib import Path
 from tiniscript import robots
 from tiniscript.base.files import contents
 from tiniscript.base.languages import languages
-from tiniscript.base.source import PROGRAM_ENDS, printable
+from tiniscript.base.source import PROGRAM_ENDINGS, printable
 from tiniscript.bytecode import verify
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
@@ -25,10 +25,10 @@ from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.refusals import describe
 
 Language = str  # the code of one, such as "en"
-SHOWN = 200  # characters of a name or a value in a sentence
-REMARK = 60  # characters of a line in a disassembly
+MOST_VALUE_CHARACTERS = 200  # characters of a name or a value in a sentence
+MOST_REMARK_CHARACTERS = 60  # characters of a line in a disassembly
 MOST_BYTES = 1_000_000  # of a file
-FILES = (*PROGRAM_ENDS, ".bin")
+FILE_ENDINGS = (*PROGRAM_ENDINGS, ".bin")
 
 
 class Program:
@@ -122,8 +122,8 @@ def show(
 
 def _refuse_file_name(text: str, language: Language) -> None:
     """Raise UsageError where a text is the name of a program's file."""
-    if text.lower().endswith(FILES) and "\n" not in text and os.path.exists(text):  # noqa: PTH110
-        values = {"path": printable(text, SHOWN)}
+    if text.lower().endswith(FILE_ENDINGS) and "\n" not in text and os.path.exists(text):  # noqa: PTH110
+        values = {"path": printable(text, MOST_VALUE_CHARACTERS)}
         raise UsageError("file_name", _check_language(language), values)
 
 
@@ -196,9 +196,9 @@ def remarks(places: Map | None, language: Language) -> dict[int, str]:
     for place in places.places:
         line = places.line(place.line)
         shown = line.strip()
-        if len(shown) > REMARK:  # a long line: only its instruction
+        if len(shown) > MOST_REMARK_CHARACTERS:  # a long line: only its instruction
             end = place.end_column - 1 if place.end_line == place.line else len(line)
-            shown = line[place.column - 1 : end][:REMARK]
+            shown = line[place.column - 1 : end][:MOST_REMARK_CHARACTERS]
         values = {"line": str(place.line), "shown": printable(shown.replace("\t", " "))}
         result[place.offset] = sentence("line", language, values)
     return result
@@ -264,6 +264,9 @@ def _unpack(data: bytes, language: Language) -> Image:
 
 def _check_language(language: Language) -> Language:
     if language not in languages():
-        values = {"found": printable(repr(language), SHOWN), "known": ", ".join(languages())}
+        values = {
+            "found": printable(repr(language), MOST_VALUE_CHARACTERS),
+            "known": ", ".join(languages()),
+        }
         raise UsageError("bad_language", "en", values)
     return language

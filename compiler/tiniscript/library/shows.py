@@ -18,8 +18,8 @@ from tiniscript.link.outcomes import ShownEvent
 from tiniscript.syntax.formatter import instruction_text, pieces_of
 from tiniscript.syntax.lexer import scan
 
-_BEGIN, _END = "SHOW(", ")"
-_PLAIN = re.compile(r"-?[\d.]+|TRUE|FALSE|")
+_SHOW_START, _SHOW_END = "SHOW(", ")"
+_PLAIN_VALUE = re.compile(r"-?[\d.]+|TRUE|FALSE|")
 
 
 class Show(NamedTuple):
@@ -102,6 +102,6 @@ def expression_of(places: Map, place: MapLocation) -> str:
     if not tokens:
         return ""
     text = printable(instruction_text(tokens))
-    is_show = text.startswith(_BEGIN) and text.endswith(_END)
-    text = text.removeprefix(_BEGIN).removesuffix(_END)
-    return text if is_show and not _PLAIN.fullmatch(text) else ""
+    is_show = text.startswith(_SHOW_START) and text.endswith(_SHOW_END)
+    text = text.removeprefix(_SHOW_START).removesuffix(_SHOW_END)
+    return text if is_show and not _PLAIN_VALUE.fullmatch(text) else ""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 VERSION = 1
 FILE_BYTES = 32_000_000
-KEPT = 1000  # maps in the cache; the oldest go first
+MOST_MAPS = 1000  # maps in the cache; the oldest go first
 
 
 class MapLocation(NamedTuple):
@@ -162,9 +162,9 @@ def _forget_oldest(folder: Path) -> None:
     names = os.listdir(folder)  # noqa: PTH208 - a thousand Paths cost more than their names
     files.remove_abandoned(folder, names)
     known = [name for name in names if name.endswith(".json")]
-    if len(known) > KEPT:
+    if len(known) > MOST_MAPS:
         result = sorted((_modification_s(folder / name), name) for name in known)
-        for _, name in result[: len(known) - KEPT]:
+        for _, name in result[: len(known) - MOST_MAPS]:
             with suppress(OSError):
                 (folder / name).unlink()
 

@@ -14,8 +14,8 @@ from tiniscript.codegen.text.memory import MOST_BRACKETS, Reader
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.robots.text_levels import CODE_BYTES, LONGEST_WORD, Level
-from tiniscript.semantics.ir import Program, are_yes_no
-from tiniscript.semantics.task_copies import users
+from tiniscript.semantics.ir import Program, yes_no_variables
+from tiniscript.semantics.task_copies import count_tasks_by_def
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
 
@@ -32,11 +32,11 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         if token.kind is WORD and (token.text in lacked or len(token.text) > LONGEST_WORD)
     ]
     if "DEF" not in level.lacks and any(procedure.values for procedure in program.procedures):
-        diagnostics += _values(program, kit, level)
+        diagnostics += _value_problems(program, kit, level)
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)
     if plain.length > limit:
-        place = _first_beyond(plain, limit)
+        place = _first_span_beyond(plain, limit)
         diagnostics.append(_too_many(codes.LEVEL_CODE, place, level, plain.length, limit))
         return diagnostics
     reader = Reader(tokens, kit, level.sensor_bytes)
@@ -53,10 +53,10 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
     return diagnostics
 
 
-def _values(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
+def _value_problems(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return each DEF that has a value other than a number, or values for several tasks."""
-    values, yes_no = [], are_yes_no(program, kit)
-    for procedure, tasks in zip(program.procedures, users(program), strict=True):
+    values, yes_no = [], yes_no_variables(program, kit)
+    for procedure, tasks in zip(program.procedures, count_tasks_by_def(program), strict=True):
         said = {"level": level.name, "name": procedure.name}
         place = Span(procedure.span.start, procedure.span.start + len("DEF"))
         for name in (program.variables[k] for k in procedure.values if yes_no[k]):
@@ -66,7 +66,7 @@ def _values(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     return values
 
 
-def _first_beyond(code: PlainCode, limit: int) -> Span:
+def _first_span_beyond(code: PlainCode, limit: int) -> Span:
     """Return the text of the first instruction whose code does not lie within the limit."""
     ends = [*(place.offset for place in code.places[1:]), code.length]
     return next(place.span for place, end in zip(code.places, ends, strict=True) if end > limit)

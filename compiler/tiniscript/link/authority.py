@@ -14,13 +14,13 @@ from tiniscript.link.messages import KEY_BYTES, KEY_TEACHER, OWNED, SEALS, STATU
 from tiniscript.link.outcomes import UNKEPT
 from tiniscript.link.payloads import AuthenticateReply, EmptyReply
 from tiniscript.link.port_names import canonical
-from tiniscript.link.requests import OK, TAKEN, DeviceInfo, Exchange, Reply, Request
+from tiniscript.link.requests import ACCEPTING_STATUSES, OK, DeviceInfo, Exchange, Reply, Request
 from tiniscript.link.seal import Seal, session_key, siphash
 
 NOT_OWNER, WRONG_KEY, HOLD_BUTTON, STALE = (
     STATUSES[name] for name in ("NOT_OWNER", "WRONG_KEY", "HOLD_BUTTON", "STALE")
 )
-MOST_PENDING = 1  # keys before a new one: each that is shown takes time
+MOST_PENDING_KEYS = 1  # keys before a new one: each that is shown takes time
 HOLD_PAUSE_MS = 200  # while the button is not held down
 FREE, YOUR_OWN, OF_ANOTHER = "free", "yours", "other"
 
@@ -76,7 +76,11 @@ class KeyRing:
                 if robot_key.is_pending and robot_key.place == key.place
             ]
             return [
-                *(robot_key for robot_key in before if robot_key not in pending[:-MOST_PENDING]),
+                *(
+                    robot_key
+                    for robot_key in before
+                    if robot_key not in pending[:-MOST_PENDING_KEYS]
+                ),
                 key,
             ]
 
@@ -158,7 +162,7 @@ def show_keys(
     """
     reply: Reply[AuthenticateReply] = Reply(NOT_OWNER)
     keys = [] if ring is None else ring.of_robot(robot.id)
-    for key in sorted(keys, key=_order):
+    for key in sorted(keys, key=_key_order):
         if which not in (None, key.which) or (key.is_stale and not is_needed):
             continue
         reply = yield from _show(key, robot, nonce, epoch)
@@ -181,7 +185,7 @@ def _can_seal(robot: DeviceInfo) -> bool:
     return bool(robot.values.features & SEALS)
 
 
-def _order(key: RobotKey) -> tuple[bool, bool, bool]:
+def _key_order(key: RobotKey) -> tuple[bool, bool, bool]:
     return key.is_stale, key.which != KEY_TEACHER, key.is_pending
 
 
@@ -216,7 +220,7 @@ def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
         )
     if reply.status == OK:
         ring.settle(key._replace(uses_seals=_can_seal(robot)))
-    elif reply.status not in TAKEN:
+    elif reply.status not in ACCEPTING_STATUSES:
         ring.drop(key)
     return reply
 

@@ -10,7 +10,15 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from tiniscript.bytecode.image import Image
-from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, MIDWAY, OTHER_ROBOT, UNPROVEN, Event
+from tiniscript.link.outcomes import (
+    CANCELLED,
+    DETAIL_MIDWAY,
+    LOOK_S,
+    LOST,
+    OTHER_ROBOT,
+    UNPROVEN,
+    Event,
+)
 from tiniscript.link.payloads import (
     EmptyReply,
     HelloReply,
@@ -239,7 +247,7 @@ class LinkConnection:
 def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
     """Return why a reply is not OK."""
     if reply.status == CANCELLED:
-        return "stopped_midway" if reply.detail == MIDWAY else "stopped_elsewhere"
+        return "stopped_midway" if reply.detail == DETAIL_MIDWAY else "stopped_elsewhere"
     if reply.status == UNPROVEN:
         return "unproven"
     if reply.status == OTHER_ROBOT:
@@ -264,4 +272,4 @@ def stranger(line: LinkConnection) -> Foreign | None:
         return None
     from tiniscript.link import foreign
 
-    return foreign.stranger(line.came)
+    return foreign.identify_stranger(line.came)

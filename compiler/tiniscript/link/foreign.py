@@ -36,13 +36,13 @@ from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import FIRST_EVENT
 
 CATALOGUE = "foreign"
-MOST_TEXT = 60  # characters that are told
-FEW = 4  # bytes: fewer say nothing
-READABLE = 0.9  # the share of printable characters in text
-VARIETY = 3  # different bytes in text: the noise of a wrong speed repeats itself
-OUR_MARK = "//"  # a robot's lines begin so
-TEXT = "other_sketch"  # the row of whatever prints text and has no row of its own
-ECHO = "echo_sketch"
+MOST_TEXT_CHARACTERS = 60  # characters that are told
+LEAST_BYTES = 4  # bytes: fewer say nothing
+LEAST_PRINTABLE_SHARE = 0.9  # the share of printable characters in text
+LEAST_DIFFERENT_BYTES = 3  # different bytes in text: the noise of a wrong speed repeats itself
+ROBOT_LINE_START = "//"  # a robot's lines begin so
+OTHER_SKETCH = "other_sketch"  # the row of whatever prints text and has no row of its own
+ECHO_SKETCH = "echo_sketch"
 
 
 class Foreign(NamedTuple):
@@ -66,7 +66,7 @@ class Row(NamedTuple):
     probe: bytes = b""
 
 
-def _line_with(pattern: str) -> Callable[[bytes], tuple[str, bool] | None]:
+def _line_recogniser(pattern: str) -> Callable[[bytes], tuple[str, bool] | None]:
     """Return a recogniser of text: its line that has this pattern."""
     compiled = re.compile(pattern.encode("ascii"))
 
@@ -84,7 +84,7 @@ def _line_with(pattern: str) -> Callable[[bytes], tuple[str, bool] | None]:
 _NAME_OF_FIRMATA = re.compile(rb"\xf0\x79([\x00-\x7f])([\x00-\x7f])((?:[\x20-\x7e]\x00){2,})\xf7")
 
 
-def _firmata(heard: bytes) -> tuple[str, bool] | None:
+def _recognise_firmata(heard: bytes) -> tuple[str, bool] | None:
     match = _NAME_OF_FIRMATA.search(heard)
     if match is None:
         return None
@@ -98,7 +98,7 @@ _FRAME_OF_MBOT = re.compile(
 )
 
 
-def _mbot(heard: bytes) -> tuple[str, bool] | None:
+def _recognise_mbot(heard: bytes) -> tuple[str, bool] | None:
     said = ""
     for match in _FRAME_OF_MBOT.finditer(heard):
         if match[1] is not None and match[1][0] != len(match[2]):
@@ -110,19 +110,21 @@ def _mbot(heard: bytes) -> tuple[str, bool] | None:
     return (_printable(said), True) if said else None
 
 
-_PYTHON = _line_with(r"(?:MicroPython|Adafruit CircuitPython) v?[0-9]|raw REPL; CTRL-B to exit")
+_PYTHON = _line_recogniser(
+    r"(?:MicroPython|Adafruit CircuitPython) v?[0-9]|raw REPL; CTRL-B to exit"
+)
 
 
-def _python(heard: bytes) -> tuple[str, bool] | None:
+def _recognise_python(heard: bytes) -> tuple[str, bool] | None:
     if found := _PYTHON(heard):
         return found
     return (">>>", False) if re.search(rb"(?:^|\n)>>> *[\r\n\x11\x13]*$", heard) else None
 
 
-_SNEK = _line_with(r"Welcome to [Ss]nek")
+_SNEK = _line_recogniser(r"Welcome to [Ss]nek")
 
 
-def _snek(heard: bytes) -> tuple[str, bool] | None:
+def _recognise_snek(heard: bytes) -> tuple[str, bool] | None:
     if found := _SNEK(heard):
         return found
     said = re.sub(rb"[\x11\x13]", b"", heard)  # XON and XOFF may come anywhere
@@ -131,10 +133,10 @@ def _snek(heard: bytes) -> tuple[str, bool] | None:
     return (">", b"\x14" in said)
 
 
-_AT = _line_with(r"AT version:[0-9]")
+_AT = _line_recogniser(r"AT version:[0-9]")
 
 
-def _at(heard: bytes) -> tuple[str, bool] | None:
+def _recognise_at(heard: bytes) -> tuple[str, bool] | None:
     if found := _AT(heard):
         return found
     return ("ready", False) if re.search(rb"[\r\n]ready\r\n", heard) else None
@@ -142,20 +144,25 @@ def _at(heard: bytes) -> tuple[str, bool] | None:
 
 ROWS = (
     # Its supply first: whatever is on such a board, nothing works before that is right.
-    Row("esp32_brownout", _line_with(r"[Bb]rownout detector was triggered|\([A-Z_]*BROWN_?OUT")),
-    Row("esp32_download", _line_with(r"waiting for download|\(DOWNLOAD\([A-Z0-9_/]*\)\)")),
-    Row("esp32_empty", _line_with(r"flash read err, [0-9]+|invalid header: 0x[0-9a-f]{8}")),
-    Row("firmata", _firmata, b"\xf7\xf9\xf0\x79\xf7"),
-    Row("mbot", _mbot, b"\xff\x55\x03\x66\x01\x00"),
-    Row("micropython", _python, b"\r\n\x02"),
-    Row("snek", _snek, b"\r\n\x14"),
-    Row("at_firmware", _at),
-    Row("esp32", _line_with(r"rst:0x[0-9a-f]+ \([A-Z0-9_]+\),boot:0x[0-9a-f]+ \(")),
+    Row(
+        "esp32_brownout",
+        _line_recogniser(r"[Bb]rownout detector was triggered|\([A-Z_]*BROWN_?OUT"),
+    ),
+    Row("esp32_download", _line_recogniser(r"waiting for download|\(DOWNLOAD\([A-Z0-9_/]*\)\)")),
+    Row("esp32_empty", _line_recogniser(r"flash read err, [0-9]+|invalid header: 0x[0-9a-f]{8}")),
+    Row("firmata", _recognise_firmata, b"\xf7\xf9\xf0\x79\xf7"),
+    Row("mbot", _recognise_mbot, b"\xff\x55\x03\x66\x01\x00"),
+    Row("micropython", _recognise_python, b"\r\n\x02"),
+    Row("snek", _recognise_snek, b"\r\n\x14"),
+    Row("at_firmware", _recognise_at),
+    Row("esp32", _line_recogniser(r"rst:0x[0-9a-f]+ \([A-Z0-9_]+\),boot:0x[0-9a-f]+ \(")),
 )
 BY_NAME = {row.name: row for row in ROWS}
-NAMES = (*BY_NAME, ECHO, TEXT)
-GENERAL = ("esp32", TEXT)  # of whatever runs there: a question may tell what that is
-ASKS_AT = b"\r\nAT+GMR\r\n"  # what an AT firmware says of itself; modules of radio refuse it
+NAMES = (*BY_NAME, ECHO_SKETCH, OTHER_SKETCH)
+GENERAL_ROWS = ("esp32", OTHER_SKETCH)  # of whatever runs there: a question may tell what that is
+AT_VERSION_QUESTION = (
+    b"\r\nAT+GMR\r\n"  # what an AT firmware says of itself; modules of radio refuse it
+)
 
 
 def identify_board(heard: bytes) -> Foreign | None:
@@ -169,7 +176,7 @@ def identify_board(heard: bytes) -> Foreign | None:
     return None
 
 
-def stranger(heard: bytes) -> Foreign | None:
+def identify_stranger(heard: bytes) -> Foreign | None:
     """Return what has sent these bytes: what has a row, or another sketch if they are text.
 
     Sure text has a whole line. None for a robot's bytes, and for noise.
@@ -177,8 +184,8 @@ def stranger(heard: bytes) -> Foreign | None:
     found = identify_board(heard)
     if found is not None or is_robot(heard):
         return found
-    said = readable(heard)
-    return Foreign(TEXT, said, _has_line(heard)) if said else None
+    said = readable_line(heard)
+    return Foreign(OTHER_SKETCH, said, _has_line(heard)) if said else None
 
 
 def is_robot(heard: bytes) -> bool:
@@ -187,23 +194,23 @@ def is_robot(heard: bytes) -> bool:
         frame = decode_frame(packet) if packet else None
         if frame is not None and (frame.is_reply or frame.number >= FIRST_EVENT):
             return True
-    return our_line(heard) != ""
+    return last_robot_line(heard) != ""
 
 
-def our_line(heard: bytes) -> str:
+def last_robot_line(heard: bytes) -> str:
     """Return the last whole line of a robot's text, `// OK`, or nothing."""
     lines = re.findall(rb"(?:^|[\r\n\x00])(// [\x20-\x7e]+)[\r\n]", heard)
     return _printable(lines[-1].decode("ascii")) if lines else ""
 
 
-def readable(heard: bytes) -> str:
+def readable_line(heard: bytes) -> str:
     """Return a line of bytes that are text, else an empty text.
 
     Where no line ends all of them have to be.
     """
-    if len(heard) < FEW or len(set(heard)) < VARIETY:
+    if len(heard) < LEAST_BYTES or len(set(heard)) < LEAST_DIFFERENT_BYTES:
         return ""
-    least = READABLE if _has_line(heard) else 1.0
+    least = LEAST_PRINTABLE_SHARE if _has_line(heard) else 1.0
     text = re.sub(r"\x1b\[[0-9;]*m", "", heard.decode("utf-8", "replace"))  # colours
     good = sum((letter.isprintable() and letter != "�") or letter in "\r\n\t" for letter in text)
     if not text or good < least * len(text):
@@ -218,7 +225,7 @@ def _has_line(heard: bytes) -> bool:
 
 def _printable(line: str) -> str:
     plain = re.sub(r"\x1b\[[0-9;]*m", "", line).strip()
-    return "".join(letter for letter in plain if letter.isprintable())[:MOST_TEXT]
+    return "".join(letter for letter in plain if letter.isprintable())[:MOST_TEXT_CHARACTERS]
 
 
 class Explanation(NamedTuple):
@@ -229,7 +236,7 @@ class Explanation(NamedTuple):
 
 
 def sentence(name: str, language: str) -> Explanation:
-    """Return the sentences of a row, or of ECHO or TEXT."""
+    """Return the sentences of a row, or of ECHO_SKETCH or OTHER_SKETCH."""
     said = languages.text(CATALOGUE, f"{name}/said", language)
     return Explanation(said, languages.text(CATALOGUE, f"{name}/try", language))
 
@@ -238,4 +245,6 @@ def explain(found: Foreign, language: str) -> Explanation:
     """Return the sentences of a board, with what it says in the first one."""
     said, advice = sentence(found.name, language)
     says = languages.text(CATALOGUE, "says", language)
-    return Explanation(says.format(what=said, said=printable(found.said, MOST_TEXT)), advice)
+    return Explanation(
+        says.format(what=said, said=printable(found.said, MOST_TEXT_CHARACTERS)), advice
+    )

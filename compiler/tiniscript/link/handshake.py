@@ -39,7 +39,7 @@ from tiniscript.link.payloads import (
 )
 from tiniscript.link.requests import OK, DeviceInfo, Exchange, Reply, Request, as_refusal
 from tiniscript.link.robot_state import RobotState
-from tiniscript.link.sealing import NEED_NO_KEY
+from tiniscript.link.sealing import KEYLESS_MESSAGES
 
 T = TypeVar("T")
 
@@ -69,11 +69,11 @@ class Handshake:
         self._place = place
         self.robot: DeviceInfo | None = None
         self.is_open = False
-        self.doubted: int | None = None
+        self.doubted_epoch: int | None = None
 
     @property
     def is_in_doubt(self) -> bool:
-        return self.doubted is not None
+        return self.doubted_epoch is not None
 
     def hello(self) -> Exchange[HelloReply]:
         values = {
@@ -168,14 +168,14 @@ class Handshake:
         return self.robot.values.nonce if self.robot else None
 
     @property
-    def is_doubted(self) -> bool:
+    def is_unproven(self) -> bool:
         """Whether what is not sealed is not the robot's, as far as our keys tell."""
         return authority.has_to_seal(self._keys, self.robot)
 
     def may_have_done(self, name: str) -> bool:
         """Whether this robot may have done a request without a seal."""
         features = self.robot.values.features if self.robot else 0
-        return name in NEED_NO_KEY or features & (OWNED | SEALS) != OWNED | SEALS
+        return name in KEYLESS_MESSAGES or features & (OWNED | SEALS) != OWNED | SEALS
 
     def prove_stopped(self, is_sealed: Callable[[], bool]) -> Exchange[StatusReply]:
         """Have the robot prove that it is stopped, if it is one that seals."""
@@ -183,7 +183,7 @@ class Handshake:
         if hello.status != OK:
             return as_refusal(hello)
         reply = yield from status()
-        if reply.status == OK and self.is_doubted:
+        if reply.status == OK and self.is_unproven:
             if not (is_sealed() and reply.values.state > STATE_RUNNING):
                 return Reply(UNPROVEN)
         return reply
@@ -245,7 +245,7 @@ class Handshake:
 
     def name(self, name: bytes) -> Exchange[EmptyReply]:
         reply = yield from requests.save_and_confirm(Request("NAME", {"name": name}), EmptyReply)
-        if reply.status in (OK, *requests.TAKEN) and self.robot:
+        if reply.status in (OK, *requests.ACCEPTING_STATUSES) and self.robot:
             self.robot = requests.device_info_of(self.robot.values._replace(name=name))
         return reply
 
@@ -297,7 +297,7 @@ _EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
 }
 
 
-def exchange_of(name: str) -> Callable[..., Exchange[Any]]:
+def exchange_by_name(name: str) -> Callable[..., Exchange[Any]]:
     """Return what carries out the request of this name, of a handshake and what is given."""
     if name in _EXCHANGES:
         return _EXCHANGES[name]
@@ -307,4 +307,4 @@ def exchange_of(name: str) -> Callable[..., Exchange[Any]]:
     )
 
 
-NEED_NO_HELLO = ("ping", "status", "fetch")
+REQUESTS_WITHOUT_HELLO = ("ping", "status", "fetch")

@@ -38,12 +38,12 @@ class Holder(NamedTuple):
         return False
 
 
-def holder(path: str, pid: int | None = None) -> Holder | None:
+def find_holder(path: str, pid: int | None = None) -> Holder | None:
     """Return the process that has a port or a lock open; `pid` is the one that says so of itself.
 
     None where nobody tells.
     """
-    result = next(_processes_with(path), None) if sys.platform == "linux" else pid
+    result = next(_pids_with_open_file(path), None) if sys.platform == "linux" else pid
     result = pid if result is None else result
     if result is None or result == os.getpid():
         return None
@@ -61,7 +61,7 @@ def is_suspended(pid: int) -> bool:
     return _ps_column(pid, "state").startswith("T")
 
 
-def _processes_with(path: str) -> Iterator[int]:
+def _pids_with_open_file(path: str) -> Iterator[int]:
     """Yield the processes that have a file open, as far as this user may know that."""
     try:
         expected = Path(path).stat()

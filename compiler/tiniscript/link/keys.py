@@ -23,12 +23,12 @@ from tiniscript.link.messages import KEY_BYTES, KEYS
 
 FILE_BYTES = 1_000_000
 NAME_CHARACTERS = 16
-MOST = 2000  # keys in a file
-MODE = 0o600  # only this person reads it
+MOST_KEYS = 2000  # keys in a file
+FILE_MODE = 0o600  # only this person reads it
 _LOCK = Lock()  # the robots of a fleet have threads of their own
 # What a file calls a field of a key.
-_MARKS = {"is_pending": "is_pending", "is_stale": "is_stale", "seals": "uses_seals"}
-_KINDS = tuple(name.lower() for name, _ in KEYS)
+_MARK_FIELDS = {"is_pending": "is_pending", "is_stale": "is_stale", "seals": "uses_seals"}
+_KEY_KINDS = tuple(name.lower() for name, _ in KEYS)
 
 
 class BadKeys(Exception):
@@ -138,7 +138,7 @@ class KeyFile(KeyRing):
         with _LOCK:
             try:
                 self._make_folder()
-                with files.lock_file(self.path, MODE):
+                with files.lock_file(self.path, FILE_MODE):
                     yield
             except OSError as failure:
                 raise BadKeys(failure.strerror or str(failure)) from None
@@ -148,10 +148,10 @@ class KeyFile(KeyRing):
         self.path.parent.chmod(0o700)
 
     def _write(self, keys: list[RobotKey]) -> None:
-        if len(keys) > MOST:
+        if len(keys) > MOST_KEYS:
             raise TooManyKeys
         try:
-            files.replace(self.path, encode_keys(keys), MODE)
+            files.replace(self.path, encode_keys(keys), FILE_MODE)
         except (OSError, ValueError) as failure:
             raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
 
@@ -178,9 +178,9 @@ def encode_keys(keys: Iterable[RobotKey]) -> bytes:
         {
             "id": f"{key.id:08x}",
             "name": key.name,
-            "kind": _KINDS[key.which],
+            "kind": _KEY_KINDS[key.which],
             "key": key.key.hex(),
-            **{mark: True for mark, field in _MARKS.items() if getattr(key, field)},
+            **{mark: True for mark, field in _MARK_FIELDS.items() if getattr(key, field)},
         }
         for key in keys
     ]
@@ -193,7 +193,7 @@ def decode_keys(data: bytes) -> list[RobotKey]:
         result = json.loads(data)
         if result["tiniscript_keys"] != 1:
             raise BadKeys
-        if len(result["keys"]) > MOST:
+        if len(result["keys"]) > MOST_KEYS:
             raise BadKeys
         return [_key(row) for row in result["keys"]]
     except (ValueError, TypeError, KeyError, IndexError, RecursionError):
@@ -207,9 +207,9 @@ def _key(row: dict[str, object]) -> RobotKey:
         not re.fullmatch("[0-9a-f]{8}", robot)
         or len(data) != KEY_BYTES
         or not any(data)
-        or kind not in _KINDS
+        or kind not in _KEY_KINDS
     ):
         raise ValueError
     name = printable(str(row.get("name", "")), NAME_CHARACTERS)
-    marks = {field: row.get(mark) is True for mark, field in _MARKS.items()}
-    return RobotKey(int(robot, 16), _KINDS.index(kind), data, name, **marks)
+    marks = {field: row.get(mark) is True for mark, field in _MARK_FIELDS.items()}
+    return RobotKey(int(robot, 16), _KEY_KINDS.index(kind), data, name, **marks)

@@ -13,10 +13,10 @@ from typing import NamedTuple
 from tiniscript.base import files
 from tiniscript.base.files import contents
 from tiniscript.base.source import printable
-from tiniscript.link.port_names import is_address, same_for_all
+from tiniscript.link.port_names import canonical_port, is_address
 
 FILE_BYTES = 1_000_000
-KEPT = 2000  # ports; the oldest go first
+MOST_PORTS = 2000  # ports; the oldest go first
 
 
 class KnownPorts(NamedTuple):
@@ -52,14 +52,14 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
             }
             names = {port: name, **others}
             last = port if is_used else before.last
-            fields = {"last": last, "ports": list(names.items())[:KEPT]}
+            fields = {"last": last, "ports": list(names.items())[:MOST_PORTS]}
             files.replace(path, json.dumps(fields).encode())
 
 
 def _is_same(port: str, other: str) -> bool:
     """Whether two names always mean the same port; a link in /dev may mean another tomorrow."""
     if is_address(port) and is_address(other):
-        return same_for_all(port) == same_for_all(other)
+        return canonical_port(port) == canonical_port(other)
     return port == other
 
 

@@ -15,8 +15,8 @@ from typing import NamedTuple
 from tiniscript.base import files
 
 FILE_BYTES = 1_000_000
-KEPT = 2000  # places, and robots; the oldest go first
-MODE = 0o600  # only this person reads it
+MOST_PLACES = 2000  # places, and robots; the oldest go first
+FILE_MODE = 0o600  # only this person reads it
 
 
 class MetRobots(NamedTuple):
@@ -61,10 +61,12 @@ def accept(path: Path, robot: int) -> None:
 
 def _change(path: Path, change: Callable[[MetRobots], MetRobots]) -> None:
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    with files.lock_file(path, MODE):
+    with files.lock_file(path, FILE_MODE):
         now = change(read_met_robots(path))
         fields = {
-            "places": {place: f"{robot:08x}" for place, robot in list(now.places.items())[-KEPT:]},
-            "accepted": [f"{robot:08x}" for robot in now.accepted[-KEPT:]],
+            "places": {
+                place: f"{robot:08x}" for place, robot in list(now.places.items())[-MOST_PLACES:]
+            },
+            "accepted": [f"{robot:08x}" for robot in now.accepted[-MOST_PLACES:]],
         }
-        files.replace(path, json.dumps(fields, indent=1).encode() + b"\n", MODE)
+        files.replace(path, json.dumps(fields, indent=1).encode() + b"\n", FILE_MODE)

@@ -16,7 +16,7 @@ from tiniscript.link.payloads import DoneEvent, FaultEvent, HaltedEvent, Stopped
 # our key says that the robot does; OTHER_ROBOT: another one answers than the one of our key, whose
 # id is the detail.
 LOST, CANCELLED, UNKEPT, UNPROVEN, OTHER_ROBOT = -1, -2, -3, -4, -5
-MIDWAY = 1  # detail of CANCELLED: it was under way, and the robot may have done it before
+DETAIL_MIDWAY = 1  # detail of CANCELLED: it was under way, and the robot may have done it before
 LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
 
 
@@ -131,32 +131,32 @@ class ConnectionLost(Exception):
         self.is_server = is_server
 
 
-KEPT = 500  # events
-MAY_MISS = ("SHOW", "TEXT", "ECHO")  # the others say what the robot does
+MOST_EVENTS = 500  # events
+DROPPABLE_EVENTS = ("SHOW", "TEXT", "ECHO")  # the others say what the robot does
 
-Told = tuple[int, Event]  # arrival time (ms), event
+TimedEvent = tuple[int, Event]  # arrival time (ms), event
 
 
 class Backlog:
-    """When it is full, the oldest event of MAY_MISS is dropped, else the oldest of all. MISSED
-    comes first and says how many were dropped."""
+    """When it is full, the oldest event of DROPPABLE_EVENTS is dropped, else the oldest of all.
+    MISSED comes first and says how many were dropped."""
 
     def __init__(self) -> None:
-        self._events: deque[Told] = deque()
+        self._events: deque[TimedEvent] = deque()
         self._missed = 0
 
     def __len__(self) -> int:
         return len(self._events) + (self._missed > 0)
 
-    def put(self, told: Iterable[Told]) -> None:
+    def put(self, told: Iterable[TimedEvent]) -> None:
         for item in told:
             if item[1].name == "PLACE":  # the newest one says all
                 self._events = deque(one for one in self._events if one[1].name != "PLACE")
             self._events.append(item)
-            if len(self._events) > KEPT:
+            if len(self._events) > MOST_EVENTS:
                 self._drop()
 
-    def take(self) -> Told:
+    def take(self) -> TimedEvent:
         """Return the next event. Raises IndexError if there is none."""
         if self._missed:
             event = MissedEvent(self._missed)
@@ -167,7 +167,7 @@ class Backlog:
     def _drop(self) -> None:
         self._missed += 1
         for number, (_, event) in enumerate(self._events):
-            if event.name in MAY_MISS:
+            if event.name in DROPPABLE_EVENTS:
                 del self._events[number]
                 return
         self._events.popleft()

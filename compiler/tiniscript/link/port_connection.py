@@ -15,7 +15,7 @@ from typing import IO, Any, TypeVar
 import serial
 
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-from tiniscript.link.outcomes import LOOK_S, Backlog, ConnectionLost, Event, Told
+from tiniscript.link.outcomes import LOOK_S, Backlog, ConnectionLost, Event, TimedEvent
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.session import Session
 from tiniscript.link.transports import Port
@@ -55,7 +55,7 @@ class PortConnection(LinkConnection):
         self._news = Condition()
         self._events = Backlog()
         self._under_way: list[PendingRequest[Any]] = []
-        self._listener: Callable[[list[Told]], None] | None = None
+        self._listener: Callable[[list[TimedEvent]], None] | None = None
         self._gone: str | None = None
         self._bug: Exception | None = None
         self._takes_places = False
@@ -95,7 +95,7 @@ class PortConnection(LinkConnection):
             if look is not None:
                 look()
 
-    def event(self, limit_s: float = LOOK_S) -> Told | None:
+    def event(self, limit_s: float = LOOK_S) -> TimedEvent | None:
         with self._news:
             if not self._events and self._gone is None:
                 self._news.wait(limit_s)
@@ -137,7 +137,7 @@ class PortConnection(LinkConnection):
         self._bug = bug
         self._end(str(bug))
 
-    def listen(self, listener: Callable[[list[Told]], None]) -> None:
+    def listen(self, listener: Callable[[list[TimedEvent]], None]) -> None:
         """Call `listener` with new events, and when a request is over or the port is gone.
 
         The line's thread makes the call, and is blocked until it returns.

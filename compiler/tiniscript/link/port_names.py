@@ -13,8 +13,8 @@ import sys
 import unicodedata
 
 BLE, TCP, MQTT = "ble://", "tcp://", "mqtt://"
-PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: nothing restarts there
-_LOCAL = ("localhost", "[::1]")
+PSEUDO_TERMINALS = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: nothing restarts there
+_LOCAL_HOSTS = ("localhost", "[::1]")
 
 
 def is_address(port: str) -> bool:
@@ -70,7 +70,7 @@ def is_there(port: str) -> bool:
     return os.path.exists(port)  # noqa: PTH110 - Path raises for a name that no file can have
 
 
-def same_for_all(port: str) -> str:
+def canonical_port(port: str) -> str:
     """Return the canonical name of a port that has several.
 
     A udev link (`/dev/serial/by-id/...`) becomes its target, `/dev/cu.X` of macOS becomes
@@ -84,7 +84,7 @@ def same_for_all(port: str) -> str:
         kind, _, rest = port.partition("://")
         host, colon, number = rest.rpartition(":")
         host = host.lower()
-        return f"{kind.lower()}://{'127.0.0.1' if host in _LOCAL else host}{colon}{number}"
+        return f"{kind.lower()}://{'127.0.0.1' if host in _LOCAL_HOSTS else host}{colon}{number}"
     if sys.platform == "win32":
         return port.upper().removeprefix("\\\\.\\")
     try:

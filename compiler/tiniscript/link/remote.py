@@ -16,10 +16,10 @@ from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.payloads import EmptyReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 
-EVERY_MS = 200  # what is held is said so often
+REPEAT_MS = 200  # what is held is said so often
 GAP_MS = 30  # between two words while one is unanswered: a frame and its answer at 9600 baud
-ANEW_MS = 100  # after which a word is said anew that was not answered
-AHEAD = 3  # words that may be unanswered: on a slow line no more of them queue up
+RESEND_MS = 100  # after which a word is said anew that was not answered
+MOST_UNANSWERED = 3  # words that may be unanswered: on a slow line no more of them queue up
 _LONG_AGO_MS = -1_000_000
 
 
@@ -36,7 +36,7 @@ class Pressed(NamedTuple):
         return 0 <= self.keys < 1 << len(REMOTE_KEYS) and is_pad
 
 
-NOTHING = Pressed()
+NOTHING_PRESSED = Pressed()
 
 
 def pressed_of(names: Iterable[str], x: int = 0, y: int = 0) -> Pressed:
@@ -56,7 +56,7 @@ class RemoteControl:
     def __init__(self) -> None:
         self._held: dict[int, Pressed] = {}  # the newest word last
         self._until_ms: dict[int, int | None] = {}  # None: from the next look at the clock on
-        self._said, self._said_ms = NOTHING, _LONG_AGO_MS
+        self._said, self._said_ms = NOTHING_PRESSED, _LONG_AGO_MS
         self._unanswered = 0
         self._asked: dict[int, PendingRequest[EmptyReply]] = {}  # of each, not sent yet
         self._sent: list[PendingRequest[EmptyReply]] = []
@@ -68,13 +68,13 @@ class RemoteControl:
         """
         assert held.is_sound, held
         self._held.pop(speaker, None)
-        if held != NOTHING:
+        if held != NOTHING_PRESSED:
             self._held[speaker], self._until_ms[speaker] = held, None
         before = self._asked.pop(speaker, None)
         if before is not None:
             before.outcome = Reply(CANCELLED)
         request: PendingRequest[EmptyReply] = PendingRequest()
-        if self.newest == self._said == NOTHING:
+        if self.newest == self._said == NOTHING_PRESSED:
             request.outcome = Reply(OK, 0, EmptyReply())
         else:
             self._asked[speaker] = request
@@ -83,14 +83,14 @@ class RemoteControl:
     def let_go(self, status: int = CANCELLED) -> None:
         """The robot has let all go, or hears nothing: nothing is held before somebody says so."""
         self._held.clear()
-        self._said, self._unanswered = NOTHING, 0
+        self._said, self._unanswered = NOTHING_PRESSED, 0
         self._take_asked()
         self._take_reply(Reply(status))
 
     @property
     def newest(self) -> Pressed:
         """All keys that somebody holds, and the pad of who has moved his last."""
-        result = NOTHING
+        result = NOTHING_PRESSED
         for item in self._held.values():
             pad = (item.x, item.y) if item.x or item.y else (result.x, result.y)
             result = Pressed(result.keys | item.keys, *pad)
@@ -101,15 +101,21 @@ class RemoteControl:
         times = [until for item in self._held if (until := self._until_ms[item]) is not None]
         newest = self.newest
         if newest != self._said:
-            gap_ms = EVERY_MS if self._unanswered == AHEAD else GAP_MS if self._unanswered else 0
+            gap_ms = (
+                REPEAT_MS
+                if self._unanswered == MOST_UNANSWERED
+                else GAP_MS
+                if self._unanswered
+                else 0
+            )
             times.append(self._said_ms + gap_ms)
-        elif 0 < self._unanswered < AHEAD:
-            times.append(self._said_ms + ANEW_MS)
-        elif newest != NOTHING or self._unanswered == AHEAD:
-            times.append(self._said_ms + EVERY_MS)
+        elif 0 < self._unanswered < MOST_UNANSWERED:
+            times.append(self._said_ms + RESEND_MS)
+        elif newest != NOTHING_PRESSED or self._unanswered == MOST_UNANSWERED:
+            times.append(self._said_ms + REPEAT_MS)
         return min(times, default=None)
 
-    def is_due(self, now_ms: int) -> bool:
+    def expire_and_check_due(self, now_ms: int) -> bool:
         """Whether to say something now. Who has said nothing for HOLD_MS holds nothing."""
         for speaker in list(self._held):
             until_ms = self._until_ms[speaker]
@@ -138,7 +144,7 @@ class RemoteControl:
             self._take_reply(Reply(OK, 0, EmptyReply()))
             return
         self._held.clear()
-        self._said = NOTHING
+        self._said = NOTHING_PRESSED
         self._take_asked()
         self._take_reply(Reply(outcome.status, outcome.detail))
 

@@ -52,9 +52,9 @@ BUSY_TRIES = 200  # while the robot saves another program
 KEPT_TRIES = 12  # while it has not written its data to EEPROM,
 LOW_TRIES = 4  # and while its voltage is too low for that: it checks every half second
 KEPT_PAUSE_MS = 200
-NOT_HELD = (SAVED_NOTHING, SAVED_OTHER_VERSION)  # the robot holds no program
+EMPTY_STATES = (SAVED_NOTHING, SAVED_OTHER_VERSION)  # the robot holds no program
 # The robot has the data, but would lose it at the next power-on.
-TAKEN = (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"], STATUSES["NOT_KEPT"])
+ACCEPTING_STATUSES = (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"], STATUSES["NOT_KEPT"])
 
 
 class Pieces(NamedTuple):
@@ -134,7 +134,7 @@ def reply_of(name: str, payload: bytes) -> Reply[SentReply] | None:
         values: Mapping[str, Any] = decode_payload(BY_NAME[name].reply, payload[1:])
     except Malformed:
         return None
-    if values.get("saved") in NOT_HELD and "length" in values:  # of one that is gone
+    if values.get("saved") in EMPTY_STATES and "length" in values:  # of one that is gone
         values = {**values, "program": 0, "length": 0}
     return Reply(OK, 0, REPLIES[name](**values))
 
@@ -182,14 +182,14 @@ def live(code: bytes, is_latched: bool, kit: int, robot: DeviceInfo) -> Exchange
     if kit not in (0, robot.kit):
         return Reply(STATUSES["WRONG_KIT"], robot.kit)
     request = Request("LIVE", {"mode": RUN, "code": code})
-    reply = yield from _after_clear(is_latched, retry_while_busy(request, ReceiptReply))
+    reply = yield from _clear_then(is_latched, retry_while_busy(request, ReceiptReply))
     is_older = robot.isa < (ISA_MAJOR, ISA_MINOR)
     if is_older and reply.status == RULES["UNKNOWN_OPCODE"][0]:  # LIVE names no version
-        return _other_machine(robot)
+        return _other_machine_reply(robot)
     return reply
 
 
-def _other_machine(robot: DeviceInfo) -> Reply[Any]:
+def _other_machine_reply(robot: DeviceInfo) -> Reply[Any]:
     return Reply(STATUSES["OTHER_MACHINE"], robot.isa[0] << 8 | robot.isa[1])
 
 
@@ -201,10 +201,10 @@ def clear() -> Exchange[EmptyReply]:
 def start(is_detached: bool, is_latched: bool) -> Exchange[ReceiptReply]:
     """Start the program that the robot holds."""
     request = Request("START", {"mode": DETACHED * is_detached})
-    return _after_clear(is_latched, retry_while_busy(request, ReceiptReply))
+    return _clear_then(is_latched, retry_while_busy(request, ReceiptReply))
 
 
-def _after_clear(is_latched: bool, exchange: Exchange[T]) -> Exchange[T]:
+def _clear_then(is_latched: bool, exchange: Exchange[T]) -> Exchange[T]:
     """Release the latch, if a stop has set it, before an exchange."""
     if is_latched:
         cleared = yield from clear()
@@ -229,16 +229,16 @@ def upload(
     """
     is_its_kit = kit == robot.kit or not image.devices
     if image.isa[0] != robot.isa[0] or image.isa[1] > robot.isa[1]:
-        return _other_machine(robot)
+        return _other_machine_reply(robot)
     if len(image.later) + len(image.code) > robot.room:
         return Reply(STATUSES["TOO_LARGE"], robot.room)
     room = min(short_bytes(robot), SHORT_BYTES)
     is_short = len(image.code) <= room and image.isa == isa and not image.later
     if is_short and is_its_kit:
         request = Request("PROGRAM", {"mode": mode, "code": image.code})
-        reply = yield from _after_clear(is_latched, retry_while_busy(request, ReceiptReply))
+        reply = yield from _clear_then(is_latched, retry_while_busy(request, ReceiptReply))
     else:
-        reply = yield from _after_clear(is_latched, _in_pieces(image, mode, robot))
+        reply = yield from _clear_then(is_latched, _upload_in_pieces(image, mode, robot))
         if not is_its_kit and reply.status == RULES["NO_SUCH_DEVICE"][0]:
             return Reply(STATUSES["WRONG_KIT"], robot.kit)
     if reply.status == OK and reply.values.program != image.checksum:
@@ -246,7 +246,7 @@ def upload(
     return reply
 
 
-def _in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[ReceiptReply]:
+def _upload_in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[ReceiptReply]:
     most = _payload_bytes(robot) - OFFSET_BYTES
     header = {
         "mode": mode,
@@ -297,7 +297,7 @@ def save_and_confirm(request: Request, kind: type[T]) -> Exchange[T]:
     """
     reply = yield from retry_while_busy(request, kind)
     tries = low = 0
-    while reply.status in TAKEN[:2] and tries < KEPT_TRIES and low < LOW_TRIES:
+    while reply.status in ACCEPTING_STATUSES[:2] and tries < KEPT_TRIES and low < LOW_TRIES:
         tries += 1
         reply = yield from retry_while_busy(request._replace(pause_ms=KEPT_PAUSE_MS), kind)
         low = low + 1 if reply.status == STATUSES["LOW_SUPPLY"] else 0

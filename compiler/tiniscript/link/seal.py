@@ -12,13 +12,13 @@ from tiniscript.link.frames import Frame
 from tiniscript.link.messages import BY_NAME, COUNTER_BYTES, REPLY, SEALED, TAG_BYTES
 
 _MASK = (1 << 64) - 1
-_BEGIN = 0x736F6D6570736575, 0x646F72616E646F6D, 0x6C7967656E657261, 0x7465646279746573
+_INITIAL_STATE = 0x736F6D6570736575, 0x646F72616E646F6D, 0x6C7967656E657261, 0x7465646279746573
 
 
 def siphash(key: bytes, message: bytes) -> bytes:
     """Return the hash of a message under a key of 16 bytes: 8 bytes, little-endian."""
     halves = [int.from_bytes(key[at : at + 8], "little") for at in (0, 8)]
-    state = [word ^ halves[k % 2] for k, word in enumerate(_BEGIN)]
+    state = [word ^ halves[k % 2] for k, word in enumerate(_INITIAL_STATE)]
     length = len(message)
     padded = message + bytes(7 - length % 8) + bytes([length & 0xFF])
     for at in range(0, len(padded), 8):
@@ -51,10 +51,10 @@ def _rotate_left(word: int, bits: int) -> int:
     return (word << bits | word >> 64 - bits) & _MASK
 
 
-LAST = (1 << 8 * COUNTER_BYTES) - 1
-_BEFORE = 1 + COUNTER_BYTES  # bytes before the payload
-_WIFI = BY_NAME["WIFI"].number
-_BLOCK = 8  # bytes that are covered at once
+LAST_COUNTER = (1 << 8 * COUNTER_BYTES) - 1
+_PREFIX_BYTES = 1 + COUNTER_BYTES  # bytes before the payload
+_WIFI_NUMBER = BY_NAME["WIFI"].number
+_BLOCK_BYTES = 8  # bytes that are covered at once
 
 
 def session_key(
@@ -78,7 +78,7 @@ class Seal:
     @property
     def is_spent(self) -> bool:
         """Whether no further frame may be sealed: a counter is never used twice."""
-        return self.sent >= LAST
+        return self.sent >= LAST_COUNTER
 
     def seal_frame(self, frame: Frame) -> Frame:
         """Return a frame with the next counter and its MAC, ready to be encoded."""
@@ -86,7 +86,9 @@ class Seal:
         self.sent += 1
         counter = self.sent.to_bytes(COUNTER_BYTES, "little")
         text = frame.payload
-        if frame.number == _WIFI and not frame.is_reply:  # the only one with a secret: a password
+        if (
+            frame.number == _WIFI_NUMBER and not frame.is_reply
+        ):  # the only one with a secret: a password
             text = text[:1] + self._mask(counter, text[1:])
         payload = b"\0" + counter + text
         whole = frame._replace(payload=payload, is_sealed=True)
@@ -94,20 +96,23 @@ class Seal:
 
     def open_frame(self, frame: Frame) -> Frame | None:
         """Return what a sealed frame of the robot says, or None if it is not its next one."""
-        if not (frame.is_sealed and frame.is_reply) or len(frame.payload) < _BEFORE + TAG_BYTES:
+        if (
+            not (frame.is_sealed and frame.is_reply)
+            or len(frame.payload) < _PREFIX_BYTES + TAG_BYTES
+        ):
             return None
         payload, mac = frame.payload[:-TAG_BYTES], frame.payload[-TAG_BYTES:]
-        counter = int.from_bytes(payload[1:_BEFORE], "little")
+        counter = int.from_bytes(payload[1:_PREFIX_BYTES], "little")
         is_right = compare_digest(self._mac(frame._replace(payload=payload)), mac)
         if not is_right or payload[0] != 0 or counter <= self.heard:
             return None
         self.heard = counter
-        return frame._replace(payload=payload[_BEFORE:])
+        return frame._replace(payload=payload[_PREFIX_BYTES:])
 
     def _mask(self, counter: bytes, text: bytes) -> bytes:
         """Cover bytes of the frame with this counter: nobody else can read them."""
         stream = b"".join(
-            siphash(self._key, counter + bytes([k])) for k in range(-(-len(text) // _BLOCK))
+            siphash(self._key, counter + bytes([k])) for k in range(-(-len(text) // _BLOCK_BYTES))
         )
         return bytes(a ^ b for a, b in zip(text, stream, strict=False))
 

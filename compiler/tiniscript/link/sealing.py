@@ -12,10 +12,10 @@ from tiniscript.link.requests import OK, Request
 from tiniscript.link.seal import Seal
 from tiniscript.link.transmission import Transmission
 
-UNSEALED = ("HELLO", "AUTHENTICATE")  # a seal is made of what they say
+UNSEALED_MESSAGES = ("HELLO", "AUTHENTICATE")  # a seal is made of what they say
 REFUSED_TRIES = 3  # sendings of a tag before a refusal counts, which anybody may have written
-NEED_NO_KEY = (*UNSEALED, "PING", "STATUS", "STOP", "CLAIM", "IDENTIFY")
-SEALED_ALONE = ("WIFI",)  # has a password, which only a seal covers
+KEYLESS_MESSAGES = (*UNSEALED_MESSAGES, "PING", "STATUS", "STOP", "CLAIM", "IDENTIFY")
+SEALED_ONLY_MESSAGES = ("WIFI",)  # has a password, which only a seal covers
 
 
 class Sealing:
@@ -28,7 +28,7 @@ class Sealing:
 
     def seal_for(self, request: Request) -> Seal | None:
         """Return what a request is sealed with. HELLO and AUTHENTICATE end a seal."""
-        if request.name not in UNSEALED:
+        if request.name not in UNSEALED_MESSAGES:
             return self.seal
         self.seal = request.seal
         return None

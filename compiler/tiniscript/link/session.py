@@ -16,11 +16,17 @@ from functools import partial
 from itertools import takewhile
 from typing import Any, NamedTuple, TypeVar
 
-from tiniscript.bytecode.image import isa_of
+from tiniscript.bytecode.image import isa_for_needs
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest, Requester
 from tiniscript.link.frames import Frame, decode_frame
-from tiniscript.link.handshake import NEED_NO_HELLO, Handshake, exchange_of, ping, status
+from tiniscript.link.handshake import (
+    REQUESTS_WITHOUT_HELLO,
+    Handshake,
+    exchange_by_name,
+    ping,
+    status,
+)
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -40,9 +46,9 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.outcomes import (
     CANCELLED,
+    DETAIL_MIDWAY,
     EVENTS,
     LOST,
-    MIDWAY,
     UNPROVEN,
     EchoEvent,
     Event,
@@ -69,8 +75,8 @@ from tiniscript.link.payloads import (
 from tiniscript.link.receiver import Receiver
 from tiniscript.link.remote import Pressed, RemoteControl, has_remote
 from tiniscript.link.requests import (
+    ACCEPTING_STATUSES,
     OK,
-    TAKEN,
     DeviceInfo,
     Exchange,
     Reply,
@@ -81,7 +87,7 @@ from tiniscript.link.requests import (
 )
 from tiniscript.link.robot_state import RobotState, Unnamed
 from tiniscript.link.round_trips import RoundTrips
-from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
+from tiniscript.link.sealing import SEALED_ONLY_MESSAGES, UNSEALED_MESSAGES, Sealing
 from tiniscript.link.sender import Sender
 from tiniscript.link.transmission import TRIES, StopSequence, Transmission, Window
 
@@ -89,19 +95,27 @@ HEARTBEAT_MS = 200  # between two frames while a program runs
 IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
 SILENT_MS = DEAD_MAN_MS + 200  # after a lost link nothing but a stop is sent, and a little longer
 DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost
-ASKS_PLACE = b"\1"  # of a PING: where is your program?
-MOST_SHOWN = 5  # times that a key is shown again for one request
-_STALE = STATUSES["STALE"]
-_WAITING = (STATUSES["BUSY"], STATUSES["HOLD_BUTTON"])  # asked again: the robot is not ready
+PLACE_QUESTION = b"\1"  # of a PING: where is your program?
+MOST_KEY_SHOWINGS = 5  # times that a key is shown again for one request
+_STALE_STATUS = STATUSES["STALE"]
+_WAITING_STATUSES = (
+    STATUSES["BUSY"],
+    STATUSES["HOLD_BUTTON"],
+)  # asked again: the robot is not ready
 _BY_SEQUENCE, _BY_MESSAGE = 1, 2  # causes of a stopped robot: the stop sequence, STOP
-_PREPARING = ("STOP", "CLEAR", "AUTHENTICATE", "BEGIN", "DATA", "ABORT", "KEYS",
+_PREPARING_MESSAGES = ("STOP", "CLEAR", "AUTHENTICATE", "BEGIN", "DATA", "ABORT", "KEYS",
               "READ_VARIABLES", "READ_TASKS")  # fmt: skip
-_DOING = [message.name for message in MESSAGES
+_ACTING_MESSAGES = [message.name for message in MESSAGES
           if FIRST_ACTING <= message.number < FIRST_EVENT
-          and message.name not in _PREPARING]  # fmt: skip
-_HEARTBEATS = ("PING", "KEYS")
-_STARTING = ("PROGRAM", "COMMIT", "LIVE", "START")  # a run may begin with each
-_END_RUNS = ("upload", "live", "start", "undo")  # a robot ends what runs when it hears of them
+          and message.name not in _PREPARING_MESSAGES]  # fmt: skip
+_HEARTBEAT_MESSAGES = ("PING", "KEYS")
+_STARTING_MESSAGES = ("PROGRAM", "COMMIT", "LIVE", "START")  # a run may begin with each
+_RUN_ENDING_REQUESTS = (
+    "upload",
+    "live",
+    "start",
+    "undo",
+)  # a robot ends what runs when it hears of them
 T = TypeVar("T")
 
 
@@ -127,7 +141,7 @@ class PendingExchange(PendingRequest[T]):
         self.presses = presses  # keys of a remote control
         self.is_void = False  # it was asked for before a stop: nothing more of it is done
         self.answered_ms = 0  # when the robot has answered last
-        self.waits_for = 0  # the robot's last answer, where it was one of _WAITING, or 0
+        self.waits_for = 0  # the robot's last answer, where it was one of _WAITING_STATUSES, or 0
         self.may_be_done = False  # the robot has not said whether it is
         self.is_midway = False  # a frame of it is under way that does what is asked, or has come
         self.shown = 0  # how often a key was shown again for it
@@ -153,7 +167,7 @@ class Session(Requester):
         nonce: int,
         baud: int = 9600,
         kit: int = 0,
-        isa: tuple[int, int] = isa_of(0),
+        isa: tuple[int, int] = isa_for_needs(0),
         keys: KeyRing | None = None,
         place: str = "",
     ) -> None:
@@ -299,9 +313,9 @@ class Session(Requester):
             self._lose(now_ms)
             return b""
         self._talked_ms = now_ms
-        if self._unheard_ms is None and any(map(self._transmission.is_of, _HEARTBEATS)):
+        if self._unheard_ms is None and any(map(self._transmission.is_of, _HEARTBEAT_MESSAGES)):
             self._unheard_ms = now_ms
-        if any(map(self._transmission.is_of, _DOING)):
+        if any(map(self._transmission.is_of, _ACTING_MESSAGES)):
             self._pending.is_midway = True
         if seal is not None:
             self._sealing.sealed_ms = now_ms
@@ -355,7 +369,7 @@ class Session(Requester):
         """Whether a heartbeat is under way, or keys, before which nothing else is."""
         pending = self._pending
         is_alone = pending is not None and pending.is_own and pending.resumes is None
-        return is_alone and any(map(self._transmission.is_of, _HEARTBEATS))
+        return is_alone and any(map(self._transmission.is_of, _HEARTBEAT_MESSAGES))
 
     def _press_next(self, now_ms: int) -> None:
         """Send what is held now, if that is due; a word that was not answered is not sent again."""
@@ -363,14 +377,14 @@ class Session(Requester):
             self._trips.double()
             self._remote.miss()
             self._end_press()
-        if not self._may_press() or not self._remote.is_due(now_ms):
+        if not self._may_press() or not self._remote.expire_and_check_due(now_ms):
             return
         keys = self._handshake.open_then(self._keys)
         press = PendingExchange(keys, DEAF_MS, is_own=True, presses=True)
         if self._pending is not None and not self._is_heartbeat():
             press.resumes = Interrupted(self._pending, self._transmission)
         self._pending, self._has_pressed = press, True
-        press.deadline_ms = self._deaf_at(now_ms)
+        press.deadline_ms = self._deafness_time_ms(now_ms)
         self._advance(None, now_ms)
 
     def _keys(self) -> Exchange[PingReply]:
@@ -388,7 +402,7 @@ class Session(Requester):
         if resumes is not None:
             self._go_on(resumes)
 
-    def _deaf_at(self, now_ms: int) -> int:
+    def _deafness_time_ms(self, now_ms: int) -> int:
         """Return when the link is lost, if no heartbeat is answered before."""
         if now_ms - self._talked_ms > 2 * HEARTBEAT_MS:
             self._unheard_ms = None  # nothing was sent for a while
@@ -401,7 +415,7 @@ class Session(Requester):
             heartbeat_ms = self._heartbeat_ms()
             if heartbeat_ms is None or now_ms < self._talked_ms + heartbeat_ms:
                 return
-            limit_ms = self._deaf_at(now_ms) - now_ms
+            limit_ms = self._deafness_time_ms(now_ms) - now_ms
             self._pending = PendingExchange(self._heartbeat(), limit_ms, is_own=True)
         self._pending.deadline_ms = now_ms + self._pending.limit_ms
         self._advance(None, now_ms)
@@ -417,7 +431,7 @@ class Session(Requester):
         """Continue the exchange: give it the reply, and send its next request."""
         pending = self._pending
         assert pending
-        is_waiting = reply is not None and reply.status in _WAITING
+        is_waiting = reply is not None and reply.status in _WAITING_STATUSES
         pending.waits_for = reply.status if reply is not None and is_waiting else 0
         pending.answered_ms = now_ms
         try:
@@ -426,10 +440,10 @@ class Session(Requester):
             self._end_exchange(pending, over.value, now_ms)
             return
         message = BY_NAME[request.name]
-        is_action = message.number >= FIRST_ACTING and request.name not in UNSEALED
+        is_action = message.number >= FIRST_ACTING and request.name not in UNSEALED_MESSAGES
         if pending.is_void and is_action:
             pending.exchange.close()
-            self._end_exchange(pending, Reply(_STALE), now_ms)
+            self._end_exchange(pending, Reply(_STALE_STATUS), now_ms)
             return
         self._begin(request, now_ms)
         self._end_orphan(now_ms)
@@ -465,7 +479,7 @@ class Session(Requester):
         largest = self.robot.values.largest if self.robot else 0
         self._transmission = Transmission(self._trips, largest, self.is_running)
         self._transmission.begin(frame, now_ms + request.pause_ms, seal)
-        if seal is None and request.name in SEALED_ALONE:
+        if seal is None and request.name in SEALED_ONLY_MESSAGES:
             self._authenticate_again(now_ms)  # before a byte of it is sent
 
     def _number(self, is_sealed: bool) -> int:
@@ -488,7 +502,7 @@ class Session(Requester):
             return
         pending.shown += 1
         self._transmission = Transmission(self._trips)
-        if pending.shown > MOST_SHOWN:  # told to its exchange, that might do it again
+        if pending.shown > MOST_KEY_SHOWINGS:  # told to its exchange, that might do it again
             pending.exchange.close()
             pending.outcome = Reply(NOT_OWNER)
             self._pending = None
@@ -502,7 +516,7 @@ class Session(Requester):
         self._pending, transmission = interrupted
         seal = self._sealing.seal
         if self._pending.is_void:
-            self._advance(Reply(_STALE), now_ms)
+            self._advance(Reply(_STALE_STATUS), now_ms)
         elif shown.status == NOT_OWNER or (shown.status == OK and seal is None):
             self._transmission = transmission
             self._authenticate_again(now_ms)
@@ -510,7 +524,7 @@ class Session(Requester):
             self._transmission = transmission
             self._transmission.begin_again(now_ms, seal)
         else:
-            self._advance(Reply(shown.status or _STALE, shown.detail), now_ms)
+            self._advance(Reply(shown.status or _STALE_STATUS, shown.detail), now_ms)
 
     def _end_orphan(self, now_ms: int) -> None:
         """End the run of a client that has gone, between two frames of what others ask for."""
@@ -547,7 +561,7 @@ class Session(Requester):
 
     def _may_start(self) -> bool:
         """Whether a frame is under way that may start a run."""
-        return self._transmission.is_sent and any(map(self._transmission.is_of, _STARTING))
+        return self._transmission.is_sent and any(map(self._transmission.is_of, _STARTING_MESSAGES))
 
     def _send_stop(self, now_ms: int) -> bytes:
         if not self._stop.is_due(now_ms):
@@ -572,7 +586,7 @@ class Session(Requester):
         self._doubt(frame)
         self._sealing.seal = None
         self._handshake.is_open = False
-        self._advance(Reply(_STALE if frame.number >= FIRST_ACTING else NOT_OWNER), now_ms)
+        self._advance(Reply(_STALE_STATUS if frame.number >= FIRST_ACTING else NOT_OWNER), now_ms)
 
     def _take_reply(self, frame: Frame, now_ms: int) -> None:
         if not self._transmission.is_answered_by(frame):
@@ -587,7 +601,7 @@ class Session(Requester):
         if reply is None:
             self.damaged += 1
             return
-        if self._pending and reply.status not in (OK, *TAKEN):
+        if self._pending and reply.status not in (OK, *ACCEPTING_STATUSES):
             self._pending.is_midway = False  # it was refused
         self._transmission.learn(frame, now_ms)
         self._unheard_ms = None
@@ -607,12 +621,12 @@ class Session(Requester):
             self._settle(values, frame)
         else:
             self._doubt(frame)
-        if reply.status == _STALE:
+        if reply.status == _STALE_STATUS:
             self._handshake.is_open = False  # a new HELLO tells the robot's state
-        if message.name in UNSEALED and reply.status != OK:
+        if message.name in UNSEALED_MESSAGES and reply.status != OK:
             self._sealing.seal = None
         if values is not None:
-            is_other = self._handshake.is_in_doubt and not self._is_settled_by(values)
+            is_other = self._handshake.is_in_doubt and not self._try_to_settle(values)
             if message.name == "CLEAR":
                 self._state.clear()
             if message.name == "STOP" and self._pending and self._pending.halts:
@@ -640,19 +654,19 @@ class Session(Requester):
 
     def _doubt(self, frame: Frame) -> None:
         """The robot may have another epoch, which no event has announced."""
-        if frame.epoch != self._epoch and self._handshake.doubted is None:
-            self._handshake.doubted = self._epoch
+        if frame.epoch != self._epoch and self._handshake.doubted_epoch is None:
+            self._handshake.doubted_epoch = self._epoch
         self._epoch = frame.epoch
 
     def _is_next(self, epoch: int) -> bool:
         """Whether one stop or fault, and nothing else, has ended the epoch before this one."""
-        before = self._handshake.doubted
+        before = self._handshake.doubted_epoch
         return before is not None and epoch == (before + 1) & 0xFF
 
     def _is_one_fault(self, state: int, epoch: int) -> bool:
         return state == STATE_FAULTED and self._is_next(epoch)
 
-    def _is_settled_by(self, values: SentReply) -> bool:
+    def _try_to_settle(self, values: SentReply) -> bool:
         """Whether a reply tells all that must be known of the epoch before for now."""
         if isinstance(values, (PingReply, StatusReply)):
             is_far = self._handshake.is_open and not self._is_next(self._epoch)
@@ -663,7 +677,7 @@ class Session(Requester):
             is_stop = not (self._pending and self._pending.halts)
         else:
             return True  # what needs to know more says HELLO
-        self._handshake.doubted = None
+        self._handshake.doubted_epoch = None
         if is_stop:
             self._void()
         return True
@@ -682,10 +696,10 @@ class Session(Requester):
             is_fault = self._is_one_fault(robot.state, frame.epoch)
             # HELLO is not sealed: where that counts, anybody may have said what it says
             if robot.state == STATE_STOPPED or (
-                is_same and (not is_fault or self._handshake.is_doubted)
+                is_same and (not is_fault or self._handshake.is_unproven)
             ):
                 self._void(frame.epoch if is_same else None)
-        self._handshake.doubted = None
+        self._handshake.doubted_epoch = None
 
     def _void(self, began: int | None = None) -> None:
         """The robot was stopped: do nothing that was asked for before. Questions are answered.
@@ -720,7 +734,7 @@ class Session(Requester):
     def _take_data_reply(self, reply: Reply[SentReply], frame: Frame, now_ms: int) -> bool:
         """Take a reply to one of many DATA; return whether that was not the last one."""
         assert isinstance(self._transmission, Window)
-        if frame.epoch != self._transmission.epoch or reply.status not in (OK, _STALE):
+        if frame.epoch != self._transmission.epoch or reply.status not in (OK, _STALE_STATUS):
             return False
         next_offset = None  # STALE in this epoch: a frame of a later number has come before
         if reply.status == OK:
@@ -779,7 +793,7 @@ class Session(Requester):
             return
         event = EVENTS[message.name](**values)
         if isinstance(event, StoppedEvent):
-            if not frame.is_sealed and self._handshake.is_doubted:
+            if not frame.is_sealed and self._handshake.is_unproven:
                 self._ask_for_proof(event)
                 return
             if self._stop.due_ms is not None:
@@ -812,7 +826,7 @@ class Session(Requester):
         if not (is_free and self._handshake.is_open and self._has_places):
             return
         if self._state.claim_query(value):
-            ask = self._handshake.with_key(lambda: ping(ASKS_PLACE))
+            ask = self._handshake.with_key(lambda: ping(PLACE_QUESTION))
             self._asks_program = PendingExchange(ask, DEAF_MS, is_own=True)
             self._waiting.append(self._asks_program)
 
@@ -835,13 +849,13 @@ class Session(Requester):
         is_halt = event == StoppedEvent(_BY_MESSAGE) and self._pending and self._pending.halts
         if isinstance(event, StoppedEvent):
             is_other = self._handshake.is_in_doubt and not self._is_next(frame.epoch)
-            self._handshake.doubted = None
+            self._handshake.doubted_epoch = None
             if not is_halt:
                 self._void()
             if is_other and self._handshake.is_open:  # a reset may have come before this stop
                 self._look_first(has_ended=False, is_other=True)
         elif self._is_one_fault(STATE_FAULTED, frame.epoch):
-            self._handshake.doubted = None
+            self._handshake.doubted_epoch = None
             self._transmission.renew(self._epoch)
             if self._pending and self._pending.resumes:
                 self._pending.resumes.transmission.renew(self._epoch)
@@ -871,14 +885,14 @@ class Session(Requester):
     def _ask(
         self, name: str, kind: type[T], starts: bool = False, /, **given: object
     ) -> PendingExchange[T]:
-        make: Callable[[], Exchange[T]] = partial(exchange_of(name), self._handshake, **given)
+        make: Callable[[], Exchange[T]] = partial(exchange_by_name(name), self._handshake, **given)
         if name == "hello":
             exchange = make()
-        elif name in NEED_NO_HELLO:
+        elif name in REQUESTS_WITHOUT_HELLO:
             exchange = self._handshake.with_key(make)
         else:
             exchange = self._handshake.open_then(make)
-        return self._add(exchange, starts, name in _END_RUNS)
+        return self._add(exchange, starts, name in _RUN_ENDING_REQUESTS)
 
     def _add(
         self, exchange: Exchange[T], starts: bool = False, ends_runs: bool = False
@@ -890,7 +904,7 @@ class Session(Requester):
 
     def _heartbeat(self) -> Exchange[PingReply]:
         """Ping, and ask where the program is, if that is wanted and the robot tells it."""
-        asks = ASKS_PLACE if self.tells_places and self._has_places else b""
+        asks = PLACE_QUESTION if self.tells_places and self._has_places else b""
         return self._handshake.with_key(lambda: ping(asks))
 
     def _finish(self, pending: PendingExchange[Any], outcome: Reply[Any]) -> None:
@@ -939,8 +953,8 @@ class Session(Requester):
         if self._pending:
             expected = self._pending.target
             is_midway = status == CANCELLED and expected.is_midway
-            expected.outcome = Reply(status, MIDWAY if is_midway else 0)
-        self._pending = self._orphan = self._handshake.doubted = None
+            expected.outcome = Reply(status, DETAIL_MIDWAY if is_midway else 0)
+        self._pending = self._orphan = self._handshake.doubted_epoch = None
         self._transmission.end()
         self._unheard_ms = None
         self._remote.let_go(status)

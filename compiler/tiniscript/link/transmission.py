@@ -137,13 +137,13 @@ class Transmission:
 
 
 WIRE_BYTES = 4  # of a frame on the wire: what COBS adds to a long one, and its zeros
-AHEAD_MS = 200  # a stop waits behind so much of the port's time at most
+MOST_QUEUED_MS = 200  # a stop waits behind so much of the port's time at most
 SLOW_MS = 1000  # and behind so much of a line that is slower than its port, about
 REPLY_BYTES = 32  # of DATA on the wire, and more
 FRAME_BYTES = 24  # of DATA on the wire beside its piece, and more
 LEAST_BYTES = 8  # of a piece, where a line loses so much that no longer one arrives
 MORE_BYTES = 8  # of the next piece, after one that has arrived
-REMEMBERED = 64  # pieces that were sent last: their answers may be late
+MOST_REMEMBERED_PIECES = 64  # pieces that were sent last: their answers may be late
 _DATA = BY_NAME["DATA"]
 
 
@@ -165,7 +165,7 @@ class Window(Transmission):
         """`number` returns the number of each frame: another one each time."""
         super().__init__(trips)
         self._data = pieces.data
-        ahead = baud * AHEAD_MS // 10_000  # bytes
+        ahead = baud * MOST_QUEUED_MS // 10_000  # bytes
         small = payload_bytes(SMALL_FRAME) - OFFSET_BYTES
         self._longest = self._most = min(pieces.most, max(small, ahead // 2 - FRAME_BYTES))
         fitting = ahead // (self._most + FRAME_BYTES)
@@ -176,7 +176,7 @@ class Window(Transmission):
         self._next = 0  # what the robot wants next
         self._sent = 0  # offset of the byte after the last one that was sent
         self._under_way: deque[SentPiece] = deque()
-        self._before: deque[SentPiece] = deque(maxlen=REMEMBERED)  # taken for lost
+        self._before: deque[SentPiece] = deque(maxlen=MOST_REMEMBERED_PIECES)  # taken for lost
         self._lost_ms = 0  # when what is under way is taken for lost
         self._is_again = False
         self._is_over = False

@@ -9,12 +9,12 @@ from __future__ import annotations
 import re
 
 _WORDS = re.compile(rb"(?:S|STOP)+|(?:S|STOP)*STOPNOW|ALTO|PARA|PARAR|PARE|DETENTE|HALT")
-_AT_ONCE = re.compile(rb"SSS|STOPSTOP", re.IGNORECASE)
+_IMMEDIATE_STOP = re.compile(rb"SSS|STOPSTOP", re.IGNORECASE)
 _BLANKS = re.compile(rb"[ \t]")
 # what a terminal sends for a cursor key, as far as it has come
 _KEY = re.compile(rb"\x1b(?:[\[O][ -?]*[@-~]?)?")
 _COMMENT = re.compile(rb"/[ \t]*/")
-_DELETES = b"\b\x7f"
+_DELETE_KEYS = b"\b\x7f"
 _LINE_END = re.compile(rb"[\r\n\0]")
 _CTRL_C = re.compile(rb"\x03+")
 
@@ -23,7 +23,7 @@ def is_typed_stop(line: bytes) -> bool:
     """Return whether a line of text, without its end, is a typed stop."""
     letters = bytearray()
     for byte in _read(line):
-        if byte in _DELETES:
+        if byte in _DELETE_KEYS:
             del letters[-1:]
         elif byte < 0x80 and chr(byte).isalnum():
             letters.append(byte)
@@ -32,7 +32,7 @@ def is_typed_stop(line: bytes) -> bool:
 
 def stops_at_once(line: bytes) -> bool:
     """Return whether what has come of a line stops what runs before the line ends."""
-    return _AT_ONCE.search(_BLANKS.sub(b"", _read(line))) is not None
+    return _IMMEDIATE_STOP.search(_BLANKS.sub(b"", _read(line))) is not None
 
 
 def is_at_stop(data: bytes) -> bool:

@@ -11,7 +11,7 @@ from typing import Any
 
 MOST_BYTES = 1024  # of one answer: whoever never stops is not listened to for ever
 QUIET_MS = 60  # after so long a silence an answer is over
-RESTART_MS = 100  # how long the lines that restart a board are off
+RESET_MS = 100  # how long the lines that restart a board are off
 
 
 class Wire:
@@ -57,13 +57,13 @@ class Wire:
             raise OSError(str(why)) from None
         self._drop_input()
 
-    def restart(self) -> None:
+    def reset_board(self) -> None:
         """Restart a board on a USB cable, as opening its port does."""
         for is_on in (False, True):
             with suppress(OSError, NotImplementedError, TypeError):  # a port without such lines
                 self._port.dtr = self._port.rts = is_on
             if not is_on:
-                self.receive(RESTART_MS, RESTART_MS)
+                self.receive(RESET_MS, RESET_MS)
         self._drop_input()
 
     def _drop_input(self) -> None:

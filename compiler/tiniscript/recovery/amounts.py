@@ -6,7 +6,7 @@ import re
 from collections.abc import Container, Sequence
 
 from tiniscript.base.source import Span
-from tiniscript.base.words import WORDS, said_of
+from tiniscript.base.words import WORDS, lexicon_meaning
 from tiniscript.recovery.meanings import meant_by, plain
 
 _NEAR = 80  # characters around a value in which its call is looked for
@@ -18,7 +18,7 @@ _CENTIMETRES, _ANY = "10", "50"  # examples of what a sensor sees, and of a vari
 
 
 def is_amount(*words: str) -> bool:
-    return any(said_of(plain(word), "amount") for word in words)
+    return any(lexicon_meaning(plain(word), "amount") for word in words)
 
 
 def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, str]:
@@ -45,7 +45,9 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
         return {}
     for k, (value, its) in enumerate(zip(values, word.arguments, strict=False)):
         words = [word for word in plain(value).split() if word not in own]
-        texts = [said_of(word, "power")[0] for word in words if said_of(word, "power")]
+        texts = [
+            lexicon_meaning(word, "power")[0] for word in words if lexicon_meaning(word, "power")
+        ]
         if texts or is_amount(*words) or k == place:
             sample = texts[0] if texts and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
             sample = _own_number(words, its.unit) or sample
@@ -56,7 +58,7 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
 
 def _own_number(words: Sequence[str], unit: str) -> str:
     """Return the number that words for an amount say in its unit: `muy lento 5 segundos`."""
-    units = {said_of(word, "unit")[0] for word in words if said_of(word, "unit")}
-    numbers = [(said_of(word, "number") or (word,))[0] for word in words]
+    units = {lexicon_meaning(word, "unit")[0] for word in words if lexicon_meaning(word, "unit")}
+    numbers = [(lexicon_meaning(word, "number") or (word,))[0] for word in words]
     matches = [it for it in numbers if it.replace(".", "", 1).isdecimal() and (units or it != "1")]
     return matches[0] if len(matches) == 1 and units <= {unit} else ""

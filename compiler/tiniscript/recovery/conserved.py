@@ -41,9 +41,9 @@ from tiniscript.recovery.meanings import (
     Lexeme,
     Names,
     closed,
-    concept_of,
     lexemes,
-    said_of,
+    lexicon_concept,
+    lexicon_meaning,
     texts,
 )
 from tiniscript.recovery.notes import note_edits
@@ -320,7 +320,7 @@ class _Said:
 
     @staticmethod
     def _all_lines(lines: Sequence[str]) -> list[str]:
-        return [concept_of(text) or text for line in lines for text in texts(lexemes(line))]
+        return [lexicon_concept(text) or text for line in lines for text in texts(lexemes(line))]
 
     @staticmethod
     def _without_frame(text: str) -> str:
@@ -366,7 +366,7 @@ class _Said:
         text = ALIASES.get(token.text, token.text)
         if self.names.is_name(text) or (text in WORDS and text != "SI"):
             return "S" if text == "STOP" else text
-        return (concept_of(text) or "") if len(lexicon().get(text, ())) == 1 else ""
+        return (lexicon_concept(text) or "") if len(lexicon().get(text, ())) == 1 else ""
 
     def _possible_words(self, token: Lexeme) -> set[str]:
         """Return the words of the language that a word may say."""
@@ -375,7 +375,7 @@ class _Said:
         return self._meanings[token.text]
 
     def _found_in(self, token: Lexeme) -> set[str]:
-        matches = {self._word(token), concept_of(token.text) or ""}
+        matches = {self._word(token), lexicon_concept(token.text) or ""}
         matches |= {
             meaning.concept for meaning in self.names.meanings(token.text) if meaning.cost <= NEAR
         }
@@ -393,7 +393,7 @@ class _Said:
             elif token is _END:
                 depth = [False]
             if (value := self._number(token)) is not None:
-                is_said = bool(said_of(before.text, "leaves", "by")) and before.kind is WORD
+                is_said = bool(lexicon_meaning(before.text, "leaves", "by")) and before.kind is WORD
                 k = k + 1 if is_said or self._is_yes(k) else self._add_amount(k, value, slots[k])
                 continue
             if token.kind is WORD and not self._is_label(k):
@@ -414,7 +414,7 @@ class _Said:
             self._next_lexeme(k),
         )
         if self._is_loose_unit(k):
-            self.loose.append((said_of(token.text, "unit")[0], token.source or token.text))
+            self.loose.append((lexicon_meaning(token.text, "unit")[0], token.source or token.text))
             return
         word = self._word(token)
         around = {before.text, after.text}
@@ -449,7 +449,7 @@ class _Said:
         """Whether a word after an end says which one ends."""
         back = k - 2 if k > 1 and self.tokens[k - 1].text in ("-", "_", ".") else k - 1
         before = self.tokens[back] if k else _END
-        is_end = before.text in ENDED or bool(said_of(before.text, "end"))
+        is_end = before.text in ENDED or bool(lexicon_meaning(before.text, "end"))
         token = self.tokens[k]
         is_block = token.text in self.names.defs or bool(
             self._possible_words(token) & BLOCK_ENDS.keys()
@@ -463,7 +463,7 @@ class _Said:
     def _number(self, token: Lexeme) -> float | None:
         if token.kind is NUMBER:
             return float(token.text)
-        text = said_of(token.text, "number") if token.kind is WORD else ()
+        text = lexicon_meaning(token.text, "number") if token.kind is WORD else ()
         is_other = self.names.is_name(token.text) or len(lexicon().get(token.text, ())) > 1
         return float(text[0]) if text and not is_other and text != ("1",) else None
 
@@ -473,7 +473,7 @@ class _Said:
         is_minus = self._is_minus(k)
         text = f"{'-' if is_minus else ''}{token.source or token.text}"
         while token.kind is WORD and value % 10 == 0:  # `ochenta y cinco`
-            at = k + 1 + bool(said_of(self._next_lexeme(k).text, "and"))
+            at = k + 1 + bool(lexicon_meaning(self._next_lexeme(k).text, "and"))
             more = self._number(self.tokens[at]) if at < len(self.tokens) else None
             if more is None or more >= (100 if value % 100 == 0 else 10):
                 break
@@ -501,7 +501,7 @@ class _Said:
         token, next_one = self._next_lexeme(k), self._next_lexeme(k + 1).text
         if token.text == "%" and next_one in (")", ",", ";"):  # no remainder of a division
             return "%", 1000
-        text = said_of(token.text, "unit")
+        text = lexicon_meaning(token.text, "unit")
         is_letter = len(token.text) == 1 and token.kind is WORD
         is_apart = is_letter and token.space != "" and next_one not in (",", ")")
         is_order = is_letter and token.source == token.text and token.space != ""
@@ -522,7 +522,7 @@ class _Said:
         is_free = not self.names.is_name(token.text) and after.kind is not NUMBER
         if not is_unit or not is_free or (len(token.text) == 1 and not is_behind):
             return False
-        return said_of(token.text, "unit")[0] in _UNITS
+        return lexicon_meaning(token.text, "unit")[0] in _UNITS
 
     def _slots(self) -> list[str]:
         """Return the unit that a value at each token has by its place, "" for none."""
@@ -591,11 +591,11 @@ class _Said:
         """Return the words that turn a question round, as they are written."""
         negations = []
         for k, token in enumerate(self.tokens):
-            is_no = token.text in ("NOT", "!") or bool(said_of(token.text, *_NEGATES))
+            is_no = token.text in ("NOT", "!") or bool(lexicon_meaning(token.text, *_NEGATES))
             if not is_no or self.names.is_name(token.text):
                 continue
             around = self.tokens[max(0, k - 4) : k]
-            if said_of(token.text, "unless") or any(
+            if lexicon_meaning(token.text, "unless") or any(
                 self._possible_words(it) & ASKING for it in around
             ):
                 negations.append(token.source or token.text)

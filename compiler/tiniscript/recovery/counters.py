@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import WORDS, concept_of, said_of
+from tiniscript.base.words import WORDS, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery.meanings import Lexeme, lexemes
@@ -54,7 +54,9 @@ def counters(source: Source) -> list[Diagnostic]:
         for item in own:
             in_header = [it.text for it in row[item.start : item.end]].count(item.name)
             is_used = words[item.name] > in_header + ends[item.name]
-            if is_used or any(said_of(it.text, "each") for it in row[item.start : item.end]):
+            if is_used or any(
+                lexicon_meaning(it.text, "each") for it in row[item.start : item.end]
+            ):
                 span = Span(spans[item.start].start, spans[item.end - 1].end)
                 diagnostics.append(
                     _counter_diagnostic(
@@ -97,7 +99,7 @@ def _counter_spans(row: Sequence[Lexeme], start: int) -> list[Span]:
 
 
 def _is_end(end: Lexeme, name: Lexeme, counter: str) -> bool:
-    return concept_of(end.text) == "END_LOOP" and name.text == counter
+    return lexicon_concept(end.text) == "END_LOOP" and name.text == counter
 
 
 def _headers(row: Sequence[Lexeme]) -> Iterator[_Counter]:
@@ -109,14 +111,14 @@ def _headers(row: Sequence[Lexeme]) -> Iterator[_Counter]:
 
 def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
     """Return what a header counts that begins at a token."""
-    if not said_of(row[start].text, "count") and concept_of(row[start].text) != "LOOP":
+    if not lexicon_meaning(row[start].text, "count") and lexicon_concept(row[start].text) != "LOOP":
         return None
     rest = _Rest(row, start + 1)
     is_open = rest.take("(")
     while rest.says("each", "every", "declare"):
         rest.k += 1
     begun, name = rest.k, rest.text()
-    if name in WORDS or not name.isidentifier() or concept_of(name):
+    if name in WORDS or not name.isidentifier() or lexicon_concept(name):
         return None
     rest.k += 1
     if rest.text() in _IN and rest.text(1) == "RANGE" and rest.text(2) == "(":
@@ -164,7 +166,7 @@ class _Rest:
 
     def says(self, *kinds: str) -> bool:
         is_word = self.k < len(self.row) and self.row[self.k].kind is WORD
-        return is_word and bool(said_of(self.text(), *kinds))
+        return is_word and bool(lexicon_meaning(self.text(), *kinds))
 
     def take(self, *signs: str) -> bool:
         """Pass one of these signs, or say that there is none."""

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import said_of
+from tiniscript.base.words import lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.syntax.free_names import names_in, numbered_names
@@ -99,7 +99,7 @@ def _returns(tokens: Sequence[Token], used: set[str]) -> Iterator[tuple[str, Tok
             name = tokens[min(k + 1, len(tokens) - 1)].text
         elif token.text in _DEF_ENDS:
             name = ""
-        elif begins and name and token.kind is WORD and said_of(token.text, "leaves"):
+        elif begins and name and token.kind is WORD and lexicon_meaning(token.text, "leaves"):
             value = [*_until_end(tokens, k + 1)]
             if value:
                 yield name, token, Span(value[0].start, value[-1].end)

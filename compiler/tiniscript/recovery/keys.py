@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import REMOTE, Kit
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of, lexicon, said_of
+from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import ASKING, ENDED, Names, lexemes, plain, words_of
@@ -185,7 +185,7 @@ class _Part:
                     it in _EQUAL
                     or _is_key(it)
                     or _is_key_word(it, *_LINKS)
-                    or bool(said_of(it, "to"))
+                    or bool(lexicon_meaning(it, "to"))
                 ),
             )
             letters = (n for n in range(end, behind + 1) if self._word(n) in ("A", "B"))
@@ -195,7 +195,7 @@ class _Part:
             if not side and begun - k > 1 and self._word(begun - 1) in ("A", "B"):
                 side, last = self._word(begun - 1), end - 1  # `the A button`
             signs = [self._word(n) for n in range(end, behind)]
-            is_button = concept_of(self._word(at)) == "BUTTON"
+            is_button = lexicon_concept(self._word(at)) == "BUTTON"
             if not side and is_button:
                 return None
             is_compared = bool({*signs} & {"=", "==", "_"}) and self._word(behind) not in ("", ")")
@@ -235,7 +235,7 @@ class _Part:
         end = axis + 1 if has_axis else at + 1
         is_not = False
         if not side:
-            behind = self._while(end, lambda it: it in _EQUAL or bool(said_of(it, *_LINKS)))
+            behind = self._while(end, lambda it: it in _EQUAL or bool(lexicon_meaning(it, *_LINKS)))
             side = _side(self._word(behind))
             signs = {self._word(n) for n in range(end, behind)}
             is_not = bool(signs & {"<>", "!="})
@@ -296,21 +296,24 @@ class _Part:
 
 
 def _is_key_word(word: str, *kinds: str) -> bool:
-    return bool(said_of(word, *kinds)) and not {word, concept_of(word)} & {*WORDS, *ASKING}
+    return bool(lexicon_meaning(word, *kinds)) and not {word, lexicon_concept(word)} & {
+        *WORDS,
+        *ASKING,
+    }
 
 
 def _is_key(word: str) -> bool:
-    return bool(said_of(plain(word), "key")) or concept_of(plain(word)) == "BUTTON"
+    return bool(lexicon_meaning(plain(word), "key")) or lexicon_concept(plain(word)) == "BUTTON"
 
 
 def _is_stick(word: str) -> bool:
-    return said_of(plain(word), "stem") == ("PAD",)
+    return lexicon_meaning(plain(word), "stem") == ("PAD",)
 
 
 def _side(word: str) -> str:
     if word and not word.isascii():
-        return _SIDES.get(concept_of(word) or "", "")
-    return "".join(said_of(word, "up", "down", "left", "right")).upper()
+        return _SIDES.get(lexicon_concept(word) or "", "")
+    return "".join(lexicon_meaning(word, "up", "down", "left", "right")).upper()
 
 
 @cache
@@ -332,7 +335,9 @@ def _split_key(word: str, start: int) -> Iterator[_Piece]:
     """Give a word, in two where a key and its side are glued: `KEYUP`."""
     for key, ends in product(_words(), (str.removeprefix, str.removesuffix)):
         rest = ends(word, key)
-        is_letter = rest in ("A", "B") and bool(said_of(key, "key")) and word.startswith(key)
+        is_letter = (
+            rest in ("A", "B") and bool(lexicon_meaning(key, "key")) and word.startswith(key)
+        )
         if rest != word and (_side(rest) or is_letter):
             parts = (key, rest) if word.startswith(key) else (rest, key)
             middle = start + len(parts[0])

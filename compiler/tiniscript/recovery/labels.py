@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import WORDS, concept_of, lexicon, said_of
+from tiniscript.base.words import WORDS, lexicon, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import meant_by, plain
@@ -78,8 +78,8 @@ def _is_label(label: re.Match[str], text: str) -> bool:
 
 def _is_order(word: str, sign: str, text: str) -> bool:
     """Whether an instruction begins with a word and the sign after it."""
-    meant = {word, concept_of(word), meant_by(word)} & WORDS.keys()
-    return bool(sign or meant or said_of(word, "set", "declare")) or _is_name(word, text)
+    meant = {word, lexicon_concept(word), meant_by(word)} & WORDS.keys()
+    return bool(sign or meant or lexicon_meaning(word, "set", "declare")) or _is_name(word, text)
 
 
 def _is_step(word: str) -> bool:

@@ -11,7 +11,7 @@ from itertools import accumulate
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of, lexicon, said_of
+from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.calls import likely_word
@@ -63,7 +63,7 @@ def _ending(rows: Sequence[str], starts: Sequence[int], names: Names) -> Iterato
     above = [part for row in rows[:last] for part in _BEGUN.sub("", row).split(";") if part.strip()]
     calls = [_CALL.fullmatch(part) for part in above]
     is_open = any(it is None or not _is_call(it, names) for it in calls)
-    is_end = len(tokens) == 1 and last > 0 and bool(said_of(tokens[0].text, "end"))
+    is_end = len(tokens) == 1 and last > 0 and bool(lexicon_meaning(tokens[0].text, "end"))
     if is_end and not is_open and not names.is_name(tokens[0].text):
         begin = starts[last] + len(rows[last]) - len(rows[last].lstrip())
         span = Span(begin, starts[last] + len(rows[last]))
@@ -113,4 +113,4 @@ def _is_filler(token: Lexeme, names: Names) -> bool:
     if token.kind is not WORD or word in WORDS or names.is_name(word) or names.meant(word):
         return False
     kinds = {item.kind for item in lexicon().get(word, ())}
-    return concept_of(word) is None and kinds <= _MEANS_NOTHING
+    return lexicon_concept(word) is None and kinds <= _MEANS_NOTHING

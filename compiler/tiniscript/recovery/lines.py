@@ -14,7 +14,7 @@ from typing import NamedTuple
 from unicodedata import category
 
 from tiniscript.base.spelling import nearest
-from tiniscript.base.words import FUNCTIONS, MOVES, WAYS, WORDS, concept_of, said_of
+from tiniscript.base.words import FUNCTIONS, MOVES, WAYS, WORDS, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import meanings, rewrites, rows
@@ -122,7 +122,7 @@ def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[
     around = [";", *(text for _, text in tokens), BRACES[1], ";"]
     for k, (before, text, after) in enumerate(zip(around, around[1:], around[2:], strict=False)):
         is_apart = {before, after} <= {";", "|", *BRACES}
-        is_end = is_apart and bool(said_of(text, "end")) and not names.is_name(text)
+        is_end = is_apart and bool(lexicon_meaning(text, "end")) and not names.is_name(text)
         if text not in BRACES and not is_end:
             continue
         part = outline(tokens[start:k], names.read_as)
@@ -144,7 +144,7 @@ def _joined_names(tokens: Sequence[tuple[str, str]]) -> int:
         is_def = (is_def or tokens[k - 1][1] == "DEF") and text != ";"
         inside = is_def and (inside or text == "(") and text != ")"
         around = {tokens[k - 1][0], tokens[k + 1][0]}
-        if inside and kind == WORD and around == {WORD} and said_of(text, "then"):
+        if inside and kind == WORD and around == {WORD} and lexicon_meaning(text, "then"):
             return k
     return 0
 
@@ -280,7 +280,7 @@ class _Search:
             if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
                 continue
             is_function = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
-            is_misspelt = is_function and not concept_of(token.text)
+            is_misspelt = is_function and not lexicon_concept(token.text)
             suggestion = nearest(token.text, FUNCTIONS) if is_misspelt else None
             guess = (Meaning(suggestion, KNOWN),) if suggestion else ()
             meanings = guess or self.names.meanings(token.text)
@@ -339,7 +339,7 @@ def _code_of_call(words: Sequence[Lexeme]) -> Code:
     if "=" in signs:
         return codes.NAMED_ARGUMENT
     inside = words[signs.index("(") :]
-    if any(said_of(it.text, "unit") and it.text not in (*WAYS, "°", "º") for it in inside):
+    if any(lexicon_meaning(it.text, "unit") and it.text not in (*WAYS, "°", "º") for it in inside):
         return codes.UNIT
     return codes.OTHER_CALL
 

@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.spelling import Speller, is_slip, nearest
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, Said, lexicon
-from tiniscript.base.words import concept_of as concept_of
-from tiniscript.base.words import said_of as said_of
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, LexiconEntry, lexicon
+from tiniscript.base.words import lexicon_concept as lexicon_concept
+from tiniscript.base.words import lexicon_meaning as lexicon_meaning
 from tiniscript.syntax.blocks import ENDS
 from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
@@ -39,11 +39,11 @@ _SIGNS = SIGNS | frozenset("(),;|")
 _LONGEST = 4  # words of a name
 # Classes by what the lexicon says of a word that is none of the language.
 _CLASSES = {
-    Said("unit", "cm", "1000"): "@in_cm", Said("unit", "cm", "100000"): "@in_m",
-    Said("unit", "s", "1000"): "@in_secs", Said("unit", "°", "1000"): "@in_deg",
-    Said("unit", "steps", "1000"): "@in_steps", Said("value", "%"): "@of_power",
-    Said("value", "s"): "@of_time", Said("value", "Hz"): "@of_pitch",
-    Said("number", "1"): "@one", Said("number", "100"): "@hundred",
+    LexiconEntry("unit", "cm", "1000"): "@in_cm", LexiconEntry("unit", "cm", "100000"): "@in_m",
+    LexiconEntry("unit", "s", "1000"): "@in_secs", LexiconEntry("unit", "°", "1000"): "@in_deg",
+    LexiconEntry("unit", "steps", "1000"): "@in_steps", LexiconEntry("value", "%"): "@of_power",
+    LexiconEntry("value", "s"): "@of_time", LexiconEntry("value", "Hz"): "@of_pitch",
+    LexiconEntry("number", "1"): "@one", LexiconEntry("number", "100"): "@hundred",
 }  # fmt: skip
 NEAR_CM = "10"  # an example of what is near
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
@@ -95,7 +95,7 @@ def _lexemes(line: str) -> tuple[Lexeme, ...]:
                 text = other if lexicon().get(other) or text in _YEAR else text
         elif text in _SIGNS or text in DASHES:
             kind = text = "-" if text in DASHES else text
-        elif concept_of(text[0]):
+        elif lexicon_concept(text[0]):
             kind, text = WORD, text[0]  # an arrow says a command
         found.append(Lexeme(kind, text, match[0], line[end : match.start()]))
         end = match.end()
@@ -141,7 +141,7 @@ def plain(text: str) -> str:
 @cache
 def words_of(*kinds: str) -> str:
     """Return a pattern of the words that the lexicon says one of these of."""
-    result = (word for word in lexicon() if said_of(word, *kinds))
+    result = (word for word in lexicon() if lexicon_meaning(word, *kinds))
     return f"(?:{'|'.join(map(re.escape, sorted(result, key=len, reverse=True)))})"
 
 
@@ -158,7 +158,7 @@ def meanings(word: str) -> tuple[Meaning, ...]:
     """Return which words of the language a word may mean, the likeliest first."""
     if word == "SI":
         return (Meaning("IF", KNOWN),)
-    if found := concept_of(word):
+    if found := lexicon_concept(word):
         return (Meaning(found, KNOWN),)
     if word in WORDS or word in lexicon():
         return ()
@@ -168,15 +168,15 @@ def meanings(word: str) -> tuple[Meaning, ...]:
     parts = word.split("_")
     if (
         len(parts) > 1
-        and (bare := [part for part in parts if not said_of(part, "sensing")]) != parts
+        and (bare := [part for part in parts if not lexicon_meaning(part, "sensing")]) != parts
     ):
         return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
     if found := _sensor_with_side(parts):
         return (Meaning(found, KNOWN),)
     alike, near = _speller().find_sound_alike(word), _speller().find_near_miss(word)
     guesses = (
-        (concept_of(alike or ""), KNOWN),
-        (concept_of(near or ""), MISSPELT),
+        (lexicon_concept(alike or ""), KNOWN),
+        (lexicon_concept(near or ""), MISSPELT),
         (_in_two_words(word), KNOWN),
         (nearest(word, WORDS), NEAR),
     )
@@ -190,7 +190,7 @@ def _sensor_with_side(parts: Sequence[str]) -> str:
     for stem, side in (*pairs, *(pair[::-1] for pair in pairs)):
         named = next((it.value for it in lexicon().get(stem, ()) if it.kind == "stem"), "")
         ways = ("X", "Y") if named == "PAD" else ("L", "R")
-        way = side if side in ways else concept_of(side)
+        way = side if side in ways else lexicon_concept(side)
         if named and way in ways:
             return f"{named}_{way}"
     return ""
@@ -206,16 +206,16 @@ def _in_two_words(word: str) -> str | None:
     for k in range(2, min(len(word), 24) - 1):
         halves = word[:k].rstrip("_"), word[k:].lstrip("_")
         long = [half for half in halves if len(half) > 2]  # `there` is no THE RE
-        texts = {half if half == "STOP" else concept_of(half) or "" for half in long}
-        turns = [half for half in halves if said_of(half, "turn")]
+        texts = {half if half == "STOP" else lexicon_concept(half) or "" for half in long}
+        turns = [half for half in halves if lexicon_meaning(half, "turn")]
         with_frame = halves if len(halves[1]) > 3 else halves[:1]  # `irAdelante`, and no GOAL
-        beside = [*turns, *(half for half in with_frame if said_of(half, "filler"))]
+        beside = [*turns, *(half for half in with_frame if lexicon_meaning(half, "filler"))]
         meant = texts - {"", "M", "F"} or texts - {"", "M"}
-        is_framed = bool(texts & {"F", "M"} or beside) or len({*map(concept_of, halves)}) == 1
-        is_all = all(half in beside or half == "STOP" or concept_of(half) for half in halves)
+        is_framed = bool(texts & {"F", "M"} or beside) or len({*map(lexicon_concept, halves)}) == 1
+        is_all = all(half in beside or half == "STOP" or lexicon_concept(half) for half in halves)
         if len(meant) == 1 and is_framed and is_all:
             only = next(iter(meant))
-            if only == "STOP" and any(said_of(half, "engine") for half in halves):
+            if only == "STOP" and any(lexicon_meaning(half, "engine") for half in halves):
                 return "S"
             if only in (("L", "R") if turns else ("F", "B", "L", "R", "S", "STOP", "BEEP")):
                 return only
@@ -256,11 +256,11 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
             of_line.in_brackets.add(token.text)
         elif after.text in ("=", "++", "--", "+=", "-=", ":=", "<-") and token.text not in WORDS:
             of_line.variables.add(token.text)
-        is_def = "DEF" in (token.text, concept_of(token.text))
+        is_def = "DEF" in (token.text, lexicon_concept(token.text))
         is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not
         is_def = is_def or (token.text == "TO" and at == 2 and bool(_logo_names(line[at:])))
         if is_def and after.kind is WORD and after.text not in WORDS:
-            if not said_of(after.text, "main") and concept_of(after.text) != "START":
+            if not lexicon_meaning(after.text, "main") and lexicon_concept(after.text) != "START":
                 of_line.defs.add(after.text)
                 if bare := _bare_values(line[at:]):
                     of_line.pairs.add((after.text, *bare))
@@ -268,7 +268,7 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
                 given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
                 if all(item.isidentifier() and item not in WORDS for item in given):
                     of_line.parameters[after.text] = given
-    if len(head) > 2 and "DEF" in (head[0].text, concept_of(head[0].text)):
+    if len(head) > 2 and "DEF" in (head[0].text, lexicon_concept(head[0].text)):
         row, names = _name_in_words(head[1:], ";"), of_line.defs
     else:
         row, names = _name_in_words(head, "="), of_line.variables
@@ -305,7 +305,7 @@ def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
         name.text
         for head, before, name, after in rows
         if (before.text, after.text) == ("(", ")") and name.kind is head.kind is WORD
-        if name.text not in lexicon() and (concept_of(head.text) or head.text) in ASKING
+        if name.text not in lexicon() and (lexicon_concept(head.text) or head.text) in ASKING
     }
     return alone | {
         name.text
@@ -324,9 +324,9 @@ def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
         text = token.text
         if token.kind not in (WORD, NUMBER, "-") or text in STARTS or text in DONE:
             break
-        if not row and (said_of(text, "count") or (token.kind is NUMBER and not is_glued)):
+        if not row and (lexicon_meaning(text, "count") or (token.kind is NUMBER and not is_glued)):
             break
-        is_other = text in WORDS or said_of(text, "declare") or said_of(text, "set")
+        is_other = text in WORDS or lexicon_meaning(text, "declare") or lexicon_meaning(text, "set")
         if token.kind is WORD and is_other and len(row) != 1:
             break
         row.append(text)
@@ -401,7 +401,7 @@ class Names:
         if word in self.begun:
             return (Meaning(self.begun[word], KNOWN),)
         end, _, block = word.partition("_")
-        if said_of(end, "end") and block in (*WORDS, *self.defs):
+        if lexicon_meaning(end, "end") and block in (*WORDS, *self.defs):
             return (Meaning(SOME_END, KNOWN),)
         if said := self.sided(word) or self._lamp(word):
             return (Meaning(said, KNOWN),)
@@ -413,15 +413,15 @@ class Names:
     def sided(self, word: str) -> str:
         """Return the sensor of a side that `SENSOR_L` says, "" for none."""
         parts = word.split("_")
-        bare = [part for part in parts if not said_of(part, "sensing")]
+        bare = [part for part in parts if not lexicon_meaning(part, "sensing")]
         if len(bare) != 1 or len(parts) == 1:
             return ""
-        side = "".join(said_of(bare[0], "left", "right"))[:1].upper()
-        return self.on_side(side or concept_of(bare[0]) or bare[0])
+        side = "".join(lexicon_meaning(bare[0], "left", "right"))[:1].upper()
+        return self.on_side(side or lexicon_concept(bare[0]) or bare[0])
 
     def _lamp(self, word: str) -> str:
         """Return the lamp that a word for light says of a robot which sees none."""
-        is_light = said_of(word, "stem") == ("LIGHT",) and "LED" in self.actuators
+        is_light = lexicon_meaning(word, "stem") == ("LIGHT",) and "LED" in self.actuators
         return "LED" * (is_light and not any(it.startswith("LIGHT_") for it in self.sensors))
 
     def on_side(self, side: str) -> str:
@@ -447,7 +447,9 @@ class Names:
     def label(self, token: Lexeme) -> str:
         """Return all classes of a token, as one text that a pattern finds them in."""
         is_glued = token.space == "" or token.text in WAYS
-        is_unit = is_glued and token.text in WORDS and said_of(token.text, "unit")  # `5S`, `5 CM`
+        is_unit = (
+            is_glued and token.text in WORDS and lexicon_meaning(token.text, "unit")
+        )  # `5S`, `5 CM`
         key = (token.kind, token.text, bool(is_unit))
         if key not in self._labels:
             classes = [*self._classes(token), *(["@unit"] if is_unit else [])]
@@ -480,7 +482,7 @@ class Names:
         classes += [ALIASES[word]] if word in ALIASES else []
         is_name = self.is_name(text)
         classes += meant
-        classes += [item for item in ANY if not said_of(text, "do") or item not in _NO_DO]
+        classes += [item for item in ANY if not lexicon_meaning(text, "do") or item not in _NO_DO]
         if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
             classes.append("@val")
             classes += ["@measured"] if {word, text} & self.asked.keys() else []
@@ -512,16 +514,16 @@ def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], 
     counted: list[str] = []
     left = 0
     for k, (one, other) in enumerate(pairwise([made(";"), *line])):
-        pair = [one.text, other.text] if said_of(one.text, "end") else [other.text]
-        block = ENDED.get(concept_of("_".join(pair)) or "", "")
+        pair = [one.text, other.text] if lexicon_meaning(one.text, "end") else [other.text]
+        block = ENDED.get(lexicon_concept("_".join(pair)) or "", "")
         word = _END.sub("", "_".join(pair), count=1)
-        if block and concept_of(word) in DONE:
+        if block and lexicon_concept(word) in DONE:
             found[word] = block
         is_called = k + 1 < len(line) and line[k + 1].text == "("
-        if is_called and said_of(other.text, "count") and concept_of(other.text):
+        if is_called and lexicon_meaning(other.text, "count") and lexicon_concept(other.text):
             counted.append(other.text)
-        left += (concept_of(other.text) or other.text) in BLOCK_ENDS
-        left -= bool(said_of(other.text, "end") or other.text in ENDED)
+        left += (lexicon_concept(other.text) or other.text) in BLOCK_ENDS
+        left -= bool(lexicon_meaning(other.text, "end") or other.text in ENDED)
     return found, counted, left
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, apply_edits
 from tiniscript.base.spelling import is_slip, nearest
-from tiniscript.base.words import MOVES, UNIT_OF, WAYS, said_of
+from tiniscript.base.words import MOVES, UNIT_OF, WAYS, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import rows, slips
@@ -178,7 +178,7 @@ def _moved_lines_diagnostic(
 
 def _unit_word(unit: str) -> str:
     """Return the word for a unit behind the first value of a move, "" where none is."""
-    text = said_of(plain(unit), "unit")
+    text = lexicon_meaning(plain(unit), "unit")
     return next((way for way, its in WAYS.items() if text and its.unit == text[0]), "")
 
 

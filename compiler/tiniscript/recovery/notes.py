@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of
+from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon_concept
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import plain
@@ -67,5 +67,5 @@ def _is_note(body: str, sign: re.Match[str]) -> bool:
 
 def _is_order(word: str) -> bool:
     """Whether a word before a bracket is one of the language, a block's only as it is written."""
-    meant = WORDS.get(plain(word)) or WORDS.get(concept_of(plain(word)) or "")
+    meant = WORDS.get(plain(word)) or WORDS.get(lexicon_concept(plain(word)) or "")
     return word in BLOCK_ENDS or (meant is not None and meant.is_call)

@@ -18,8 +18,8 @@ from tiniscript.recovery.meanings import (
     Lexeme,
     Names,
     closed,
+    lexicon_meaning,
     made,
-    said_of,
 )
 from tiniscript.recovery.slots import Filled, filled
 from tiniscript.recovery.worded import worded
@@ -62,19 +62,23 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     words = [
         one
         for one, after in pairwise([*_join_words(words, names), made(";")])
-        if not said_of(one.text, "the")
-        or said_of(after.text, "the")
-        or not said_of(after.text, "idle")
+        if not lexicon_meaning(one.text, "the")
+        or lexicon_meaning(after.text, "the")
+        or not lexicon_meaning(after.text, "idle")
     ]  # `o robô` is no OR
     meant = ["", *(names.meant(word.text) for word in words[1:])]
     asks = next((k for k, each in enumerate(meant) if each in ("IF", "WHEN")), 0)
     if asks:
         return _orders_with_condition(orders(words[:asks], names), words[asks:], names)
     joins = "" if any(word.text == "(" for word in words) else ",."  # `gira(2, 80)` is one
-    groups = groupby(words, key=lambda it: it.text in (*joins,) or bool(said_of(it.text, "then")))
+    groups = groupby(
+        words, key=lambda it: it.text in (*joins,) or bool(lexicon_meaning(it.text, "then"))
+    )
     for is_between, group in groups:
         part = list(group)
-        if is_between or (not result and all(said_of(lexeme.text, "filler") for lexeme in part)):
+        if is_between or (
+            not result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in part)
+        ):
             continue  # `Hola robot, …`
         own = _orders(part, names)
         if not own or any(order.is_repeated for order in own[bool(not result) :]):
@@ -128,7 +132,7 @@ def _orders(words: list[Lexeme], names: Names) -> list[Order]:
         return [whole]
     for k in range(2, len(words) - 1):
         first = _order(words[:k], names) if _begins_order(words[k], names) else None
-        if first and first.word == "BEEP" and said_of(words[k].text, "note"):
+        if first and first.word == "BEEP" and lexicon_meaning(words[k].text, "note"):
             return []
         rest = _orders(words[k:], names) if first and len(first.samples) < 2 else []
         if first and rest:
@@ -138,7 +142,7 @@ def _orders(words: list[Lexeme], names: Names) -> list[Order]:
 
 def _begins_order(token: Lexeme, names: Names) -> bool:
     """Whether a word begins an order."""
-    is_turn = bool(said_of(token.text, "turn"))
+    is_turn = bool(lexicon_meaning(token.text, "turn"))
     return is_turn or names.meant(token.text) in (*CALLED, "S", "STOP")
 
 
@@ -148,15 +152,15 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
     first = names.meant(words[0].text)
     rest = [lexeme.text for lexeme in words[1:]]
     if first in ("S", "STOP") and rest:
-        if all(said_of(item, "the", "engine", "filler") for item in rest):
+        if all(lexicon_meaning(item, "the", "engine", "filler") for item in rest):
             return Order("S", "S", ())
         if any(lexeme.kind is NUMBER for lexeme in words):
             pause = filled([made("W"), *words[1:]], names, has_until=False)
             return Order("S", f"{first};{laid_out(pause.tokens)}", ()) if pause else None
     call = filled(words, names, has_until=False, is_order=True)
-    is_free = call is None and any(said_of(lexeme.text, "turn") for lexeme in words)
+    is_free = call is None and any(lexicon_meaning(lexeme.text, "turn") for lexeme in words)
     if is_free:
-        unturned = [lexeme for lexeme in words if not said_of(lexeme.text, "turn")]
+        unturned = [lexeme for lexeme in words if not lexicon_meaning(lexeme.text, "turn")]
         call = filled([made("R"), *unturned], names, has_until=False, is_order=True)
     if call is None:
         return None
@@ -204,9 +208,9 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     word = names.meant(tokens[0].text)
     if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > LONGEST:
         return ""
-    is_when = bool(said_of(tokens[0].text, "whenever"))
+    is_when = bool(lexicon_meaning(tokens[0].text, "whenever"))
     tokens = [tokens[0], *_join_words(tokens[1:], names)]  # `si no hay` is no ELSE
-    while tokens[-1].text in ENDED or said_of(tokens[-1].text, "end"):
+    while tokens[-1].text in ENDED or lexicon_meaning(tokens[-1].text, "end"):
         tokens = tokens[:-1]
     texts = [token.text for token in tokens]
     arm = next((k for k, each in enumerate(texts) if names.meant(each) == "ELSE"), len(texts))
@@ -224,10 +228,12 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
         is_side = names.meant(texts[k]) in _SIDES and texts[k + 1 : k + 2] != ["("]
         if word != "LOOP" and tokens[k].source and is_side:
             return ""  # where the wall is, or where to go
-        place = next((j for j in range(k, arm) if not said_of(texts[j], "filler")), k)
-        if said_of(texts[place], "front") and place + 1 < arm:
+        place = next((j for j in range(k, arm) if not lexicon_meaning(texts[j], "filler")), k)
+        if lexicon_meaning(texts[place], "front") and place + 1 < arm:
             continue  # `uma parede na frente, para`
-        is_mixed = any(said_of(text, "then") and not said_of(text, "and") for text in texts[k:])
+        is_mixed = any(
+            lexicon_meaning(text, "then") and not lexicon_meaning(text, "and") for text in texts[k:]
+        )
         if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):
             return ""
         parts = [header, written(body), *(["ELSE", written(other)] if other else [])]
@@ -239,7 +245,7 @@ def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
     """Return the header that words say: how often, or what is asked."""
     if word == "LOOP":
         number = next((lexeme.text for lexeme in words if lexeme.kind is NUMBER), "")
-        return f"LOOP({number})" if number and said_of(words[-1].text, "times") else ""
+        return f"LOOP({number})" if number and lexicon_meaning(words[-1].text, "times") else ""
     asked = _parse_condition(words, names)[0]
     return f"{word}({asked})" if asked else ""
 

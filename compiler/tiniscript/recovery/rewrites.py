@@ -12,7 +12,7 @@ from functools import cache, partial
 from itertools import chain, product
 from typing import NamedTuple
 
-from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of, said_of
+from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.recovery import rows
@@ -292,7 +292,7 @@ class Encoded:
 
     def translated(self, token: Lexeme) -> Lexeme:
         meant = self.names.meant(token.text, NEAR) if token.kind is WORD else ""
-        meant = meant or "".join(said_of(token.text, "number"))
+        meant = meant or "".join(lexicon_meaning(token.text, "number"))
         return made(meant) if meant not in ("", token.text) else token
 
 
@@ -322,7 +322,7 @@ def negated(condition: Sequence[Lexeme]) -> list[Lexeme]:
 
 def _end_of(place: _Place) -> _Made:
     word = place.line.translated(place.captured[0][0]).text
-    word = "LOOP" if said_of(word, "count") else _HEADER_OF.get(word, word)
+    word = "LOOP" if lexicon_meaning(word, "count") else _HEADER_OF.get(word, word)
     end = BLOCK_ENDS.get(word, word if word in ENDED else "")
     return [made(end)] if end else None
 
@@ -391,7 +391,7 @@ def _seconds(place: _Place) -> _Made:
 def _converted_number(place: _Place) -> _Made:
     """A number with its unit, in the unit that values have: `500 ms` is 0.5, `1 m` is 100."""
     (number,), (unit,) = place.captured
-    text = said_of(unit.text, "unit") or ("", "1000")
+    text = lexicon_meaning(unit.text, "unit") or ("", "1000")
     return [
         number if text[1] == "1000" else made(number_text(float(number.text) * int(text[1]) / 1000))
     ]
@@ -439,11 +439,13 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
             continue
         text = "_".join(row)
         after = tokens[k + count].text if k + count < len(tokens) else ""
-        if concept_of(text) == "ELSE" and (said_of(after, "is") or said_of(after, "there")):
+        if lexicon_concept(text) == "ELSE" and (
+            lexicon_meaning(after, "is") or lexicon_meaning(after, "there")
+        ):
             continue  # `si no hay pared`
-        if concept_of(text) == "ELSE" and after == "(" and tokens[k + count].space == "":
+        if lexicon_concept(text) == "ELSE" and after == "(" and tokens[k + count].space == "":
             continue  # `SE NÃO(DISTANCE < 10)`
-        if concept_of(text) or (text in WORDS and row[0] == "END"):
+        if lexicon_concept(text) or (text in WORDS and row[0] == "END"):
             meant = names.meanings(text)  # `END IF` ends any block
             word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)
             return [*tokens[:k], word, *tokens[k + count :]], False
@@ -452,7 +454,7 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
 
 def _sensor_of_side(tokens: Sequence[Lexeme], k: int, names: Names) -> tuple[str, int] | None:
     """Return the sensor of a side from a token on, and of how many: `LIGHT L`, `luz(izquierda)`."""
-    if not said_of(tokens[k].text, "stem", "sensing") or names.is_name(tokens[k].text):
+    if not lexicon_meaning(tokens[k].text, "stem", "sensing") or names.is_name(tokens[k].text):
         return None
     signs = texts(tokens[k + 1 : k + 4])
     at = 1 if signs[:1] in (("(",), ("[",), ("-",), (".",)) else 0

@@ -25,9 +25,9 @@ from tiniscript.recovery.meanings import (
     Lexeme,
     Names,
     lexemes,
+    lexicon_meaning,
     made,
     plain,
-    said_of,
     texts,
     words_of,
 )
@@ -325,7 +325,9 @@ class Recovery:
     def may_be_of_block(self, line: _Text) -> bool:
         """Whether a line that nobody can read may begin a block, or end one."""
         return any(
-            word in BRACES or said_of(word, *_BEGIN) or self.names.meant(word, NEAR) in _OF_BLOCKS
+            word in BRACES
+            or lexicon_meaning(word, *_BEGIN)
+            or self.names.meant(word, NEAR) in _OF_BLOCKS
             for word in texts(lexemes(line.body))
         )
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, apply_edits
-from tiniscript.base.words import WORDS, said_of
+from tiniscript.base.words import WORDS, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better
@@ -96,7 +96,7 @@ def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
         words = lexemes(title)
         if not words:
             continue
-        is_set = said_of(words[0].text, "set") or title.lower().startswith("#define")
+        is_set = lexicon_meaning(words[0].text, "set") or title.lower().startswith("#define")
         if is_set or lines.is_right(words, Names([], kit)) or "(" in title or "{" in title:
             return []
         span, fix = Span(row.start(), row.start() + len(title)), f"// {title}"

@@ -13,7 +13,7 @@ from tiniscript.base.kit import Device, Kit
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.recovery.meanings import NEAR, Lexeme, Names, lexemes, number_text, said_of
+from tiniscript.recovery.meanings import NEAR, Lexeme, Names, lexemes, lexicon_meaning, number_text
 from tiniscript.recovery.trailing_tokens import width
 from tiniscript.recovery.worded import sensors_of
 from tiniscript.recovery.writing import without_note
@@ -45,7 +45,7 @@ def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic
     for k, token in enumerate(tokens):
         size = _percent(tokens, k + 1, names) if token.kind is NUMBER else 0
         at = _compared(tokens, k) if size and float(token.text) <= _WHOLE else -1
-        side = "".join(said_of(tokens[at].text, "left", "right")) if at > 0 else ""
+        side = "".join(lexicon_meaning(tokens[at].text, "left", "right")) if at > 0 else ""
         at -= bool(side)  # `luz izquierda`
         asked = "_".join((tokens[at].text, *([side[0].upper()] if side else [])))
         sensor = _sensor(asked, names) if at >= 0 else None
@@ -65,10 +65,10 @@ def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic
 def _percent(tokens: Sequence[Lexeme], k: int, names: Names) -> int:
     """Return how many tokens say percent, 0 where `%` stands between two values, as in `7 % 2`."""
     text, after = (tokens[n].text if n < len(tokens) else "" for n in (k, k + 1))
-    if said_of(text, "by") and said_of(after, "number") == ("100",):
+    if lexicon_meaning(text, "by") and lexicon_meaning(after, "number") == ("100",):
         return 2
     if text != "%":
-        return int(said_of(text, "unit")[:1] == ("%",))
+        return int(lexicon_meaning(text, "unit")[:1] == ("%",))
     is_value = after[:1].isdigit() or after in ("(", "-") or names.is_name(after)
     return int(not is_value)
 
@@ -76,7 +76,9 @@ def _percent(tokens: Sequence[Lexeme], k: int, names: Names) -> int:
 def _compared(tokens: Sequence[Lexeme], k: int) -> int:
     """Return the place of the word that is compared with the number at a place, -1 for none."""
     at = k - 1
-    while at >= 0 and (tokens[at].text in COMPARISONS or said_of(tokens[at].text, *_COMPARING)):
+    while at >= 0 and (
+        tokens[at].text in COMPARISONS or lexicon_meaning(tokens[at].text, *_COMPARING)
+    ):
         at -= 1
     return at if at < k - 1 and tokens[at].kind is WORD else -1
 
@@ -84,5 +86,5 @@ def _compared(tokens: Sequence[Lexeme], k: int) -> int:
 def _sensor(word: str, names: Names) -> Device | None:
     """Return the sensor that a word names, or one of those that it may mean."""
     found = [word, names.meant(word, NEAR)]
-    found += sensors_of(word, names) if said_of(word, "stem", "ahead") else []
+    found += sensors_of(word, names) if lexicon_meaning(word, "stem", "ahead") else []
     return next((names.asked[name] for name in found if name in names.asked), None)

@@ -23,8 +23,8 @@ from tiniscript.recovery.meanings import (
     SOME_END,
     Lexeme,
     lexemes,
+    lexicon_meaning,
     meant_by,
-    said_of,
     setup_of,
     texts,
 )
@@ -142,7 +142,11 @@ def code_of(change: Change) -> tuple[Code, Step | None]:
     if dropped and not more and fewer.keys() <= dropped | {";"}:
         return codes.EXTRA_WORD, None
     code, step = _code_of_steps(change) if steps else (_code_of_words(before, after), None)
-    if code is codes.EXTRA_WORD and more & {*ENDED} and any(said_of(it, "end") for it in fewer):
+    if (
+        code is codes.EXTRA_WORD
+        and more & {*ENDED}
+        and any(lexicon_meaning(it, "end") for it in fewer)
+    ):
         return codes.END_ALONE, None  # it is no word too many: it ends a block
     if code is codes.MISSING_OPEN and step and _translated(step):
         return codes.OTHER_LANGUAGE, step
@@ -153,7 +157,7 @@ def _translated(step: Step) -> str:
     """Return the word of a block that a rewrite has put for one of another language."""
     words = {*texts(step.before)}
     new = next((it for it in texts(step.after) if it in BLOCK_ENDS), "")
-    is_said = new in map(meant_by, words) or any(said_of(word, "count") for word in words)
+    is_said = new in map(meant_by, words) or any(lexicon_meaning(word, "count") for word in words)
     return new if new not in words and is_said else ""
 
 
@@ -192,7 +196,7 @@ def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
     _, found, right = first_difference(before, after)
     if len(found) == len(right) == 1 and {*texts(found), *texts(right)} <= {*ENDED}:
         return codes.WRONG_END
-    ends = [lexeme.text for lexeme in before if said_of(lexeme.text, "end")]
+    ends = [lexeme.text for lexeme in before if lexicon_meaning(lexeme.text, "end")]
     if ends and ends[-1] not in texts(after):
         is_end = bool({*texts(after)} & {*BLOCK_ENDS.values()})
         return codes.END_ALONE if is_end else codes.EXTRA_WORD
@@ -218,7 +222,7 @@ def _foreign_words(slip: Slip) -> Slip:
     result = result[: cut - is_set] or result
     if any(lexeme.kind is NUMBER for lexeme in result):  # PARA of `PARA I DE 1 A 4`
         result = [*takewhile(_is_counting, result)] or result
-    if right and result and all(said_of(lexeme.text, "filler") for lexeme in result):
+    if right and result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in result):
         named = [lexeme for lexeme in old if meant_by(lexeme.text) == right[0].text]
         result = named[:1] or result  # `oi robô, anda`
     return slip._replace(found=result, right=right)
@@ -226,7 +230,7 @@ def _foreign_words(slip: Slip) -> Slip:
 
 def _is_counting(token: Lexeme) -> bool:
     """Whether a word says that something is done several times: FOR, and EACH after it."""
-    return meant_by(token.text) == "LOOP" or bool(said_of(token.text, "count", "each"))
+    return meant_by(token.text) == "LOOP" or bool(lexicon_meaning(token.text, "count", "each"))
 
 
 def _split_number(slip: Slip) -> Slip:
@@ -240,7 +244,7 @@ def _measured(slip: Slip) -> Slip:
     pairs = pairwise(slip.old[max(0, slip.start - 1) :])
     units = (
         [number, unit] for number, unit in pairs
-        if number.kind is NUMBER and (said_of(unit.text, "unit") or unit.text == "%")
+        if number.kind is NUMBER and (lexicon_meaning(unit.text, "unit") or unit.text == "%")
     )  # fmt: skip
     return slip._replace(found=next(units, slip.found))
 

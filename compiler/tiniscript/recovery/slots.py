@@ -10,7 +10,15 @@ from itertools import pairwise
 from math import nan
 from typing import NamedTuple
 
-from tiniscript.base.words import MOVES, OTHER_WAY, UNIT_OF, WAYS, WORDS, Argument, said_of
+from tiniscript.base.words import (
+    MOVES,
+    OPPOSITE_MOVES,
+    UNIT_OF,
+    WAYS,
+    WORDS,
+    Argument,
+    lexicon_meaning,
+)
 from tiniscript.base.words import names_argument as is_called
 from tiniscript.recovery import rows
 from tiniscript.recovery.meanings import (
@@ -130,8 +138,8 @@ class _Reader:
             return float(token.text), k + 1
         if token.kind is not WORD or token.text in self.names.known.values:
             return None
-        text = said_of(token.text, "number")
-        is_told = after in (",", ")") or said_of(after, "unit") or self._is_half(k + 1)
+        text = lexicon_meaning(token.text, "number")
+        is_told = after in (",", ")") or lexicon_meaning(after, "unit") or self._is_half(k + 1)
         is_one = text == ("1",) and not is_told
         if text and self.command and not is_one:
             number, k = self._sum(float(text[0]), k + 1)
@@ -139,8 +147,8 @@ class _Reader:
             return number, k
         is_first = self.text(k - 1) == "(" and after == "," and self.command != "M"
         unit = k + 1 + (after == "A")  # `half a second`
-        if said_of(token.text, "power") == ("50",) and (
-            said_of(self.text(unit), "unit") or is_first
+        if lexicon_meaning(token.text, "power") == ("50",) and (
+            lexicon_meaning(self.text(unit), "unit") or is_first
         ):
             self.is_sure = False
             return 0.5, unit
@@ -149,8 +157,8 @@ class _Reader:
     def _sum(self, number: float, k: int) -> tuple[float, int]:
         """Return a number with the smaller ones after it: `cuatrocientos cuarenta y cinco`."""
         while number % 10 == 0:
-            place = k + bool(said_of(self.text(k), "and"))
-            text = said_of(self.text(place), "number")
+            place = k + bool(lexicon_meaning(self.text(k), "and"))
+            text = lexicon_meaning(self.text(place), "number")
             if not text or number % 10 ** len(text[0]):
                 break
             number, k = number + float(text[0]), place + 1
@@ -165,9 +173,13 @@ class _Reader:
         if self._is_half(k):
             number, k, self.is_sure = number + 0.5, k + 2, False
         unit, thousandths = self.mark, 1000.0
-        if said_of(self.text(k), "by") and said_of(self.text(k + 1), "number") == ("100",):
+        if lexicon_meaning(self.text(k), "by") and lexicon_meaning(self.text(k + 1), "number") == (
+            "100",
+        ):
             unit, k = "%", k + 2
-        elif its := said_of(self.text(of := k + bool(said_of(self.text(k), "of"))), "unit"):
+        elif its := lexicon_meaning(
+            self.text(of := k + bool(lexicon_meaning(self.text(k), "of"))), "unit"
+        ):
             k = of  # `un cuarto de vuelta`
             unit, thousandths = its[0], float(its[1])
             is_stop = self.words[k].source == "S" and bool(self.words[k].space)
@@ -177,7 +189,9 @@ class _Reader:
             self.is_sure, k = self.is_sure and not (is_stop or is_comma), k + 1
             if self._is_half(k):
                 number, k, self.is_sure = number + 0.5, k + 2, False
-        elif said_of(self.text(k), "of") and (marked := said_of(self.text(k + 1), "value")):
+        elif lexicon_meaning(self.text(k), "of") and (
+            marked := lexicon_meaning(self.text(k + 1), "value")
+        ):
             unit, k = marked[0], k + 2
         if unit == "times":
             if self.times is not None:
@@ -191,8 +205,8 @@ class _Reader:
         return 0 <= k < len(self.words) and self.words[k].kind is NUMBER
 
     def _is_half(self, k: int) -> bool:
-        is_and = bool(said_of(self.text(k), "and"))
-        return is_and and said_of(self.text(k + 1), "power") == ("50",)
+        is_and = bool(lexicon_meaning(self.text(k), "and"))
+        return is_and and lexicon_meaning(self.text(k + 1), "power") == ("50",)
 
     def _sign(self, k: int) -> int | None:
         sign, before = self.text(k), self.text(k - 1)
@@ -220,14 +234,14 @@ class _Reader:
 
     def _word(self, k: int) -> int | None:
         word, after = self.text(k), self.text(k + 1)
-        names, marked = self.names, said_of(word, "value")
+        names, marked = self.names, lexicon_meaning(word, "value")
         is_command = word in names.actuators or (word in DONE and word != "BREAK")
         text = [word] if is_command else [meaning.concept for meaning in names.meanings(word)]
         meant = next((item for item in text if is_command or item in CALLED or item == "S"), None)
         is_before_number = self._is_number(k + 1) or after in ("=", ":")
         if self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]
-        elif said_of(word, "turn"):
+        elif lexicon_meaning(word, "turn"):
             if self.command in ("F", "B") and self.values:
                 return None  # another order
             self.is_turn = True
@@ -243,7 +257,7 @@ class _Reader:
             self._add_value(word, marked[0] if marked else self.mark)
         elif (
             self.command == "BEEP"
-            and (note := said_of(word, "note") or said_of(word + "4", "note"))
+            and (note := lexicon_meaning(word, "note") or lexicon_meaning(word + "4", "note"))
             and not (len(word) == 1 and self._is_number(k + 1))
         ):  # `pita 1 segundo a 440`
             self.values.append(_Value(note[0], "Hz"))
@@ -251,13 +265,13 @@ class _Reader:
         elif names.meant(word) == "FOREVER" and self.command in MOVES and self._is_said():
             self._add_value("FOREVER", "s")
             self.is_sure = False
-        elif said_of(word, "power") and self.command:
-            self._add_value(said_of(word, "power")[0], "%")
+        elif lexicon_meaning(word, "power") and self.command:
+            self._add_value(lexicon_meaning(word, "power")[0], "%")
             self.is_sure = False
         elif meant:
             is_again = after in ("", ",") and meant == self.command and meant in MOVES
             return k + 1 if is_again or self._take_command(word, meant) else None
-        elif said_of(word, "filler"):
+        elif lexicon_meaning(word, "filler"):
             is_in_place = self._is_number(k - 1) and after in ",)"
             self.is_sure = self.is_sure and not is_in_place  # it may be a unit: `F(8 in, 60)`
             self.cost += 0.1
@@ -294,14 +308,14 @@ class _Reader:
             self.command = meant
         elif before == meant and not self.values and meant in MOVES:
             pass
-        elif not (meant == "F" and before in MOVES and said_of(word, "filler")):
+        elif not (meant == "F" and before in MOVES and lexicon_meaning(word, "filler")):
             return False
         self.cost += cost * 0.3
         return True
 
     def call(self, has_until: bool, is_order: bool) -> Filled | None:
         assert self.command is not None
-        self.command = OTHER_WAY[self.command] if self.is_back else self.command
+        self.command = OPPOSITE_MOVES[self.command] if self.is_back else self.command
         device = self.names.actuators.get(self.command)
         word = device.word if device else WORDS[self.command]
         if not word.arguments:
@@ -347,7 +361,7 @@ class _Reader:
     def _in_seconds(self, values: list[_Value] | None) -> list[_Value] | None:
         """Take a plain number after a command that counts milliseconds for these."""
         plain = [it for it in values or () if it.unit is None and not it.text.isidentifier()]
-        if plain and values and said_of(self.words[0].text, "milliseconds"):
+        if plain and values and lexicon_meaning(self.words[0].text, "milliseconds"):
             self.is_sure = False
             return [
                 _Value(number_text(it.number / 1000), "s") if it in plain else it for it in values

@@ -17,7 +17,7 @@ from typing import NamedTuple, Protocol
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span, overlap
 from tiniscript.base.spelling import nearest
-from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS
+from tiniscript.base.words import BLOCK_ENDS, OPPOSITE_MOVES, UNIT_OF, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code, Diagnostic
 from tiniscript.recovery import lines, rewrites, suggestion_rows
@@ -28,9 +28,9 @@ from tiniscript.recovery.meanings import (
     Lexeme,
     Names,
     lexemes,
+    lexicon_meaning,
     made,
     plain,
-    said_of,
 )
 from tiniscript.recovery.orders import Order, condition_in, made_up, orders, written
 from tiniscript.recovery.slots import filled
@@ -169,7 +169,7 @@ def _parts(body: str, start: int, around: Around) -> Iterator[_Words]:
                 yield _Words(around, at, tokens, 0, before)
                 break
             if any(token.text in ASKING for token in tokens[:size]):
-                is_ended = all(said_of(item.text, "do") for item in rest)  # by a THEN
+                is_ended = all(lexicon_meaning(item.text, "do") for item in rest)  # by a THEN
                 yield _Words(around, at, tokens if is_ended else tokens[:size], 0, before)
             if not whole(rest, names) or rest[0].text in ("IF", "WHILE"):
                 yield _Words(around, at, tokens, size, before)
@@ -325,7 +325,9 @@ class Gaps(dict[str, str]):
     def number(self, k: int) -> str:
         """Return the number at a place in the unit of an instruction: `0.5` for `500 ms`."""
         number = self.part.number(k) or ""
-        text = said_of(self.part.row[k + 1].text, "unit") if k + 1 < len(self.part.row) else ()
+        text = (
+            lexicon_meaning(self.part.row[k + 1].text, "unit") if k + 1 < len(self.part.row) else ()
+        )
         if text[:1] == ("s",) and text[1] != "1000":
             return f"{float(number) * int(text[1]) / 1000:g}"
         return number
@@ -368,7 +370,9 @@ def _sensor(gaps: Gaps, k: int) -> str:
 def _measured(gaps: Gaps) -> str:
     """What words ask with a number of their own: `la pared a 30 cm`."""
     words = gaps.tokens("l")
-    is_said = any(word.kind is WORD and not said_of(word.text, "unit", "in") for word in words)
+    is_said = any(
+        word.kind is WORD and not lexicon_meaning(word.text, "unit", "in") for word in words
+    )
     return (worded(words, gaps.part.names) or {}).get("asked", "") if is_said else ""
 
 
@@ -499,7 +503,7 @@ _GAPS: dict[str, Callable[[Gaps], str]] = {
     "words": lambda gaps: shortened(gaps.part.words),
     "end": lambda gaps: "" if _condition_tokens(gaps, "s") else BLOCK_ENDS[gaps.meant("g")],
     "shown": _shown_word, "note": _note,
-    "other": lambda gaps: re.sub(r"^\w+", OTHER_WAY[gaps.part.own], gaps.part.call),
+    "other": lambda gaps: re.sub(r"^\w+", OPPOSITE_MOVES[gaps.part.own], gaps.part.call),
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
     "longer": lambda gaps: _with_value(gaps, gaps.part.time, gaps["n"]), "paced": _with_power,
     "question": lambda gaps: laid_out(_condition_tokens(gaps)),

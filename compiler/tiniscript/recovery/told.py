@@ -17,7 +17,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, apply_edits, overlap
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
-from tiniscript.diagnostics.fixing import Check, without_wrong
+from tiniscript.diagnostics.fixing import Check, drop_wrong_offers
 from tiniscript.recovery import slips
 from tiniscript.recovery.bracketed import bracketed
 from tiniscript.recovery.calls import misplaced_values
@@ -86,7 +86,7 @@ def told_of(
     source = Source(text, source.name)
     message = _read(Wrong(source, diagnostics, check, kit), ROUNDS)
     message = [bracketed(item, text, kit, is_offered=True) for item in message]
-    message = without_wrong(message, text, check)  # what is offered is right
+    message = drop_wrong_offers(message, text, check)  # what is offered is right
     message = conserving(message, text, kit)  # what is made keeps what was written
     message = [bracketed(item, text, kit, is_offered=False) for item in message]
     message = with_sample(message, text, kit)  # of a distance that nobody wrote it says: an example

@@ -13,7 +13,14 @@ from typing import NamedTuple
 
 from tiniscript.base.source import Span
 from tiniscript.base.spelling import nearest
-from tiniscript.base.words import MOVES, OTHER_WAY, WAYS, WORDS, concept_of, said_of
+from tiniscript.base.words import (
+    MOVES,
+    OPPOSITE_MOVES,
+    WAYS,
+    WORDS,
+    lexicon_concept,
+    lexicon_meaning,
+)
 from tiniscript.recovery import lines
 from tiniscript.recovery.meanings import ASKING, ENDED, NEAR, Lexeme, Names, closed, lexemes
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
@@ -109,7 +116,11 @@ class Trailing:
         self.is_asked = any(token.text == "UNTIL" for token in self.tokens)
         self.time = _TIME.match(self.call)
         self.power = _POWER.search(self.call)
-        kinds = [said_of(it.text, kind) for it in self.row for kind in ("value", "unit", "number")]
+        kinds = [
+            lexicon_meaning(it.text, kind)
+            for it in self.row
+            for kind in ("value", "unit", "number")
+        ]
         self.has_percent = any("%" in kind or kind == ("100",) for kind in kinds)  # `por ciento`
         self.numbers = {token.text for token in self.tokens if token.kind is NUMBER}
 
@@ -179,20 +190,26 @@ class Trailing:
         text, before, after = token.text, self._text(k - 1), self._text(k + 1)
         is_number = self.number(k) is not None
         is_counted = (
-            said_of(after, "times") or after == "X" or said_of(text, "often") or text[0] == "X"
+            lexicon_meaning(after, "times")
+            or after == "X"
+            or lexicon_meaning(text, "often")
+            or text[0] == "X"
         )
-        is_many = said_of(before, "multiplied", "times") or before in ("X", "*")
+        is_many = lexicon_meaning(before, "multiplied", "times") or before in ("X", "*")
         is_many = is_many or self.means(before) == "LOOP"
-        concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None
+        concept = (
+            lexicon_concept(text) if token.kind is WORD and not self.names.is_name(text) else None
+        )
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
         is_own = token.source == "l" or text in set_in(self.text)
         known = None if is_own else WORDS.get(text)
         labels = {
             "@number": is_number,
-            "@often": is_number and (is_counted or (is_many and not said_of(after, "unit"))),
+            "@often": is_number
+            and (is_counted or (is_many and not lexicon_meaning(after, "unit"))),
             "@percent": is_number and self.has_percent,
-            "@in_s": said_of(text, "unit")[:1] == ("s",),
-            "@other": text not in WORDS and self.means(text) == OTHER_WAY.get(self.own),
+            "@in_s": lexicon_meaning(text, "unit")[:1] == ("s",),
+            "@other": text not in WORDS and self.means(text) == OPPOSITE_MOVES.get(self.own),
             "@paced": self._is_paced(k),
             "@told": self.tokens and self._is_told(k),
             f"@no{concept}": not is_of_kit,
@@ -220,7 +237,7 @@ class Trailing:
             return token.text
         if token.text in self.names.known.values:
             return None
-        text = said_of(token.text, "number") or said_of(token.text, "often")
+        text = lexicon_meaning(token.text, "number") or lexicon_meaning(token.text, "often")
         if text:
             return text[0]
         return token.text[1:] if re.fullmatch("X[0-9]+", token.text) else None
@@ -229,11 +246,11 @@ class Trailing:
         text = self.row[k].text
         if self.power is None:
             return False
-        sentence = said_of(text, "power")
+        sentence = lexicon_meaning(text, "power")
         is_fast = sentence[:1] == ("100",)
-        is_changed = bool(k and said_of(self.row[k - 1].text, "extra"))
+        is_changed = bool(k and lexicon_meaning(self.row[k - 1].text, "extra"))
         is_other = (int(self.power[1]) >= _HALF) is not is_fast
-        return said_of(text, "pace") != () or bool(sentence and (is_changed or is_other))
+        return lexicon_meaning(text, "pace") != () or bool(sentence and (is_changed or is_other))
 
     def _is_told(self, k: int) -> bool:
         """Whether a token says nothing that the instruction does not."""
@@ -242,7 +259,7 @@ class Trailing:
         if token.kind is WORD and self.number(k) is None:
             return not self._is_order(k) and not (is_first and self._is_alone(k))
         if self.number(k) is not None:
-            unit = said_of(self._text(k + 1), "unit")
+            unit = lexicon_meaning(self._text(k + 1), "unit")
             if self.number(k) in self.numbers or (unit and unit[0] in ("cm", "°", "steps")):
                 return True
             return token.kind is WORD and unit[:1] != ("s",) if is_first or unit else True
@@ -260,9 +277,11 @@ class Trailing:
         words = [lexeme for lexeme in self.row if lexeme.kind is WORD]
         if self.names.is_name(token.text):
             return len(words) == 1 or token.text in self.names.defs
-        if len(words) == 1 and token.text in WORDS and not said_of(token.text, "note"):
+        if len(words) == 1 and token.text in WORDS and not lexicon_meaning(token.text, "note"):
             return True
-        is_told = self.means(token.text) or said_of(token.text, "power") or self.own == "START"
+        is_told = (
+            self.means(token.text) or lexicon_meaning(token.text, "power") or self.own == "START"
+        )
         if is_told or len(words) > 1:
             return False
         source = token.source or ""
@@ -273,17 +292,17 @@ class Trailing:
         """Whether the word at a place says what the instruction does not."""
         text, own = self.row[k].text, self.own
         is_last = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row[k + 1 :])
-        is_begun = k or len(text) == 1 or said_of(text, "count")
-        is_small = said_of(text, "small") and not is_last and is_begun
-        if is_small or (own == "BEEP" and said_of(text, "note")):
+        is_begun = k or len(text) == 1 or lexicon_meaning(text, "count")
+        is_small = lexicon_meaning(text, "small") and not is_last and is_begun
+        if is_small or (own == "BEEP" and lexicon_meaning(text, "note")):
             return False
-        if said_of(text, "lap", "turn"):
-            return own not in ("L", "R", "M") and not (own == "B" and said_of(text, "lap"))
-        if said_of(text, "on", "off", "act"):
+        if lexicon_meaning(text, "lap", "turn"):
+            return own not in ("L", "R", "M") and not (own == "B" and lexicon_meaning(text, "lap"))
+        if lexicon_meaning(text, "on", "off", "act"):
             return True
-        if said_of(text, "end") or text in ENDED:
+        if lexicon_meaning(text, "end") or text in ENDED:
             return self.is_in_block and not self.is_arm
-        if said_of(text, "until"):
+        if lexicon_meaning(text, "until"):
             return own != "SHOW" and self.row[0].text != "(" and not self.is_asked
         meant = self.means(text)
         known = WORDS.get(meant)

@@ -22,13 +22,13 @@ from tiniscript.base.words import (
     MOVES,
     POWER,
     QUESTION,
-    SINCE,
     UNIT_OF,
+    VERSION_OF_WORD,
     WAYS,
     WORDS,
     Argument,
     Word,
-    hints_for_foreign,
+    foreign_word_hints,
 )
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
@@ -44,11 +44,11 @@ from tiniscript.recovery.meanings import (
     Lexeme,
     Names,
     closed,
-    concept_of,
     lexemes,
+    lexicon_concept,
+    lexicon_meaning,
     made,
     plain,
-    said_of,
     words_of,
 )
 from tiniscript.recovery.orders import Order, block, condition_in, made_up, orders, written
@@ -62,7 +62,7 @@ from tiniscript.recovery.writing import (
     tokens_of,
     without_note,
 )
-from tiniscript.syntax.free_names import in_place_of
+from tiniscript.syntax.free_names import free_word_name
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD, Token, scan
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
@@ -166,7 +166,7 @@ class _Text:
                 meant = {"FOREVER": "LOOP"}.get(self.names.meant(first), self.names.meant(first))
                 if meant in BLOCK_ENDS:
                     ends.append(BLOCK_ENDS[meant])
-                elif ends and (meant in BLOCK_ENDS.values() or said_of(first, "end")):
+                elif ends and (meant in BLOCK_ENDS.values() or lexicon_meaning(first, "end")):
                     ends.pop()
         return "".join(ends[-1:])
 
@@ -262,10 +262,10 @@ class Usage:
             labels |= {
                 "@strange": True,
                 "@pressed": self._is_pressed(),
-                "@instead": hints_for_foreign(self.signs[0]),
-                "@switched": any(said_of(each, "on", "off") for each in text),
+                "@instead": foreign_word_hints(self.signs[0]),
+                "@switched": any(lexicon_meaning(each, "on", "off") for each in text),
                 "@button": any(map(self.is_button, self.words)) and self.signs[1:2] != ["("],
-                "@turned": any(said_of(each, "turn", "lap") for each in self.words),
+                "@turned": any(lexicon_meaning(each, "turn", "lap") for each in self.words),
                 "@sentence": are_sentence and not {*self.signs} & {*COMPARISONS, "(", "="},
             }
         return label("\x01", labels)
@@ -277,7 +277,7 @@ class Usage:
 
     def _label_of(self, k: int) -> str:
         text, span = self.row[k].text, self.spans[k + 1]
-        is_said = bool(self.names.meant(text) or said_of(text, "turn", "end", "short"))
+        is_said = bool(self.names.meant(text) or lexicon_meaning(text, "turn", "end", "short"))
         labels = {
             "@quote": text in QUOTES,
             "@known": text in WORDS,
@@ -362,7 +362,7 @@ class Usage:
         return behind[: [*over, True].index(True)]
 
     def is_button(self, word: str) -> bool:
-        return "BUTTON" not in self.names.sensors and concept_of(word) == "BUTTON"
+        return "BUTTON" not in self.names.sensors and lexicon_concept(word) == "BUTTON"
 
     @cached_property
     def ordered(self) -> dict[str, str]:
@@ -392,9 +392,11 @@ class Usage:
         text = (*self.words, "_".join(self.words[:2]))
         way = next((it for it in map(self.names.meant, self.words) if it in ("L", "R")), "")
         degrees = {"half": "180", "whole": "360"}
-        halves = (it for it in degrees if any(said_of(each, it) for each in text))
+        halves = (it for it in degrees if any(lexicon_meaning(each, it) for each in text))
         angle = degrees.get(next(halves, ""), "")
-        is_timed = any(said_of(each, "unit")[:1] not in ((), ("turns",)) for each in self.words)
+        is_timed = any(
+            lexicon_meaning(each, "unit")[:1] not in ((), ("turns",)) for each in self.words
+        )
         numbers = [token.text for token in self.row if token.kind is NUMBER]
         if len(numbers) == 1 and float(numbers[0]) >= LONG_S and not is_timed:
             angle = numbers[0]  # `SPIN 360`: no time, and no power
@@ -418,13 +420,15 @@ class Usage:
         given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
         if not name or number or len({*given}) > 1:  # seconds, or how often: who writes it knows
             call = _CALL.fullmatch(piece)
-            is_other = call is None or said_of(call[1], *_NO_CALLS)
+            is_other = call is None or lexicon_meaning(call[1], *_NO_CALLS)
             is_often = bool(number and self.around.lacks_loop)
             return _Own("", "" if is_other or call is None else call[1], is_often, 0, False)
         if self.names.meant(name):
             return _Own("", "", False, 0, False)  # a function of another language
         lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.text)
-        is_taught = bool(is_call or len(lone) > 1 or self.names.defs or said_of(name, "taught"))
+        is_taught = bool(
+            is_call or len(lone) > 1 or self.names.defs or lexicon_meaning(name, "taught")
+        )
         return _Own(name, "", False, len(lone), is_taught)
 
     def before(self) -> list[Lexeme]:
@@ -456,7 +460,7 @@ class Usage:
             return None
         at = min(sum(item.text == "," for item in before), len(word.arguments) - 1)
         argument = word.arguments[at]
-        unit = said_of(found, "unit")
+        unit = lexicon_meaning(found, "unit")
         way = UNIT_OF.get(word.text, "")
         is_of_way = bool(way) and unit == (WAYS[way].unit, "1000")
         text = f"{before[-1].text} {way}" if is_of_way else ""
@@ -482,7 +486,9 @@ class Usage:
         if UNIT_OF.get(word) != "CM" or not items or items[0].kind is not NUMBER:
             return {}
         number, *rest = items
-        is_more = bool(rest) and (rest[0].kind is not WORD or said_of(rest[0].text, *_NUMBERED))
+        is_more = bool(rest) and (
+            rest[0].kind is not WORD or lexicon_meaning(rest[0].text, *_NUMBERED)
+        )
         if is_more or not LONG_S <= float(number.text) <= _FAR_CM:
             return {}
         way = f"{word}({number.text} CM, {POWER.sample})"
@@ -575,17 +581,19 @@ class Usage:
         word, text, start = self.found.values["word"], self.text, self.found.span.start
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
         is_taught = _TAUGHT.search(text[max(0, start - _LONG_HEAD) : start])
-        right = in_place_of(text, word) if is_set or is_taught else ""
+        right = free_word_name(text, word) if is_set or is_taught else ""
         suggestion = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
         is_clock = bool(is_set and word == "TIME" and not is_set[1])
-        is_everywhere = bool(right) and (word in SINCE or not (suggestion or is_clock))
+        is_everywhere = bool(right) and (word in VERSION_OF_WORD or not (suggestion or is_clock))
         return _OtherName(word, right, suggestion, is_taught is not None, is_set, is_everywhere)
 
     def renamed(self) -> list[Span]:
         """Return each place where a word is meant as a name: S of `F(S, 80)`, not S alone."""
         word, _, _, is_def, _, _ = self.other_name
         tokens = scan(self.text).tokens
-        places = range(len(tokens)) if word in SINCE else _words_as_names(tokens, word, is_def)
+        places = (
+            range(len(tokens)) if word in VERSION_OF_WORD else _words_as_names(tokens, word, is_def)
+        )
         return [
             tokens[k].span for k in places
             if tokens[k].text == word and (k == 0 or tokens[k - 1].kind not in (NUMBER, ")"))
@@ -668,7 +676,7 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
 
 def _is_over(token: Lexeme) -> bool:
     """Whether a question ends before a token."""
-    return token.text in (":", "{", ",") or bool(said_of(token.text, "do"))
+    return token.text in (":", "{", ",") or bool(lexicon_meaning(token.text, "do"))
 
 
 def _row(text: str) -> list[str]:
@@ -736,7 +744,7 @@ def _spoken_orders(gaps: Gaps, is_sided: bool) -> str:
 def _other_orders(gaps: Gaps) -> set[str]:
     """Orders beside a turn, which it alone would lose."""
     text = _usage_at(gaps).ordered.items()
-    return {its for word, its in text if not said_of(word, "right")} - {"L", "R", "B", "S"}
+    return {its for word, its in text if not lexicon_meaning(word, "right")} - {"L", "R", "B", "S"}
 
 
 def _forever_word(gaps: Gaps) -> str:
@@ -794,7 +802,7 @@ def _loop_of_repeated(gaps: Gaps) -> str:
 
 def _own_name(gaps: Gaps) -> str:
     own = _usage_at(gaps).own
-    return "" if own.is_taught or said_of(own.name, *_NO_NAMES) else own.name
+    return "" if own.is_taught or lexicon_meaning(own.name, *_NO_NAMES) else own.name
 
 
 def _end(gaps: Gaps) -> str:
@@ -807,7 +815,7 @@ def _end(gaps: Gaps) -> str:
 def _method_call(gaps: Gaps) -> str:
     """What a part of a thing does, if that is a call: WRITE of `servo.write`."""
     thing, _, done = plain(gaps.place.text[slice(*_member(_usage_at(gaps)))]).rpartition(".")
-    right = "" if said_of(thing, "device") else gaps.place.names.meant(done)
+    right = "" if lexicon_meaning(thing, "device") else gaps.place.names.meant(done)
     return right if gaps.place.names.takes(right) else ""
 
 
@@ -821,7 +829,7 @@ def _unit_behind(gaps: Gaps) -> str:
     usage = _usage_at(gaps)
     here = usage.source[usage.found.span]
     end = _end_of_value(usage)
-    return here if said_of(plain(here), "unit") and usage.text[end - 1] == ")" else ""
+    return here if lexicon_meaning(plain(here), "unit") and usage.text[end - 1] == ")" else ""
 
 
 def _end_of_value(usage: Usage) -> int:
@@ -832,7 +840,7 @@ def _without_seconds(gaps: Gaps) -> str:
     """The instruction without a word for seconds."""
     usage = _usage_at(gaps)
     span, piece, source = usage.found.span, usage.piece, usage.source
-    if said_of(plain(source[span]), "unit") != ("s", "1000"):
+    if lexicon_meaning(plain(source[span]), "unit") != ("s", "1000"):
         return ""
     return source[Span(piece.start, _end_of_value(usage))] + source[Span(span.end, piece.end)]
 
@@ -874,7 +882,7 @@ def _worded_header(gaps: Gaps) -> str:
     """The header of a name that asks something in words: DARK of `X > 5 OR DARK`."""
     usage = _usage_at(gaps)
     name = plain(usage.source[usage.found.span])
-    is_asked = bool(said_of(name, "light", "ahead"))
+    is_asked = bool(lexicon_meaning(name, "light", "ahead"))
     return usage.header() if is_asked and usage.before()[-1].text not in COMPARISONS else ""
 
 
@@ -960,7 +968,7 @@ def _question_begun(gaps: Gaps) -> str:
 def _saying_button(gaps: Gaps) -> str:
     """A word before the bar that says the button, or looks like it."""
     word = _usage_at(gaps).found.values["found"]
-    return word if word == "S8" or concept_of(word) == "BUTTON" else ""
+    return word if word == "S8" or lexicon_concept(word) == "BUTTON" else ""
 
 
 def _part_of_when(gaps: Gaps) -> str:
@@ -1049,20 +1057,22 @@ def _lamp_here(gaps: Gaps) -> str:
     usage = _usage_at(gaps)
     has_lamp = "LED" in usage.names.actuators
     word = usage.source[usage.found.span].upper()
-    return word if usage.is_first and not has_lamp and concept_of(plain(word)) == "LED" else ""
+    return word if usage.is_first and not has_lamp and lexicon_concept(plain(word)) == "LED" else ""
 
 
 def _lamp_set(gaps: Gaps) -> str:
     """The lamp that words switch on or off."""
     usage = _usage_at(gaps)
     words = (*usage.words, "_".join(usage.words[:2]))
-    return usage.lamp(f"LED({'FALSE' if any(said_of(it, 'off') for it in words) else 'TRUE'})")
+    return usage.lamp(
+        f"LED({'FALSE' if any(lexicon_meaning(it, 'off') for it in words) else 'TRUE'})"
+    )
 
 
 def _leading_filler(gaps: Gaps) -> str:
     """A word that says nothing, or the button, and begins an instruction."""
     found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
-    is_said = said_of(right, "filler") or found.is_button(right)
+    is_said = lexicon_meaning(right, "filler") or found.is_button(right)
     return right if found.is_first and is_said else ""
 
 
@@ -1098,7 +1108,7 @@ _SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "amount": lambda it, _: it.amount, "bound": lambda it, _: it.bound(),
     "button": lambda it, _: it.button(),
     "dots": lambda it, _: it.dots(), "unended": lambda it, _: it.unended(),
-    "instead": lambda it, _: hints_for_foreign(it.signs[0]), "in_words": Usage.in_words,
+    "instead": lambda it, _: foreign_word_hints(it.signs[0]), "in_words": Usage.in_words,
     "in_brackets": Usage.in_brackets, "one_number": Usage.one_number,
     "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
 }  # fmt: skip
@@ -1165,10 +1175,10 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "named_endless": lambda gaps: _usage_at(gaps).named("LOOP", _forever_word(gaps)),
     "instead": _gap_of(lambda it: it.around.begun), "saying_button": _saying_button,
     "part": _part_of_when, "two_digits": _two_digits,
-    "sign_means": _gap_of(lambda it: concept_of(it.source[it.found.span])),
-    "sign_usage": _gap_of(lambda it: _usage(concept_of(it.source[it.found.span]) or "")),
+    "sign_means": _gap_of(lambda it: lexicon_concept(it.source[it.found.span])),
+    "sign_usage": _gap_of(lambda it: _usage(lexicon_concept(it.source[it.found.span]) or "")),
     "everywhere": _gap_of(lambda it: it.other_name.right if it.other_name.is_everywhere else ""),
-    "since": _gap_of(lambda it: SINCE.get(it.other_name.word)),
+    "since": _gap_of(lambda it: VERSION_OF_WORD.get(it.other_name.word)),
     "name_line": lambda gaps: "".join(_other_rows(gaps)[:1]),
     "name_lines": lambda gaps: _line_list(_other_rows(gaps)), "name_times": _times_in_line,
     "name_right": _gap_of(lambda it: it.other_name.suggestion or it.other_name.right),
@@ -1180,7 +1190,7 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "time_lines": lambda gaps: _line_list(_later_rows(gaps)),
     "note": _gap_of(lambda it: "/*" if it.text.startswith("/*", it.found.span.start) else ""),
     "sensor": _gap_of(lambda it: it.function if it.function in it.names.sensors else ""),
-    "input": _gap_of(lambda it: it.function if said_of(it.function, "input") else ""),
+    "input": _gap_of(lambda it: it.function if lexicon_meaning(it.function, "input") else ""),
     "words_behind": _words_behind, "before": _gap_of(lambda it: it.found.values["before"]),
     "plain_letters": _unaccented_name, "letters_mean": _gap_of(lambda it: it.letters[1]),
     "letters_usage": _gap_of(lambda it: it.usage(it.letters[1])), "called_here": _called_name,

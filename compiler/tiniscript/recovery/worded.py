@@ -11,7 +11,7 @@ from itertools import pairwise
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device
-from tiniscript.recovery.meanings import NEAR, Lexeme, Names, concept_of, made, said_of
+from tiniscript.recovery.meanings import NEAR, Lexeme, Names, lexicon_concept, lexicon_meaning, made
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 
@@ -52,9 +52,9 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     if any(names.is_yes_no(text) for text in own):
         return None  # which nothing is compared with
     is_alone = len(texts) == 1 and not (
-        sentence & {"light", "ahead"} and not said_of(texts[0], "sensor")
+        sentence & {"light", "ahead"} and not lexicon_meaning(texts[0], "sensor")
     )
-    is_button = any(concept_of(text) == "BUTTON" for text in texts)
+    is_button = any(lexicon_concept(text) == "BUTTON" for text in texts)
     if is_alone or is_button or (numbers and not sentence & {"ahead", "light", "none"}):
         return None
     asked = [
@@ -70,18 +70,18 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
 
 def sensors_of(word: str, names: Names) -> list[str]:
     """Return the sensors that a word for what they see may mean: both lights for `luz`."""
-    result = _lights(names) if said_of(word, "light") else ["DISTANCE"]
+    result = _lights(names) if lexicon_meaning(word, "light") else ["DISTANCE"]
     return [] if names.is_name(word) else [name for name in result if name in names.asked]
 
 
 def _mentioned_words(texts: Sequence[str], names: Names) -> set[str]:
     said = [text for text in texts if not names.is_name(text)]
-    return {kind for kind in _KINDS for text in said if said_of(text, kind)}
+    return {kind for kind in _KINDS for text in said if lexicon_meaning(text, kind)}
 
 
 def _joining_word(texts: Sequence[str], names: Names) -> str:
     """Return AND or OR, if two conditions are joined and each is in words."""
-    joints = [said_of(text, "and") or said_of(text, "or") for text in texts]
+    joints = [lexicon_meaning(text, "and") or lexicon_meaning(text, "or") for text in texts]
     places = [k for k, text in enumerate(texts) if joints[k] and not names.is_name(text)]
     pieces = [texts[a + 1 : b] for a, b in pairwise((-1, *places, len(texts)))]
     are_asking = all(
@@ -110,7 +110,7 @@ def _mixed_condition(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
 
 def _joint_of(text: str, names: Names) -> str:
     """Return AND or OR, where a word joins two questions."""
-    sentence = said_of(text, "and") or said_of(text, "or")
+    sentence = lexicon_meaning(text, "and") or lexicon_meaning(text, "or")
     return "" if not sentence or names.is_name(text) else sentence[0].upper()
 
 
@@ -119,16 +119,18 @@ def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
     texts = [lexeme.text for lexeme in row]
     is_near = bool(_mentioned_words(texts, names) & {"ahead", "none"})
     for k, text in enumerate(texts):
-        unit = said_of(texts[k + 1], "unit") if k + 1 < len(texts) else ()
+        unit = lexicon_meaning(texts[k + 1], "unit") if k + 1 < len(texts) else ()
         without = [*texts[: k + 1], *texts[k + 2 :]] if unit else texts
         if row[k].kind is NUMBER:
             fits = not unit or unit[0] == "cm"
             return without, _in_centimetres(text, unit) if fits else ""
         if unit[:1] == ("cm",) and is_near:
-            sentence = said_of(text, "number") or (("0.5",) if said_of(text, "half") else ())
+            sentence = lexicon_meaning(text, "number") or (
+                ("0.5",) if lexicon_meaning(text, "half") else ()
+            )
             if sentence:
                 return [*texts[:k], *texts[k + 2 :]], _in_centimetres(sentence[0], unit)
-        is_last = k == len(texts) - 1 and k > 1 and said_of(texts[k - 1], "than")
+        is_last = k == len(texts) - 1 and k > 1 and lexicon_meaning(texts[k - 1], "than")
         if is_near and text in names.variables and (is_last or unit == ("cm", "1000")):
             return without, text
     return texts, ""

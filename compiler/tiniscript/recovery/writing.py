@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from tiniscript.base.source import Source, Span
-from tiniscript.recovery.meanings import Lexeme, lexemes, made, plain, said_of, words_of
+from tiniscript.recovery.meanings import Lexeme, lexemes, lexicon_meaning, made, plain, words_of
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
@@ -95,7 +95,7 @@ def with_signs(line: str) -> str:
     if len(text) != len(line):
         return line
     found = [*_SPOKEN.finditer(text)]
-    said = [said_of(match[0].replace(" ", "_"), "sign")[0] for match in found]
+    said = [lexicon_meaning(match[0].replace(" ", "_"), "sign")[0] for match in found]
     is_begun = said[:1] == ["bar"] and text[: found[0].start()].strip() in ("SI", "SB")
     if said.count("open") != said.count("close") or not ("open" in said or is_begun):
         return line

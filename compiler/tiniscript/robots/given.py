@@ -25,7 +25,7 @@ def remember(path: str, kit: int) -> None:
     if _remembered_profiles()[:1] == [entry]:
         return
     with contextlib.suppress(OSError):
-        _path().parent.mkdir(mode=files.OWN, parents=True, exist_ok=True)
+        _path().parent.mkdir(mode=files.OWNER_ONLY, parents=True, exist_ok=True)
         with files.lock_file(_path()):  # other commands do the same
             kept = [
                 entry,

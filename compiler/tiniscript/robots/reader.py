@@ -9,8 +9,8 @@ import math
 from collections.abc import Mapping, Sequence
 
 from tiniscript.base.fixed_point import ONE
-from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
-from tiniscript.base.languages import SOURCE, ByLanguage, languages
+from tiniscript.base.kit import MOST_DEVICES, NUMBER, YES_NO, Device, Kit
+from tiniscript.base.languages import SOURCE_LANGUAGE, ByLanguage, languages
 from tiniscript.base.words import WORDS
 from tiniscript.robots.board_reader import device_tables, read_board
 from tiniscript.robots.profile import SEES, Body, Place, ProfileRefused, Robot
@@ -59,8 +59,8 @@ def _read_kit(table: Table) -> Kit:
 
 def _read_devices(table: Table, key: str, taken: set[str]) -> tuple[Device, ...]:
     tables = table.tables(key)
-    if len(tables) > DEVICES:
-        table.complain("too_many", key, found=str(len(tables)), most=str(DEVICES))
+    if len(tables) > MOST_DEVICES:
+        table.complain("too_many", key, found=str(len(tables)), most=str(MOST_DEVICES))
     return tuple(_read_device(table, key == "actuators", taken) for table in tables)
 
 
@@ -164,7 +164,7 @@ def _read_labels(table: Table, kit: Kit, name: str) -> Mapping[str, Mapping[str,
     written = {item: _read_language(table, item, devices) for item in known}
     table.finish()
     labels: ByLanguage[dict[str, str]] = ByLanguage()
-    for language in dict.fromkeys((SOURCE, *known)):
+    for language in dict.fromkeys((SOURCE_LANGUAGE, *known)):
         labels[language] = {"robot": name, **{device.name: device.name for device in devices}}
         for item in (*known, language):
             labels[language].update(written.get(item, {}))

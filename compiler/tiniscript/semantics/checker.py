@@ -53,14 +53,14 @@ def check(source: Source, parsed: ast.Program, kit: Kit) -> Checked:
         and any(procedure.values for procedure in procedures)
         and not checker.diagnostics
     ):
-        checker.copies_fit(meaning)
+        checker.check_copies_fit(meaning)
     return Checked(meaning, checker.diagnostics)
 
 
 class _Procedure(NamedTuple):
     """What a call of a DEF brings with it."""
 
-    surely_read: int
+    definitely_read_mask: int
     blocks: int
     calls: int
 
@@ -68,7 +68,7 @@ class _Procedure(NamedTuple):
 class _Outside(NamedTuple):
     """What is known of the program around a DEF or a task, while that is checked."""
 
-    surely_read: int
+    definitely_read_mask: int
     blocks: int
     calls: int
     beside_blocks: int
@@ -87,7 +87,7 @@ class _Checker(Scope):
         self.beside_blocks = 0  # open at once in the other tasks, all of them together,
         self.beside_calls = 0  # and their calls
         self.inside: str | None = None  # the DEF whose body is being checked
-        self.surely_read = 0  # a bit for each sensor
+        self.definitely_read_mask = 0  # a bit for each sensor
         self.loops = 0
         self.depth = 0
         self.deepest = 0  # blocks open at once in the routine that is being checked
@@ -114,7 +114,7 @@ class _Checker(Scope):
     def body(self, instructions: Sequence[ast.Instruction]) -> ir.Body:
         statements: list[Statement] = []
         for instruction in instructions:
-            _CHECKS[type(instruction)](self, instruction, statements)
+            _NODE_CHECKS[type(instruction)](self, instruction, statements)
         return tuple(statements)
 
     # -- readings -----------------------------------------------------------------------------
@@ -122,7 +122,7 @@ class _Checker(Scope):
     def take(self, values: Sequence[Value], span: Span, output: list[Statement]) -> int:
         """Add the readings that come before an instruction; return them as bits."""
         result = 0
-        for sensor in self.unread_sensors(values, self.surely_read):
+        for sensor in self.unread_sensors(values, self.definitely_read_mask):
             output.append(ir.Read(sensor, span))
             result |= 1 << sensor
         return result
@@ -152,9 +152,9 @@ class _Checker(Scope):
                 self.variable(node, self.types.nothing)
             return
         value = self.types.value(node.value, node.name if name is None else None)
-        self.stack_fits([value], node.span)
+        self.check_stack_fits([value], node.span)
         number = self.variable(node, value) if name is None else name.number
-        known = self.types.of_variables[number]
+        known = self.types.variable_names[number]
         if ANY not in (known, value.type) and known != value.type:
             free = self.wrong.free_name(node.name, self.procedures)
             other = f"{free} = {self.source[node.value.span]}"
@@ -174,7 +174,7 @@ class _Checker(Scope):
         if number == VARIABLES:
             self.report(codes.TOO_MANY_VARIABLES, span, limit=str(VARIABLES))
         self.variables.append(name)
-        self.types.of_variables.append(kind)
+        self.types.variable_names.append(kind)
         return number
 
     def command(self, node: ast.Command, output: list[Statement]) -> None:
@@ -211,7 +211,7 @@ class _Checker(Scope):
             if len(self.diagnostics) == text:
                 self.spell_out(word, arguments, span, output)
             return
-        self.stack_fits(values, span)
+        self.check_stack_fits(values, span)
         self.take(values, span, output)
         terms = [value.terms for value in values]
         if word.role.lasts:
@@ -220,7 +220,7 @@ class _Checker(Scope):
             unit = "" if way is None else way.op
             output.append(ir.Move(node.word, time, power, until, span, unit))
         elif word.role.is_instruction:  # START does nothing
-            output.append(_MAKES[word.role.name](values, span))
+            output.append(_STATEMENT_MAKERS[word.role.name](values, span))
 
     def spell_out(
         self, word: Word, arguments: Sequence[ast.Argument], span: Span, output: list[Statement]
@@ -229,7 +229,7 @@ class _Checker(Scope):
         names = [argument.name.upper() for argument in word.arguments]
         given = dict(zip(names, arguments, strict=True))
         for instruction in parse(Source(word.stands_for)).program.body:
-            _CHECKS[type(instruction)](self, _relocate(instruction, span, given), output)
+            _NODE_CHECKS[type(instruction)](self, _relocate(instruction, span, given), output)
 
     def way(self, node: ast.Command, unit: ast.Part) -> None:
         """Check the unit of a move, and whether the robot's speed is known."""
@@ -265,16 +265,16 @@ class _Checker(Scope):
     def condition(self, argument: ast.Argument, word: str) -> Value:
         value = self.types.value(argument)
         if value.type == "number":
-            self.wants_condition(argument, word)
-        self.stack_fits([value], argument.span)
+            self.report_not_condition(argument, word)
+        self.check_stack_fits([value], argument.span)
         return value
 
-    def wants_condition(self, argument: ast.Argument, by: str) -> None:
+    def report_not_condition(self, argument: ast.Argument, by: str) -> None:
         result = self.source[argument.span]
         values = self.types.wrong.condition(argument.span)
         self.report(codes.WANTS_CONDITION, argument.span, None, by=by, found=result, **values)
 
-    def stack_fits(self, values: Sequence[Value], span: Span) -> None:
+    def check_stack_fits(self, values: Sequence[Value], span: Span) -> None:
         if any(value.depth + i > STACK_VALUES for i, value in enumerate(values)):
             self.report(codes.VALUES_TOO_DEEP, span, limit=str(STACK_VALUES))
 
@@ -284,14 +284,14 @@ class _Checker(Scope):
         name = self.names.get(node.word)
         if name is None:
             self.wrong.report_unknown(node, self.inside)
-        elif node.arguments is not None and name.what not in _TAKE_VALUES:
+        elif node.arguments is not None and name.what not in _KINDS_WITH_VALUES:
             self.wrong.report_not_callable(node)
         else:
-            _NAMED[name.what](self, node, name.number, output)
+            _BY_NAME_KIND[name.what](self, node, name.number, output)
 
     def reading(self, node: ast.Command, number: int, output: list[Statement]) -> None:
         output.append(ir.Read(number, node.span))
-        self.surely_read |= 1 << number
+        self.definitely_read_mask |= 1 << number
 
     def variable_alone(self, node: ast.Command, number: int, output: list[Statement]) -> None:
         self.report(codes.VARIABLE_ALONE, node.span, name=node.word)
@@ -310,10 +310,10 @@ class _Checker(Scope):
         if device.is_yes_no:
             value = self.types.value(argument)
             if value.type == "number":
-                self.wants_condition(argument, device.name)
+                self.report_not_condition(argument, device.name)
         else:
             value = self.number(argument, word.arguments[0], device.name)
-        self.stack_fits([value], node.span)
+        self.check_stack_fits([value], node.span)
         self.take([value], node.span, output)
         output.append(ir.Set(number, value.terms, node.span))
 
@@ -327,7 +327,7 @@ class _Checker(Scope):
             self.report(codes.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
         self.deepest = max(self.deepest, depth)
         self.give(node, self.procedures[number], output)
-        self.surely_read |= facts.surely_read
+        self.definitely_read_mask |= facts.definitely_read_mask
         output.append(ir.Call(number, node.span))
 
     def give(self, node: ast.Command, procedure: ir.Procedure, output: list[Statement]) -> None:
@@ -346,11 +346,11 @@ class _Checker(Scope):
                 return
         values = [self.types.value(item) for item in arguments]
         for argument, value, number in zip(arguments, values, procedure.values, strict=True):
-            expected = self.types.of_variables[number]
+            expected = self.types.variable_names[number]
             if ANY not in (expected, value.type) and expected != value.type:
                 self.report(codes.CALL_KIND, argument.span, name=self.variables[number],
                             word=node.word, old="@" + expected, new="@" + value.type)  # fmt: skip
-        self.stack_fits(values, node.span)
+        self.check_stack_fits(values, node.span)
         self.take(values, node.span, output)
         for value, number in zip(values, procedure.values, strict=True):
             output.append(ir.Assign(number, value.terms, node.span))
@@ -372,13 +372,13 @@ class _Checker(Scope):
 
     def loop_body(self, node: ast.Loop | ast.While) -> ir.Body:
         """Check a body in which no turn surely finds what was read before it."""
-        before, self.surely_read = self.surely_read, 0
+        before, self.definitely_read_mask = self.definitely_read_mask, 0
         body = self.nested_body(node.body, True, node.span)
-        self.surely_read = before
+        self.definitely_read_mask = before
         return body
 
     def if_(self, node: ast.If, output: list[Statement]) -> None:
-        before, chain = self.surely_read, 0
+        before, chain = self.definitely_read_mask, 0
         after = -1  # what all arms make surely read
         arms: list[ir.Arm] = []
         for arm in node.arms:
@@ -393,18 +393,18 @@ class _Checker(Scope):
             else:
                 chain = self.take([value], arm.span, output)
             body = self.nested_body(arm.body, False, arm.span)
-            after &= self.surely_read
-            self.surely_read = before
+            after &= self.definitely_read_mask
+            self.definitely_read_mask = before
             arms.append(ir.Arm(reads, value.terms, body, arm.span))
         otherwise = self.nested_body(node.otherwise, False, node.span)
-        self.surely_read &= after
+        self.definitely_read_mask &= after
         output.append(ir.If(tuple(arms), otherwise, node.span, node.has_else))
 
     def loop(self, node: ast.Loop, output: list[Statement]) -> None:
         count = None
         if node.times is not None:
             value = self.number(node.times, Argument("n", ""), "LOOP")
-            self.stack_fits([value], node.times.span)
+            self.check_stack_fits([value], node.times.span)
             self.take([value], node.span, output)
             count = value.terms
         body = self.loop_body(node)
@@ -440,7 +440,7 @@ class _Checker(Scope):
             if self.names.get(self.variables[number]) == Name("variable", number):
                 del self.names[self.variables[number]]
         self.inside = None
-        self.facts.append(_Procedure(self.surely_read, self.deepest, self.calls))
+        self.facts.append(_Procedure(self.definitely_read_mask, self.deepest, self.calls))
         self.restore_scope(outside)
         if known is None:
             self.names[node.name] = Name("def", len(self.procedures))
@@ -483,24 +483,34 @@ class _Checker(Scope):
         self.beside_calls += calls
         self.tasks.append(ir.Task(look, body, node.span))
 
-    def copies_fit(self, program: ir.Program) -> None:
+    def check_copies_fit(self, program: ir.Program) -> None:
         """Check that a machine has room for what each task has of its own."""
-        from tiniscript.semantics.task_copies import excess
+        from tiniscript.semantics.task_copies import find_excess
 
-        result = excess(program)
+        result = find_excess(program)
         if result is not None:
             self.wrong.report_too_many_copies(program, result)
 
     def enter_scope(self) -> _Outside:
         """Begin a DEF or a task, in which nothing is surely read or open; return what was."""
         outside = _Outside(
-            self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls
+            self.definitely_read_mask,
+            self.deepest,
+            self.calls,
+            self.beside_blocks,
+            self.beside_calls,
         )
-        self.surely_read = self.deepest = self.calls = 0
+        self.definitely_read_mask = self.deepest = self.calls = 0
         return outside
 
     def restore_scope(self, outside: _Outside) -> None:
-        self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls = outside
+        (
+            self.definitely_read_mask,
+            self.deepest,
+            self.calls,
+            self.beside_blocks,
+            self.beside_calls,
+        ) = outside
 
 
 def _relocate(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
@@ -518,21 +528,21 @@ def _relocate(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
 
 
 # What the instructions that take no time of their own become, by the role of their words.
-_MAKES: dict[str, Callable[[Sequence[Value], Span], Statement]] = {
+_STATEMENT_MAKERS: dict[str, Callable[[Sequence[Value], Span], Statement]] = {
     "motors": lambda values, span: ir.Motors(values[0].terms, values[1].terms, span),
     "beep": lambda values, span: ir.Beep(values[0].terms, values[1].terms, span),
     "show": lambda values, span: ir.Show(values[0].terms, values[0].type == "yes_no", span),
     "stop": lambda values, span: ir.Stop(span),
 }
 # What names do as instructions, by what they stand for; these take values in brackets.
-_TAKE_VALUES = frozenset(("actuator", "def"))
-_NAMED: dict[str, Callable[[_Checker, ast.Command, int, list[Statement]], None]] = {
+_KINDS_WITH_VALUES = frozenset(("actuator", "def"))
+_BY_NAME_KIND: dict[str, Callable[[_Checker, ast.Command, int, list[Statement]], None]] = {
     "actuator": _Checker.actuator,
     "def": _Checker.call,
     "sensor": _Checker.reading,
     "variable": _Checker.variable_alone,
 }
-_CHECKS: dict[type, Callable[..., None]] = {
+_NODE_CHECKS: dict[type, Callable[..., None]] = {
     ast.Command: _Checker.command,
     ast.Assign: _Checker.assign,
     ast.If: _Checker.if_,

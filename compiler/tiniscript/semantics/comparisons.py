@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from tiniscript.base.fixed_point import HIGHEST, as_text
 from tiniscript.base.kit import NUMBER, REMOTE, Device, Kit
-from tiniscript.base.words import OTHER_WAY, concept_of
+from tiniscript.base.words import OPPOSITE_MOVES, lexicon_concept
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.syntax.operators import SIGN_OF
 
@@ -18,7 +18,7 @@ MANY_VALUES = 100_000  # thousandths: a sensor with such a range is hardly ever 
 TIME = Device("TIME", NUMBER, "s", 0, HIGHEST)
 _MIRRORED = {"LT": "GT", "LE": "GE", "GT": "LT", "GE": "LE", "EQ": "EQ", "NE": "NE"}
 _LESS, _MORE = ("LT", "LE"), ("GT", "GE")
-_COMES = {"F": _LESS, "B": _MORE}  # what comes true, by the way that the robot goes
+_OUTCOMES_BY_MOVE = {"F": _LESS, "B": _MORE}  # what comes true, by the way that the robot goes
 
 
 class Comparison(NamedTuple):
@@ -60,8 +60,8 @@ def looks_ahead(device: Device) -> bool:
 
 def is_aside(way: str) -> bool:
     """Whether a word is no way ahead: R, LEFT, ATRAS."""
-    words = (way, concept_of(way)) if way else ()
-    return not OTHER_WAY.keys().isdisjoint({*words} - {"F", None})
+    words = (way, lexicon_concept(way)) if way else ()
+    return not OPPOSITE_MOVES.keys().isdisjoint({*words} - {"F", None})
 
 
 def is_between(device: Device, number: int) -> bool:
@@ -119,7 +119,7 @@ def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
     return ("answer_yes", f"{one} AND {other}") if is_known else ("", "")
 
 
-def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
+def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
     """Return whether a condition is one for the UNTIL of a move; None where that is not known.
 
     It is none where a distance changes the other way, where it asks for exactly one of very many
@@ -133,9 +133,9 @@ def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
         if is_distance(part.device):
             left -= looks_ahead(part.device)
             if is_sure and looks_ahead(part.device):
-                if part.op not in _COMES.get(direction, (part.op,)):
+                if part.op not in _OUTCOMES_BY_MOVE.get(direction, (part.op,)):
                     return False
-    return True if is_sure and (not left or direction not in _COMES) else None
+    return True if is_sure and (not left or direction not in _OUTCOMES_BY_MOVE) else None
 
 
 def asks_if_near(condition: Expression, kit: Kit) -> bool:

@@ -16,7 +16,7 @@ _MOTORS = {"F": "M({0}, {0})", "B": "M(-{0}, -{0})", "L": "M(-{0}, {0})", "R": "
 Body = Sequence[ast.Instruction]
 
 
-def driven_on(source: Source, program: ast.Program, move: ast.Command) -> dict[str, str]:
+def find_move_end(source: Source, program: ast.Program, move: ast.Command) -> dict[str, str]:
     """Return `whole`, the move that ends there, or what is `running`, its motors; `used` is either
     in the text. Empty if no S ends it."""
     power = source[move.arguments[1].span] if move.arguments else ""

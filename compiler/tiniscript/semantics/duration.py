@@ -64,7 +64,7 @@ class _Durations:
         """Whether a body has a move or an S, or calls something that has one."""
         return any(
             isinstance(call, ir.Stop) or (isinstance(call, ir.Move) and call.power is not None)
-            for call in ir.with_calls(body, self.procedures)
+            for call in ir.walk_with_calls(body, self.procedures)
         )
 
     def duration_of(self, body: ir.Body) -> Duration:

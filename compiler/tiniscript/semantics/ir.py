@@ -187,7 +187,7 @@ def walk(body: Body) -> Iterator[Statement]:
             yield from walk(inner)
 
 
-def with_calls(
+def walk_with_calls(
     body: Body, procedures: Sequence[Procedure], called: set[int] | None = None
 ) -> Iterator[Statement]:
     """Yield every statement of `body`, and after a call those of its DEF: of each DEF once."""
@@ -196,7 +196,7 @@ def with_calls(
         yield statement
         if isinstance(statement, Call) and statement.procedure not in called:
             called.add(statement.procedure)
-            yield from with_calls(procedures[statement.procedure].body, procedures, called)
+            yield from walk_with_calls(procedures[statement.procedure].body, procedures, called)
 
 
 def all_statements(program: Program) -> Iterator[Statement]:
@@ -217,10 +217,10 @@ def routines(program: Program) -> tuple[Body, ...]:
     return (*procedures, *(task.body for task in program.tasks), program.body)
 
 
-_YES_NO = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ", "NE"))
+_YES_NO_OPS = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ", "NE"))
 
 
-def are_yes_no(program: Program, kit: Kit) -> list[bool]:
+def yes_no_variables(program: Program, kit: Kit) -> list[bool]:
     """Return for each variable of a program whether it is a yes/no."""
     result = [False] * len(program.variables)
     copies: list[Assign] = []  # the value is another variable
@@ -233,7 +233,7 @@ def are_yes_no(program: Program, kit: Kit) -> list[bool]:
         elif last.op == "SENSOR":
             result[statement.variable] = kit.readings[last.value].is_yes_no
         else:
-            result[statement.variable] = last.op in _YES_NO
+            result[statement.variable] = last.op in _YES_NO_OPS
     known = -1
     while known < sum(result):  # a DEF may copy a variable that is set below it
         known = sum(result)
@@ -243,13 +243,17 @@ def are_yes_no(program: Program, kit: Kit) -> list[bool]:
 
 
 # The fields of statements that are expressions: whoever adds a statement names them so.
-_VALUES = frozenset(("time", "power", "left", "right", "hertz", "value", "times", "condition"))
+_VALUE_FIELDS = frozenset(
+    ("time", "power", "left", "right", "hertz", "value", "times", "condition")
+)
 
 
 def values_of(statement: Statement) -> dict[str, Expression]:
     """Return the fields of a statement that are expressions, by their names, in their order."""
     fields: dict[str, Any] = statement._asdict()
-    return {name: value for name, value in fields.items() if name in _VALUES and value is not None}
+    return {
+        name: value for name, value in fields.items() if name in _VALUE_FIELDS and value is not None
+    }
 
 
 def expressions(statement: Statement | Task) -> Iterator[Expression]:
@@ -266,7 +270,7 @@ def expressions(statement: Statement | Task) -> Iterator[Expression]:
             yield arm.condition
 
 
-def referenced(op: str, statements: Iterable[Statement | Task]) -> set[int]:
+def referenced_numbers(op: str, statements: Iterable[Statement | Task]) -> set[int]:
     """Return the numbers of the variables or sensors that an expression of these has."""
     return {
         term.value

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.syntax import ast
 
-_LONGEST = 180  # characters that a message can show
+_MOST_CHARACTERS = 180  # characters that a message can show
 
 
 class LeftOut(NamedTuple):
@@ -22,7 +22,7 @@ class LeftOut(NamedTuple):
     edit: Edit
 
 
-def left_out(source: Source, parsed: ast.Program, node: ast.Break) -> LeftOut | None:
+def rewrite_without_break(source: Source, parsed: ast.Program, node: ast.Break) -> LeftOut | None:
     """Return how an IF leaves out the rest without its BREAK, its last instruction in a branch.
 
     The IF is no part of another block but a DEF or a TASK, whose rest is what follows.
@@ -37,12 +37,12 @@ def left_out(source: Source, parsed: ast.Program, node: ast.Break) -> LeftOut | 
             if isinstance(statement, ast.If) and len(statement.arms) == 1 and rest:
                 if len(rest) != len(body) - k - 1:
                     continue  # a DEF among them goes into no block
-                if made := _make_left_out(source, statement, rest, node):
+                if made := _rewrite_if(source, statement, rest, node):
                     return made
     return None
 
 
-def _make_left_out(
+def _rewrite_if(
     source: Source, if_node: ast.If, rest: Sequence[ast.Instruction], node: ast.Break
 ) -> LeftOut | None:
     whole = Span(if_node.span.start, rest[-1].span.end)
@@ -58,7 +58,7 @@ def _make_left_out(
     head = f"IF({source[arm.condition.span]})"
     parts = [head, *said[0], *(["ELSE", *said[1]] if said[1] else []), "ENDIF"]
     shown = ";".join(" ".join(part.split("\n")) for part in parts)
-    if len(shown) > _LONGEST or any("\n" in part for part in parts):
+    if len(shown) > _MOST_CHARACTERS or any("\n" in part for part in parts):
         return None
     between = "\n" if "\n" in source[whole] else "; " if "; " in source[whole] else ";"
     return LeftOut(shown, Edit(whole, between.join(parts)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.base.words import POWER, TIME, Argument, names_argument, said_of
+from tiniscript.base.words import POWER, TIME, Argument, lexicon_meaning, names_argument
 
 
 def is_time(name: str) -> bool:
@@ -10,7 +10,9 @@ def is_time(name: str) -> bool:
 
 
 def is_power(name: str) -> bool:
-    return _names_argument(name, POWER) or any(said_of(part, "power") for part in _parts(name))
+    return _names_argument(name, POWER) or any(
+        lexicon_meaning(part, "power") for part in _parts(name)
+    )
 
 
 def value_of(name: str) -> str:
@@ -22,7 +24,9 @@ def value_of(name: str) -> str:
 
 def yes_no_of(word: str) -> str:
     """Return what a word says of a lamp, a button or a pin: TRUE for ON and HIGH, FALSE for OFF."""
-    return "TRUE" if said_of(word, "lit") else "FALSE" if said_of(word, "dark") else ""
+    return (
+        "TRUE" if lexicon_meaning(word, "lit") else "FALSE" if lexicon_meaning(word, "dark") else ""
+    )
 
 
 def use_of(name: str) -> str:

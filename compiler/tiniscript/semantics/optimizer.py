@@ -23,9 +23,9 @@ _BINARY: dict[str, Callable[[int, int], int]] = {
 _UNARY: dict[str, Callable[[int], int]] = {
     "NEG": fixed_point.negate, "ABS": fixed_point.absolute, "NOT": (1).__sub__,
 }  # fmt: skip
-_YES_NO = frozenset(("EQ", "NE", "LT", "LE", "GT", "GE", "NOT"))
+_YES_NO_OPS = frozenset(("EQ", "NE", "LT", "LE", "GT", "GE", "NOT"))
 # Operations that cannot fault, so that leaving them out changes nothing.
-SAFE = frozenset(("NUMBER", "YES_NO", "VARIABLE", "SENSOR", "EQ", "NE", "LT", "LE", "GT", "GE",
+SAFE_OPS = frozenset(("NUMBER", "YES_NO", "VARIABLE", "SENSOR", "EQ", "NE", "LT", "LE", "GT", "GE",
                   "NOT", "AND", "OR", "AND_LEFT", "OR_LEFT", "MIN", "MAX"))  # fmt: skip
 
 
@@ -42,7 +42,7 @@ def optimize_program(program: ir.Program) -> ir.Program:
     procedures = [
         procedure._replace(body=_body(procedure.body)) for procedure in program.procedures
     ]
-    done = ir.with_calls(sum((task.body for task in tasks), body), procedures)
+    done = ir.walk_with_calls(sum((task.body for task in tasks), body), procedures)
     called = {call.procedure for call in done if isinstance(call, ir.Call)}
     used = tuple(
         procedure._replace(is_called=k in called) for k, procedure in enumerate(procedures)
@@ -54,7 +54,7 @@ def fold(expression: ir.Expression) -> ir.Expression:
     """Return an expression whose constant parts are calculated, where they do not fault."""
     if len(expression) == 1:
         return expression
-    # each entry is an operand so far, and whether it is safe: see SAFE
+    # each entry is an operand so far, and whether it is safe: see SAFE_OPS
     stack: list[_Operand] = []
     for term in expression:
         op = term.op
@@ -68,7 +68,7 @@ def fold(expression: ir.Expression) -> ir.Expression:
             folded = _calculate(op, terms, None) if _is_constant(terms) else None
             if folded is None:
                 terms.append(term)
-                folded, is_safe_so_far = terms, is_safe_so_far and op in SAFE
+                folded, is_safe_so_far = terms, is_safe_so_far and op in SAFE_OPS
             stack.append((folded, is_safe_so_far))
         elif op in _BINARY or op == "RANDOM":
             (right_terms, right_safe), (terms, left_safe) = stack.pop(), stack.pop()
@@ -78,11 +78,11 @@ def fold(expression: ir.Expression) -> ir.Expression:
             if folded is None:
                 terms.extend(right_terms)
                 terms.append(term)
-                stack.append((terms, left_safe and right_safe and op in SAFE))
+                stack.append((terms, left_safe and right_safe and op in SAFE_OPS))
             else:
                 stack.append((folded, True))
         else:
-            stack.append(([term], op in SAFE))
+            stack.append(([term], op in SAFE_OPS))
     return tuple(stack[0][0])
 
 
@@ -98,7 +98,7 @@ def known_value(expression: ir.Expression | None) -> int | None:
 
 def is_safe(terms: ir.Expression) -> bool:
     """Return whether evaluating these terms is free of faults and side effects."""
-    return all(term.op in SAFE for term in terms)
+    return all(term.op in SAFE_OPS for term in terms)
 
 
 def sure_fault(expression: ir.Expression) -> str:
@@ -137,7 +137,7 @@ def _calculate(op: str, left: list[ir.Term], right: list[ir.Term] | None) -> lis
             value = _BINARY[op](left[0].value, right[0].value)
     except Fault:
         return None
-    return [ir.Term("YES_NO" if op in _YES_NO else "NUMBER", int(value))]
+    return [ir.Term("YES_NO" if op in _YES_NO_OPS else "NUMBER", int(value))]
 
 
 def _simplify(op: str, left: _Operand, right: _Operand) -> _Operand:

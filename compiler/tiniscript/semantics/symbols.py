@@ -18,7 +18,7 @@ from tiniscript.syntax import ast
 
 NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
 YES_NO_OPS = frozenset(("TRUE", "FALSE", "NOT", "AND", "OR", *(name for name, _ in COMPARATORS)))
-ENOUGH = 100  # mistakes after which a suggestion helps nobody
+MOST_SUGGESTIONS = 100  # mistakes after which a suggestion helps nobody
 
 
 class Name(NamedTuple):
@@ -111,11 +111,11 @@ class Scope:
         return name in self.yes_no_sensors
 
     def nearest_word(self, word: str, known: Iterable[str]) -> str:
-        """Return the nearest known word for a message, for the first ENOUGH mistakes.
+        """Return the nearest known word for a message, for the first MOST_SUGGESTIONS mistakes.
 
         After that `known` is not searched, so that a long program with many mistakes stays fast.
         """
-        if len(self.diagnostics) >= ENOUGH:
+        if len(self.diagnostics) >= MOST_SUGGESTIONS:
             return ""
         from tiniscript.base.spelling import nearest
 

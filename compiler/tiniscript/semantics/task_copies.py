@@ -60,7 +60,7 @@ class Excess(NamedTuple):
     limit: int
 
 
-def excess(program: ir.Program) -> Excess | None:
+def find_excess(program: ir.Program) -> Excess | None:
     """Return the DEF whose copies a machine has no room for, if there is one."""
     owns, reached = _owns_values(program), _reachable_defs(program)
     variables, defs = len(program.variables), len(program.procedures)
@@ -76,7 +76,7 @@ def excess(program: ir.Program) -> Excess | None:
     return None
 
 
-def users(program: ir.Program) -> list[int]:
+def count_tasks_by_def(program: ir.Program) -> list[int]:
     """Return how many tasks reach each DEF."""
     reached = _reachable_defs(program)
     return [sum(k in item for item in reached) for k in range(len(program.procedures))]
@@ -94,7 +94,7 @@ def _reachable_defs(program: ir.Program) -> list[set[int]]:
     result = []
     for body in (program.body, *(task.body for task in program.tasks)):
         called: set[int] = set()
-        for _ in ir.with_calls(body, program.procedures, called):
+        for _ in ir.walk_with_calls(body, program.procedures, called):
             pass
         result.append(called)
     return result

@@ -28,17 +28,17 @@ class Value(NamedTuple):
     sensors: tuple[int, ...]  # in order of appearance, perhaps several times
 
 
-_ARITHMETIC = frozenset(("ADD", "SUB", "MUL", "DIV", "MOD", "MIN", "MAX", "RANDOM", "ROUND"))
-_ORDER = frozenset(("LT", "LE", "GT", "GE"))
+_ARITHMETIC_OPS = frozenset(("ADD", "SUB", "MUL", "DIV", "MOD", "MIN", "MAX", "RANDOM", "ROUND"))
+_ORDER_COMPARATORS = frozenset(("LT", "LE", "GT", "GE"))
 _UNARY = frozenset(("NEG", "ABS"))
-_LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("TIME")}
+_LEAF_TERMS = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("TIME")}
 
 
 class Types:
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
         self.readings = scope.kit.readings
-        self.of_variables: list[str] = []
+        self.variable_names: list[str] = []
         self.nothing = Value((Term("YES_NO", 0),), ANY, 1, ())
 
     @cached_property
@@ -61,8 +61,8 @@ class Types:
                 stack.append(Operand(NUMBER, 1, part.start, part.end))
             elif op == "NAME":
                 terms.append(self._name(part, target, stack, sensors))
-            elif op in _LEAVES:
-                terms.append(_LEAVES[op])
+            elif op in _LEAF_TERMS:
+                terms.append(_LEAF_TERMS[op])
                 leaf_type = NUMBER if op == "TIME" else YES_NO
                 stack.append(Operand(leaf_type, 1, part.start, part.end))
             elif op == "FOREVER":
@@ -85,7 +85,7 @@ class Types:
         if name is None:
             self.wrong.report_unknown(part, part.value, target)
         elif name.what == "variable":
-            value_type, term = self.of_variables[name.number], Term("VARIABLE", name.number)
+            value_type, term = self.variable_names[name.number], Term("VARIABLE", name.number)
         elif name.what == "sensor":
             sensors.append(name.number)
             value_type = YES_NO if self.readings[name.number].is_yes_no else NUMBER
@@ -102,11 +102,11 @@ class Types:
         op = part.op
         right = stack.pop()
         if op == "NOT":
-            self._wants_yes_no("NOT", right)
+            self._require_yes_no("NOT", right)
             stack.append(Operand(YES_NO, right.depth, part.start, right.end))
             return
         if op in _UNARY:
-            self._wants_number(op, right)
+            self._require_number(op, right)
             end = max(right.end, part.end)
             stack.append(Operand(NUMBER, right.depth, part.start, end))
             return
@@ -114,25 +114,25 @@ class Types:
         depth = max(left.depth, right.depth + 1)
         start, end = min(left.start, part.start), max(right.end, part.end)
         result_type = YES_NO
-        if op in _ARITHMETIC:
-            self._wants_number(op, left)
-            self._wants_number(op, right)
+        if op in _ARITHMETIC_OPS:
+            self._require_number(op, left)
+            self._require_number(op, right)
             result_type = NUMBER
         elif op in ("AND", "OR"):
-            self._wants_yes_no(op, left, right)
-            self._wants_yes_no(op, right, left)
+            self._require_yes_no(op, left, right)
+            self._require_yes_no(op, right, left)
         elif left.type != right.type:
             if ANY not in (left.type, right.type):
                 self.wrong.report_mixed(op, left, right, Span(start, end))
-        elif left.type == YES_NO and op in _ORDER:
+        elif left.type == YES_NO and op in _ORDER_COMPARATORS:
             self.wrong.report_yes_no_order(op, Span(start, end))
         stack.append(Operand(result_type, depth, start, end))
 
-    def _wants_number(self, op: str, operand: Operand) -> None:
+    def _require_number(self, op: str, operand: Operand) -> None:
         if operand.type == YES_NO:
             self.wrong.report_not_number(op, operand)
 
-    def _wants_yes_no(self, by: str, operand: Operand, other: Operand | None = None) -> None:
+    def _require_yes_no(self, by: str, operand: Operand, other: Operand | None = None) -> None:
         """`other` is the other side of an AND or OR."""
         if operand.type == NUMBER:
             self.wrong.report_not_yes_no(by, operand, other)

@@ -14,21 +14,21 @@ from tiniscript.base.words import (
     BLOCK_ENDS,
     WORDS,
     Word,
-    concept_of,
     expand_short,
+    lexicon_concept,
+    lexicon_meaning,
     names_argument,
-    said_of,
 )
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.named_values import value_of, yes_no_of
-from tiniscript.semantics.symbols import ENOUGH, Scope
+from tiniscript.semantics.symbols import MOST_SUGGESTIONS, Scope
 from tiniscript.syntax import ast
 from tiniscript.syntax.lexer import WORD, scan
 
 _DIGITS = "0123456789"
-_LAMP = "LED"  # in the kits that have one
-_SWITCHED = {"TRUE": "TRUE", "1": "TRUE", "FALSE": "FALSE", "0": "FALSE"}
-MANY_TIMES = 20  # that a DEF is done by hand in a class
+_LAMP_NAME = "LED"  # in the kits that have one
+_TRUTH_BY_VALUE = {"TRUE": "TRUE", "1": "TRUE", "FALSE": "FALSE", "0": "FALSE"}
+MOST_REPETITIONS = 20  # that a DEF is done by hand in a class
 
 
 def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
@@ -52,14 +52,16 @@ def _report_lamp(scope: Scope, node: ast.Command) -> bool:
     """
     word, arguments = node.word, node.arguments or ()
     given = [scope.source[argument.span].upper() for argument in arguments]
-    answers = [yes_no_of(each) or _SWITCHED.get(each, "") for each in given]
-    is_light = said_of(word, "stem")[:1] == ("LIGHT",) and len(answers) == 1 and bool(answers[0])
-    if word == _LAMP or not (concept_of(word) == _LAMP or is_light):
+    answers = [yes_no_of(each) or _TRUTH_BY_VALUE.get(each, "") for each in given]
+    is_light = (
+        lexicon_meaning(word, "stem")[:1] == ("LIGHT",) and len(answers) == 1 and bool(answers[0])
+    )
+    if word == _LAMP_NAME or not (lexicon_concept(word) == _LAMP_NAME or is_light):
         return False
     said = {"lamp": word}
-    if any(device.name == _LAMP and device.is_yes_no for device in scope.kit.actuators):
+    if any(device.name == _LAMP_NAME and device.is_yes_no for device in scope.kit.actuators):
         answer = answers[0] if len(answers) == 1 and answers[0] else "TRUE"
-        said |= {"switch": _LAMP, "fix": f"{_LAMP}({answer})"}
+        said |= {"switch": _LAMP_NAME, "fix": f"{_LAMP_NAME}({answer})"}
     scope.report(codes.SWITCH_WHAT, node.word_span, node.span, **said)
     return True
 
@@ -84,20 +86,20 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     scope.report(codes.UNKNOWN_WORD, span, None, found=scope.source[span].upper(), near=suggestion)
 
 
-def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
-    """`F(tiempo, potencia)`: these names stand for numbers. Drops the diagnostics since `said`."""
+def report_placeholders(scope: Scope, node: ast.Command, word: Word, count: int) -> None:
+    """`F(tiempo, potencia)`: these names stand for numbers. Drops the diagnostics since `count`."""
     texts = [scope.source[argument.span].upper() for argument in node.arguments or ()]
     if len(texts) == len(word.arguments) and all(map(names_argument, texts, word.arguments)):
-        del scope.diagnostics[said:]
+        del scope.diagnostics[count:]
         scope.report(codes.PLACEHOLDER, node.span, usage=word.usage, example=word.example)
 
 
-def report_words_shown(scope: Scope, said: int) -> None:
-    """`SHOW(HOLA)`: words are not shown. Changes the diagnostics since `said`."""
+def report_words_shown(scope: Scope, count: int) -> None:
+    """`SHOW(HOLA)`: words are not shown. Changes the diagnostics since `count`."""
     shown = dict.fromkeys(
-        diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:ENOUGH]
+        diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:MOST_SUGGESTIONS]
     )
-    for k, each in enumerate(scope.diagnostics[said:], said):
+    for k, each in enumerate(scope.diagnostics[count:], count):
         if each.code is codes.UNKNOWN_NAME and not each.values.get("near"):
             name = each.values["found"]
             number = str(len([*takewhile(name.__ne__, filter(None, shown))]) + 1)
@@ -109,9 +111,9 @@ def report_words_shown(scope: Scope, said: int) -> None:
 def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
     """Return the one name that `part` is a word of, or shortened: MI_VELOCIDAD for VELOCIDAD, VEL.
 
-    After ENOUGH mistakes the names are not searched, so that a long program stays fast.
+    After MOST_SUGGESTIONS mistakes the names are not searched, so that a long program stays fast.
     """
-    if part in names or len(scope.diagnostics) >= ENOUGH:
+    if part in names or len(scope.diagnostics) >= MOST_SUGGESTIONS:
         return ""
     matches = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
     return matches[0] if len(matches) == 1 else ""
@@ -142,7 +144,12 @@ def report_not_callable(scope: Scope, node: ast.Command) -> None:
     fix, names = "", _unset_names(scope, node.word)
     if text and texts and len(names) == len(texts):
         text["head"] = f"DEF {node.word}({', '.join(names)})"
-    elif text and len(texts) == 1 and texts[0].isdecimal() and 1 < int(texts[0][:9]) <= MANY_TIMES:
+    elif (
+        text
+        and len(texts) == 1
+        and texts[0].isdecimal()
+        and 1 < int(texts[0][:9]) <= MOST_REPETITIONS
+    ):
         text["times"] = texts[0]
         fix = f"LOOP({texts[0]});{node.word};{BLOCK_ENDS['LOOP']}"
     place = node.span if "times" in text else None

@@ -16,7 +16,7 @@ from tiniscript.base.fixed_point import HIGHEST, as_text
 from tiniscript.base.kit import Device
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import (
-    OTHER_WAY,
+    OPPOSITE_MOVES,
     POWER,
     TIME,
     UNIT_OF,
@@ -29,10 +29,10 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
-from tiniscript.semantics.driven_on import driven_on
-from tiniscript.semantics.left_out import left_out
+from tiniscript.semantics.driven_on import find_move_end
+from tiniscript.semantics.left_out import rewrite_without_break
 from tiniscript.semantics.named_values import yes_no_of
-from tiniscript.semantics.symbols import ENOUGH, Name, Scope
+from tiniscript.semantics.symbols import MOST_SUGGESTIONS, Name, Scope
 from tiniscript.semantics.unknown_words import (
     report_not_callable,
     report_placeholders,
@@ -46,25 +46,30 @@ from tiniscript.syntax.free_names import numbered_names
 if TYPE_CHECKING:
     from tiniscript.semantics.task_copies import Excess
 
-_PAIR = re.compile(r"(?i)\b([FBLR])[ \t]*\([ \t]*(\w+)[ \t]*(CM|DEG)\b")  # `F(20 DEG`
+_MOVE_WITH_UNIT = re.compile(r"(?i)\b([FBLR])[ \t]*\([ \t]*(\w+)[ \t]*(CM|DEG)\b")  # `F(20 DEG`
 # How an instruction is ended by a condition, by the role of its word.
-_ENDED = {"motors": "{call};W(FOREVER) UNTIL({c});S",
+_ENDED_MOVE = {"motors": "{call};W(FOREVER) UNTIL({c});S",
           **dict.fromkeys(("stop", "actuator"), "{call};W(FOREVER) UNTIL({c})"),
           **dict.fromkeys(("show", "beep", "def"),
                           "WHILE(NOT ({c}));{call};END_WHILE")}  # fmt: skip
 _LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
 _LOWEST_HERTZ = 30
-_MOST_POWER = 100
+_HIGHEST_POWER = 100
 _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
-_UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
+_UNTIL_CLAUSE = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its condition
 _UNTIL_BEFORE = re.compile(r"(?i)\bUNTIL[ \t]*(\([^()\n;]+\))[\s;]*$")
-_LONGEST_BEFORE = 200
-_FEW = [str(k) for k in range(2, 10)]  # so many may be times, or seconds
-_NAMED = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
+_MOST_CHARACTERS_BEFORE = 200
+_FEW_TIMES = [str(k) for k in range(2, 10)]  # so many may be times, or seconds
+_NAMED_VALUE = re.compile(r"(\w+)\s*=\s*([^=].*)")  # `size=20`
 # By the unit of a sensor, the unit of a move that goes as far, and how many of it one is.
-_WAY_OF = {"cm": ("CM", Fraction(1)), "mm": ("CM", Fraction(1, 10)), "m": ("CM", Fraction(100)),
-           "°": ("DEG", Fraction(1)), "deg": ("DEG", Fraction(1))}  # fmt: skip
+_WAY_BY_UNIT = {
+    "cm": ("CM", Fraction(1)),
+    "mm": ("CM", Fraction(1, 10)),
+    "m": ("CM", Fraction(100)),
+    "°": ("DEG", Fraction(1)),
+    "deg": ("DEG", Fraction(1)),
+}
 
 
 class WrongCalls:
@@ -112,14 +117,14 @@ class WrongCalls:
         call = source[Span(node.span.start, start)].rstrip()
         own = self.scope.names.get(node.word)
         role = word.role.name if word else own.what if own else "def"
-        text = _ENDED.get(role, "F(5, 60) UNTIL({c})")
+        text = _ENDED_MOVE.get(role, "F(5, 60) UNTIL({c})")
         example = text.format(call=call, c=source[until.span])
         place = Span(start, node.span.end)
         self.scope.report(codes.UNTIL_NOT_HERE, place, word=node.word, example=example)
 
     def report_break_outside(self, node: ast.Break) -> None:
         """BREAK as the last of a branch of an IF: the other branch has what it leaves out."""
-        found = left_out(self.scope.source, self.scope.parsed, node)
+        found = rewrite_without_break(self.scope.source, self.scope.parsed, node)
         if found is None:
             self.scope.report(codes.BREAK_OUTSIDE, node.span)
             return
@@ -133,7 +138,7 @@ class WrongCalls:
         """FOREVER at `span` in a move without UNTIL."""
         source = self.scope.source
         fix = f"{source[node.span]} UNTIL({next_condition(source, node.span)})"
-        said = {"fix": fix, **driven_on(source, self.scope.parsed, node)}
+        said = {"fix": fix, **find_move_end(source, self.scope.parsed, node)}
         self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, None, word=word.text, **said)
 
     def report_count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
@@ -167,8 +172,8 @@ class WrongCalls:
         said = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
         called = "R" if right == "CM" else "F"
         said["other"] = called + self.scope.source[node.span][len(node.word) :]
-        is_early = len(self.scope.diagnostics) < ENOUGH
-        pairs = _PAIR.finditer(self.scope.source.text) if is_early else ()
+        is_early = len(self.scope.diagnostics) < MOST_SUGGESTIONS
+        pairs = _MOVE_WITH_UNIT.finditer(self.scope.source.text) if is_early else ()
         others = [pair for pair in pairs if UNIT_OF[pair[1].upper()] != pair[3].upper()]
         for one, other in (others, others[::-1]) if len(others) == 2 else ():
             if one.start() == start and one[2] != other[2] and one[3].upper() != other[3].upper():
@@ -234,7 +239,7 @@ class WrongCalls:
             rf"(?i)\b([FBLR])[ \t]*\([ \t]*({node.name}(?:[ \t]+(?:CM|DEG))?)[ \t]*,[^()\n]*\)"
         )
         uses = [*pattern.finditer(text, end, last)]
-        unit, factor = _WAY_OF.get(sensor.unit.lower(), ("", Fraction()))
+        unit, factor = _WAY_BY_UNIT.get(sensor.unit.lower(), ("", Fraction()))
         if not uses or not unit:
             return None
         said = {"name": node.name, "value": value, "used": uses[0][0]}
@@ -260,7 +265,7 @@ class WrongCalls:
     def report_named_values(self, node: ast.Command, names: Sequence[str]) -> bool:
         """Report `SIDE(size=20)`, which names a value of the DEF; return whether it does."""
         texts = [self.scope.source[argument.span] for argument in node.arguments or ()]
-        named = [_NAMED.fullmatch(text) for text in texts]
+        named = [_NAMED_VALUE.fullmatch(text) for text in texts]
         given = {it[1].upper(): it[2] for it in named if it}
         rest = [text for text, it in zip(texts, named, strict=True) if it is None]
         free = [name for name in names if name not in given]
@@ -326,7 +331,9 @@ def _without_until(source: Source, node: ast.Command) -> Span:
 
 _NEXT_QUESTION = re.compile(r"(?i)[\s;]{0,200}IF[ \t]*\(([^()\r\n;]{0,60}[<>=][^()\r\n;]{1,60})\)")
 
-_ASKED = re.compile(r"\b(DISTANCE)[ \t]{0,9}(<=?)[ \t]{0,9}([0-9]+(?:\.[0-9]+)?)\b", re.IGNORECASE)
+_NEAR_QUESTION = re.compile(
+    r"\b(DISTANCE)[ \t]{0,9}(<=?)[ \t]{0,9}([0-9]+(?:\.[0-9]+)?)\b", re.IGNORECASE
+)
 
 
 def next_condition(source: Source, span: Span) -> str:
@@ -336,18 +343,20 @@ def next_condition(source: Source, span: Span) -> str:
     """
     if match := _NEXT_QUESTION.match(source.text, span.end):
         return match[1].strip()
-    own = _ASKED.search(source.text, span.end) or _ASKED.search(source.text, 0, span.start)
+    own = _NEAR_QUESTION.search(source.text, span.end) or _NEAR_QUESTION.search(
+        source.text, 0, span.start
+    )
     return " ".join(own.groups()) if own else "DISTANCE < 10"
 
 
 def _until_of(source: Source, span: Span) -> re.Match[str] | None:
     """Return the UNTIL behind an instruction, or alone before it, as if it began a block."""
-    before = source.text[max(0, span.start - _LONGEST_BEFORE) : span.start]
-    return _UNTIL.search(source[span]) or _UNTIL_BEFORE.search(before)
+    before = source.text[max(0, span.start - _MOST_CHARACTERS_BEFORE) : span.start]
+    return _UNTIL_CLAUSE.search(source[span]) or _UNTIL_BEFORE.search(before)
 
 
 _LOW_TONE = 150  # hertz: a note that is no round number, as powers are
-_ROUND = 50
+_ROUND_STEP = 50
 
 
 def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
@@ -365,14 +374,14 @@ def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, st
     if word.role.name == "beep":
         if re.fullmatch(r"\d+\.\d{3}", second):  # `BEEP(1, 1.000)`
             values["fix"] = f"{word.text}({first}, {second.replace('.', '')})"
-        elif _is_whole(first) > _LOWEST_HERTZ:
+        elif _whole_number(first) > _LOWEST_HERTZ:
             values |= {"fix": f"{word.text}({second}, {first})", "usage": word.usage}
         elif is_short:
             values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
-    elif word.text in OTHER_WAY:
+    elif word.text in OPPOSITE_MOVES:
         if sum(text.startswith("-") for text in texts) == 1:
             shown = ", ".join(text.lstrip("- ") for text in texts)
-            values["fix"] = f"{OTHER_WAY[word.text]}({shown})"
+            values["fix"] = f"{OPPOSITE_MOVES[word.text]}({shown})"
         elif word.text == "B" and is_short and _is_note(second):
             values["sound"] = f"BEEP({first}, {second})"
         elif is_short:
@@ -380,14 +389,14 @@ def repair_values(source: Source, node: ast.Command, word: Word) -> dict[str, st
     return values
 
 
-def _is_whole(text: str) -> int:
+def _whole_number(text: str) -> int:
     """Return a whole number, 0 for anything else."""
     return int(text[:9]) if text.isdecimal() else 0
 
 
 def _is_note(text: str) -> bool:
     """Whether a number is rather a tone than a power: 440, but not 200."""
-    return _is_whole(text) >= _LOW_TONE and _is_whole(text) % _ROUND != 0
+    return _whole_number(text) >= _LOW_TONE and _whole_number(text) % _ROUND_STEP != 0
 
 
 def _count_values(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
@@ -398,11 +407,11 @@ def _count_values(texts: Sequence[str], word: Word, until: re.Match[str] | None)
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
     result = {"power": "", "spare": "", "kept": ""}
-    if word.role.name == "beep" and len(texts) == 1 and texts[0] in _FEW:
+    if word.role.name == "beep" and len(texts) == 1 and texts[0] in _FEW_TIMES:
         result["number"] = texts[0]
         result["often"] = f"LOOP({texts[0]});{word.example};W(0.5);END_LOOP"
         result["long"] = _call(word, [texts[0], word.arguments[1].sample])
-    if word.role.is_move and len(texts) == 1 and _LONG_TIME_S <= numbers[0] <= _MOST_POWER:
+    if word.role.is_move and len(texts) == 1 and _LONG_TIME_S <= numbers[0] <= _HIGHEST_POWER:
         result["power"] = _call(word, [TIME.sample, texts[0]])
         if until is not None:
             result["endless"] = f"{word.text}(FOREVER, {texts[0]}) {until[0].strip().rstrip(';')}"
@@ -411,11 +420,11 @@ def _count_values(texts: Sequence[str], word: Word, until: re.Match[str] | None)
         is_sound = word.role.name == "beep" and numbers[1] > _LOWEST_HERTZ
         if is_sound or len(word.arguments) == 1:
             result["spare"] = _call(word, texts[: len(word.arguments)])
-        if word.role.is_move and numbers[0] < _LONG_TIME_S <= numbers[1] <= _MOST_POWER:
+        if word.role.is_move and numbers[0] < _LONG_TIME_S <= numbers[1] <= _HIGHEST_POWER:
             result["spare"] = _call(word, texts[:2])
         is_timed = word.role.name == "wait" and len(texts) == len(_TIME_AND_POWER)
         for first, second in (_TIME_AND_POWER, _TIME_AND_POWER[::-1]):
-            if is_timed and 0 <= numbers[first] < _LONG_TIME_S <= numbers[second] <= _MOST_POWER:
+            if is_timed and 0 <= numbers[first] < _LONG_TIME_S <= numbers[second] <= _HIGHEST_POWER:
                 result["kept"] = _call(word, [texts[first]])
     return result
 

@@ -9,22 +9,24 @@ from __future__ import annotations
 import re
 
 from tiniscript.base.source import Span
-from tiniscript.base.words import OTHER_WAY, WORDS
+from tiniscript.base.words import OPPOSITE_MOVES, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery.amounts import is_amount, with_number
-from tiniscript.recovery.meanings import meant_by, said_of
+from tiniscript.recovery.meanings import lexicon_meaning, meant_by
 from tiniscript.semantics.comparisons import is_aside
 from tiniscript.semantics.named_values import value_of, yes_no_of
-from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
+from tiniscript.semantics.symbols import MOST_SUGGESTIONS, NUMBER, Operand, Scope
 from tiniscript.semantics.unknown_words import whole_name
 from tiniscript.syntax.ast import Def, Part
 from tiniscript.syntax.operators import SIGN_OF
 
-_EQUAL = frozenset(("EQ", "NE"))
-_COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
-_COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
-_NEAR = 20  # characters before a name in which its word is looked for
-_COMPARED_WITH = re.compile(r"(\w+)\s*(?:=|<>)\s*$")  # `BUTTON = ` of `BUTTON = HIGH`
+_EQUALITY_OPS = frozenset(("EQ", "NE"))
+_COMPARISON = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
+_COMPARISON_BEFORE = re.compile(
+    r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)"
+)  # `X =` of `X = 5`
+_CHARACTERS_BEFORE = 20  # characters before a name in which its word is looked for
+_EQUALITY_BEFORE = re.compile(r"(\w+)\s*(?:=|<>)\s*$")  # `BUTTON = ` of `BUTTON = HIGH`
 _TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
 _TONE_BEFORE = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
 _DIGITS = "0123456789"
@@ -41,7 +43,7 @@ class WrongValues:
             scope.report(codes.NO_VALUE, span, word=name)
             return
         meant = meant_by(name) or ""
-        before = scope.source.text[max(0, span.start - _NEAR) : span.start]
+        before = scope.source.text[max(0, span.start - _CHARACTERS_BEFORE) : span.start]
         is_variable = meant == "TIME" and _TIME_BEFORE.search(before) is not None
         if meant == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
@@ -52,25 +54,27 @@ class WrongValues:
             if not self._is_said(span):
                 scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
             return
-        names = scope.names.items() if len(scope.diagnostics) < ENOUGH else ()
+        names = scope.names.items() if len(scope.diagnostics) < MOST_SUGGESTIONS else ()
         known = [each for each, meaning in names if meaning.what in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
         known += ["FOREVER"] if is_forever else []
-        suggestion = "".join(said_of(name, "number")) or scope.nearest_word(name, known)
+        suggestion = "".join(lexicon_meaning(name, "number")) or scope.nearest_word(name, known)
         suggestion = suggestion or (
-            "".join(said_of(name, "power")) if before.rstrip().endswith("=") else ""
+            "".join(lexicon_meaning(name, "power")) if before.rstrip().endswith("=") else ""
         )
         suggestion = suggestion or whole_name(scope, name, scope.set_somewhere)
-        if (match := _COMPARED_WITH.search(before)) and scope.is_yes_no_sensor(match[1].upper()):
+        if (match := _EQUALITY_BEFORE.search(before)) and scope.is_yes_no_sensor(match[1].upper()):
             suggestion = yes_no_of(name) or suggestion
         base = name.rstrip(_DIGITS).rstrip("_")  # DISTANCE, of DISTANCE2
-        stem = ("".join(said_of(base, "stem")) or base) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
+        stem = (
+            "".join(lexicon_meaning(base, "stem")) or base
+        ) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
         sensors = [each for each, meaning in names if meaning.what == "sensor"]
         if name == target or name in scope.set_somewhere:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
-                   for diagnostic in scope.diagnostics[-ENOUGH:]):  # fmt: skip
+                   for diagnostic in scope.diagnostics[-MOST_SUGGESTIONS:]):  # fmt: skip
                 return  # said once
             scope.report_used(name, span, suggestion)
         else:
@@ -83,14 +87,14 @@ class WrongValues:
             is_said = not (suggestion or said or which or only or is_variable)
             if is_said and self._is_compared(span) and (seen := self._on_side(meant)):
                 suggestion = seen
-            elif is_said and meant in OTHER_WAY:
+            elif is_said and meant in OPPOSITE_MOVES:
                 said = {"way": meant, "call": WORDS[meant].example}
-            elif is_said and said_of(name + "4", "note") and _TONE_BEFORE.search(before):
-                said = {"pitch": said_of(name + "4", "note")[0]}
-            elif not which and not is_variable and said_of(name, "unsensed"):
+            elif is_said and lexicon_meaning(name + "4", "note") and _TONE_BEFORE.search(before):
+                said = {"pitch": lexicon_meaning(name + "4", "note")[0]}
+            elif not which and not is_variable and lexicon_meaning(name, "unsensed"):
                 its_own = ", ".join(sensor.name for sensor in scope.kit.sensors)
                 said, suggestion = {"unsensed": name, "sensors": its_own}, ""
-            elif is_said and said_of(name, "colour"):
+            elif is_said and lexicon_meaning(name, "colour"):
                 said = {"colour": name}
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=suggestion,
                          value=value_of(name), only=only, aside=aside, **said, **which)  # fmt: skip
@@ -104,12 +108,12 @@ class WrongValues:
     def _on_side(self, way: str) -> str:
         """Return the one sensor of the robot on L or R, which measures, "" for none."""
         found = [it.name for it in self.scope.kit.sensors if it.name.endswith(f"_{way}")]
-        return found[0] if len(found) == 1 and way in OTHER_WAY else ""
+        return found[0] if len(found) == 1 and way in OPPOSITE_MOVES else ""
 
     def _amount(self, span: Span, name: str) -> dict[str, str]:
         """Return how the call around `poco` is written, or around the `lento` beside it."""
         scope = self.scope
-        if not is_amount(name) and not said_of(name, "power"):
+        if not is_amount(name) and not lexicon_meaning(name, "power"):
             return {}
         text = with_number(scope.source.text, span, scope.set_somewhere)
         return text if is_amount(name) or "(" in text.get("example", "") else {}
@@ -154,7 +158,7 @@ class WrongValues:
             values = {**values, "example": f"{result.upper()} > 0"}
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
-            before, after = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
+            before, after = _COMPARISON_BEFORE.match(asked), _COMPARISON.fullmatch(asked)
             is_sensor = result.upper() in (reading.name for reading in self.scope.kit.readings)
             if other.start < operand.start and before and not is_sensor:
                 values = {"fix": f"{before[0]} {result}"}
@@ -181,7 +185,7 @@ class WrongValues:
         number, answer = (left, right) if left.type == NUMBER else (right, left)
         digit = self.scope.source[Span(number.start, number.end)]
         result = self.scope.source[Span(answer.start, answer.end)]
-        if digit not in ("0", "1") or op not in _EQUAL or not result.isidentifier():
+        if digit not in ("0", "1") or op not in _EQUALITY_OPS or not result.isidentifier():
             return ""
         return result.upper() if (digit == "1") == (op == "EQ") else f"NOT {result.upper()}"
 

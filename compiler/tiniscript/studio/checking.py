@@ -15,11 +15,11 @@ from tiniscript.base.kit import REMOTE, Kit
 from tiniscript.base.source import Edit, Source
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import OFFERS, edits_of, offer
+from tiniscript.diagnostics.fixing import MOST_OFFERS, edits_of, edits_offered
 from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library import source_map
-from tiniscript.library.compiling import Compiled, compile_source, for_robot, text_of
-from tiniscript.library.named_robot import name_in, robot_of
+from tiniscript.library.compiling import Compiled, compile_source, fit_to_robot, text_of
+from tiniscript.library.named_robot import robot_of, shipped_name_in
 from tiniscript.library.shows import Show, Shows
 from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.profile import Robot
@@ -74,7 +74,7 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     profile = profile_for(data, robot)
     compiled = _compile(data, robot)
     findings = _findings(compiled, language)
-    names_robot = name_in(data) is not None
+    names_robot = shipped_name_in(data) is not None
     if not compiled.is_right or compiled.program is None:
         return Checked(b"", 0, findings, (), (), (), "", profile.name, names_robot)
     variables = tuple(map(Variable, compiled.program.variables, compiled.yes_no))
@@ -108,7 +108,7 @@ def repair(data: bytes, robot: str, which: int) -> tuple[Change, ...]:
         changed = text.encode()
         return compile_source(changed, profile_for(changed, robot), "", is_strict=True).diagnostics
 
-    edits = offer(result.source.text, result.diagnostics, which, check)
+    edits = edits_offered(result.source.text, result.diagnostics, which, check)
     return tuple(_change(edit, result.source) for edit in edits)
 
 
@@ -149,13 +149,13 @@ def profile_for(data: bytes, robot: str) -> Robot:
 @lru_cache(maxsize=1)  # whose buttons are asked for, one after the other
 def _compile(data: bytes, robot: str) -> Compiled:
     profile = profile_for(data, robot)
-    return for_robot(compile_source(data, profile, "", is_strict=True), profile)
+    return fit_to_robot(compile_source(data, profile, "", is_strict=True), profile)
 
 
 def _findings(compiled: Compiled, language: str) -> tuple[Finding, ...]:
     """Return the messages; the first of those that name changes may have a button."""
     named = [k for k, diagnostic in enumerate(compiled.diagnostics) if edits_of(diagnostic)][
-        :OFFERS
+        :MOST_OFFERS
     ]
     return tuple(
         Finding(message(diagnostic, compiled.source, language), k in named)

@@ -19,7 +19,7 @@ from time import time
 from typing import Any, NamedTuple
 
 from tiniscript import robots
-from tiniscript.base.files import LOCK, contents, replace, settings_folder, try_lock
+from tiniscript.base.files import LOCK_ENDING, contents, replace, settings_folder, try_lock
 
 Json = dict[str, Any]
 
@@ -96,7 +96,7 @@ class Keeper:
         flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
         try:
             path().parent.mkdir(parents=True, exist_ok=True)
-            number = os.open(path().with_name(path().name + LOCK), flags, 0o600)
+            number = os.open(path().with_name(path().name + LOCK_ENDING), flags, 0o600)
         except OSError:
             return True
         is_ours = True

@@ -22,7 +22,7 @@ from threading import RLock
 from time import monotonic
 
 from tiniscript.lessons import catalogue
-from tiniscript.link.port_names import same_for_all
+from tiniscript.link.port_names import canonical_port
 from tiniscript.studio.class_keeping import (
     MOST_LESSONS,
     MOST_PUPILS,
@@ -605,8 +605,8 @@ class Classroom:
 
     def _give(self, given: ClassRobot, is_given: bool) -> None:
         """Give a robot to the class, or take it away."""
-        port = same_for_all(given.port)
-        same = [robot for robot in self._robots if same_for_all(robot.port) == port]
+        port = canonical_port(given.port)
+        same = [robot for robot in self._robots if canonical_port(robot.port) == port]
         for class_robot in same:
             if not is_given:
                 class_robot.take_back()
@@ -736,7 +736,7 @@ def _new_code() -> str:
 
 def _name_of(port: str) -> str:
     """Return the name of the robot that was there last, or nothing."""
-    same = same_for_all(port)
+    same = canonical_port(port)
     return next(
-        (str(item["name"]) for item in list_ports() if same_for_all(item["port"]) == same), ""
+        (str(item["name"]) for item in list_ports() if canonical_port(item["port"]) == same), ""
     )

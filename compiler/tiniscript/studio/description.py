@@ -15,7 +15,7 @@ from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
 from tiniscript.library import opening
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
-from tiniscript.link.remote import EVERY_MS
+from tiniscript.link.remote import REPEAT_MS
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
 from tiniscript.studio import class_keeping
@@ -50,7 +50,7 @@ def description() -> dict[str, Any]:
             "long_quiet_ms": round(opening.LONG_QUIET_S * 1000),
             "confirm_ms": round(opening.CONFIRM_S * 1000),
             "name_bytes": NAME_BYTES,
-            "keys_every_ms": EVERY_MS,
+            "keys_every_ms": REPEAT_MS,
         },
         "class": {
             "form": class_keeping.FORM,
@@ -72,7 +72,7 @@ def _robot(profile: Robot) -> dict[str, Any]:
         "baud": profile.board.baud,
         "speed_cm_s": profile.body.speed_cm_s,
         "wheel_base_cm": profile.body.wheel_base_cm,
-        "quiet_ms": round(opening.QUIET_S.get(profile.board.chip, 0) * 1000),
+        "quiet_ms": round(opening.QUIET_S_BY_BOARD.get(profile.board.chip, 0) * 1000),
         "outline": [[point.x, point.y] for point in Hull(profile.body).outline(Pose(0, 0, 0))],
         "places": {name: place._asdict() for name, place in profile.body.places.items()},
         "devices": [

@@ -16,7 +16,7 @@ from typing import Any
 from tiniscript.base.languages import languages
 from tiniscript.base.source import printable
 from tiniscript.link import known_ports, ports
-from tiniscript.link.port_names import is_there, same_for_all
+from tiniscript.link.port_names import canonical_port, is_there
 from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.hosted_robot import PARTS_S, HostedRobot
 from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, robot_of, whole_number
@@ -125,11 +125,11 @@ class Hosting:
     def _robots_at(self, port: str) -> list[HostedRobot]:
         """Return who has a port, or is closing it. One that holds it for another command shares it
         with whoever comes."""
-        same = same_for_all(port)
+        same = canonical_port(port)
         all_of_them = [*self._by_page.values(), *self._parting]
         held = [robot for robot in all_of_them
                 if (robot.is_parting or not robot.has_ended) and not robot.holds]  # fmt: skip
-        return [robot for robot in held if same_for_all(robot.port) == same]
+        return [robot for robot in held if canonical_port(robot.port) == same]
 
     def _forget_ended(self) -> None:
         """Forget what has ended, once its page knows why or is not there any more."""
@@ -161,7 +161,7 @@ def list_ports() -> list[Json]:
     `name` is that of the robot that had answered there, `virtual` the profile of a virtual robot.
     """
     known = known_ports.remembered_ports()
-    virtual = {item.address: item for item in directory.for_all()}
+    virtual = {item.address: item for item in directory.unclaimed_robots()}
     about = {item.port: item.description for item in ports.list_ports()}
     names = [*about, *(port for port in virtual if port not in about)]
     names += [port for port in known.names

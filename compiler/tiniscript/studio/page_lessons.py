@@ -21,8 +21,8 @@ from tiniscript.lessons.marking import Marking, Outcome
 from tiniscript.lessons.running import ASKS, STEP_MS, Trial
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.variation import is_mirrored, point_of, vary
-from tiniscript.library.compiling import compile_source, for_robot, image_maker
-from tiniscript.library.named_robot import name_in
+from tiniscript.library.compiling import compile_source, fit_to_robot, image_maker
+from tiniscript.library.named_robot import shipped_name_in
 from tiniscript.link.session import Session
 from tiniscript.studio.block_form import kinds_in
 from tiniscript.studio.block_kinds import KIND_OF
@@ -134,12 +134,12 @@ class Check:
 
     def __init__(self, number: int, data: bytes, language: str) -> None:
         lesson = _lesson(number)
-        lesson = lesson._replace(robot=name_in(data) or lesson.robot)
+        lesson = lesson._replace(robot=shipped_name_in(data) or lesson.robot)
         self._language = language
         self._worlds = lesson.worlds
         self._marking: Marking | None = None
         profile = profile_of(lesson.robot)
-        result = for_robot(compile_source(data, profile, "", is_strict=True), profile)
+        result = fit_to_robot(compile_source(data, profile, "", is_strict=True), profile)
         if result.is_right:
             seeds = range(1, lesson.worlds + 1)
             text = result.source.text

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.bytecode.image import checksum
-from tiniscript.library.compiling import Compiled, compile_source, for_robot
+from tiniscript.library.compiling import Compiled, compile_source, fit_to_robot
 from tiniscript.library.source_map import Map, MapLocation, map_of_compiled
 from tiniscript.robots import load
 from tiniscript.semantics import ir
@@ -73,7 +73,7 @@ def ready(recording: Recording) -> Ready:
     profile = load(recording.robot)
     data = recording.text.encode("utf-8", "replace")
     compiled: Compiled = compile_source(data, profile, "", is_strict=True, is_chosen=True)
-    compiled = for_robot(compiled, profile)
+    compiled = fit_to_robot(compiled, profile)
     if (
         compiled.program is None
         or not compiled.image

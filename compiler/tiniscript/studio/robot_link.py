@@ -17,7 +17,7 @@ from tiniscript import robots
 from tiniscript.base.fixed_point import value_text
 from tiniscript.base.source import printable
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
-from tiniscript.library.known_kits import shipped_of_kit
+from tiniscript.library.known_kits import shipped_name_of_kit
 from tiniscript.library.refusing import refusal
 from tiniscript.link.authority import ownership_of
 from tiniscript.link.connection import (
@@ -254,7 +254,7 @@ def about(robot: DeviceInfo) -> Json:
     return {
         "name": printable(robot.name),
         "id": f"{robot.id:08x}",
-        "robot": shipped_of_kit(robot.kit),
+        "robot": shipped_name_of_kit(robot.kit),
         "owner": ownership_of(robot),
         "room": robot.room,
         "is_running": robot.values.state == STATE_RUNNING,

@@ -12,7 +12,7 @@ from tiniscript.base.fixed_point import ONE
 from tiniscript.base.trace import Event
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.messages import HOLD_MS
-from tiniscript.link.remote import NOTHING, Pressed
+from tiniscript.link.remote import NOTHING_PRESSED, Pressed
 from tiniscript.link.requests import OK
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.recordings import DOWN, HALT, HELD, UP, Row, Rows
@@ -130,7 +130,7 @@ class Simulation:
         self._taken = 0  # rows that somebody has had
         self._events: list[Event] = []
         self._done: list[str] = []  # by somebody, for the next whole millisecond
-        self._pressed, self._said_ms = NOTHING, 0
+        self._pressed, self._said_ms = NOTHING_PRESSED, 0
         self._is_amid = False  # a millisecond: the program was held
 
     def _advance(self, duration_ms: int) -> None:
@@ -217,7 +217,9 @@ class Simulation:
         """Hold these keys of a remote control and its pad so, until something else is said; who
         says nothing for half a second of the robot's time holds nothing."""
         pressed, now_ms = Pressed(keys, x, y), self.robot.now_ms
-        if pressed == self._pressed and (pressed == NOTHING or now_ms - self._said_ms < SAID_MS):
+        if pressed == self._pressed and (
+            pressed == NOTHING_PRESSED or now_ms - self._said_ms < SAID_MS
+        ):
             return
         self._pressed, self._said_ms = pressed, now_ms
         self._done.append(f"KEYS {keys} {x} {y}")

@@ -99,8 +99,10 @@ def _learn(fields: Answer, data: bytes) -> Answer:
     folder = languages.FOLDER / fields["language"]
     folder.mkdir(exist_ok=True)
     for name, texts in json.loads(data).items():
-        (folder / f"{name}{languages.KEPT}").write_bytes(marshal.dumps(texts, languages.KEPT_FORM))
-    languages.forget()
+        (folder / f"{name}{languages.CACHE_ENDING}").write_bytes(
+            marshal.dumps(texts, languages.MARSHAL_VERSION)
+        )
+    languages.forget_languages()
     return {}
 
 

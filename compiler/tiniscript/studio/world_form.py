@@ -10,10 +10,10 @@ import math
 from typing import Any
 
 from tiniscript.base.fixed_point import ONE
-from tiniscript.base.languages import SOURCE, ByLanguage, languages
+from tiniscript.base.languages import SOURCE_LANGUAGE, ByLanguage, languages
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
-from tiniscript.virtual.worlds import LARGEST_CM, MOST_S, PARTS, POINTS
+from tiniscript.virtual.worlds import LARGEST_CM, MOST_PARTS, MOST_POINTS, MOST_S
 
 DECIMALS = 3  # that a world's file may have
 Form = dict[str, Any]
@@ -21,7 +21,12 @@ Form = dict[str, Any]
 
 def limits() -> dict[str, int]:
     """Return how many parts of a kind a world may have, how many points a part, and its numbers."""
-    return {"parts": PARTS, "points": POINTS, "cm": LARGEST_CM // ONE, "seconds": MOST_S // ONE}
+    return {
+        "parts": MOST_PARTS,
+        "points": MOST_POINTS,
+        "cm": LARGEST_CM // ONE,
+        "seconds": MOST_S // ONE,
+    }
 
 
 def form_of(world: World) -> Form:
@@ -54,8 +59,8 @@ def toml_of(form: Form) -> str:
     labels = form["labels"]
     if set(labels.values()) == {form["name"]}:
         labels = {}  # the name of a file, which the next one may have differently
-    elif SOURCE in labels:  # without what the catalogue of names says of it
-        by_language = ByLanguage({SOURCE: labels[SOURCE]})
+    elif SOURCE_LANGUAGE in labels:  # without what the catalogue of names says of it
+        by_language = ByLanguage({SOURCE_LANGUAGE: labels[SOURCE_LANGUAGE]})
         labels = {
             **by_language,
             **{value: name for value, name in labels.items() if name != by_language[value]},

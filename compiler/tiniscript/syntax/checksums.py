@@ -13,7 +13,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 
 # a line, and the checksum at its first ~
-_CHECKED = re.compile(
+_CHECKED_LINE = re.compile(
     rf"(?:\A|(?<=[\r\n]))([^~\r\n]*)~([0-9A-Fa-f]{{8}})(?=[{SPACES}]*(?:[\r\n]|\Z))"
 )
 
@@ -31,9 +31,9 @@ def with_checksum(line: str) -> str:
 def without_checksums(text: str) -> tuple[str, list[Diagnostic]]:
     """Return `text` with spaces in the place of checksums, and those that do not fit."""
     wrong = []
-    for match in _CHECKED.finditer(text):
+    for match in _CHECKED_LINE.finditer(text):
         if checksum_of(match[1]) != int(match[2], 16):
             span = Span(match.end(1), match.end())
             found = {"found": f"~{match[2]}"}
             wrong.append(Diagnostic(codes.CHECKSUM_WRONG, span, found))
-    return _CHECKED.sub(rf"\1{' ' * 9}", text), wrong
+    return _CHECKED_LINE.sub(rf"\1{' ' * 9}", text), wrong

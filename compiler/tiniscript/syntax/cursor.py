@@ -8,8 +8,8 @@ from __future__ import annotations
 from tiniscript.base.source import Source, Span
 from tiniscript.syntax.lexer import END, NEWLINE, Token
 
-AT_END = frozenset((";", NEWLINE, END))  # where an instruction ends
-AFTER_VALUE = frozenset((",", ")", *AT_END))  # where a value does
+INSTRUCTION_ENDS = frozenset((";", NEWLINE, END))  # where an instruction ends
+VALUE_ENDS = frozenset((",", ")", *INSTRUCTION_ENDS))  # where a value does
 
 
 class Cursor:

@@ -11,11 +11,11 @@ from typing import NoReturn
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.base.source import Edit, Span
-from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word, said_of
+from tiniscript.base.words import FUNCTIONS, UNIT_OF, WAYS, WORDS, Word, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.syntax.ast import Argument, Part
-from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
+from tiniscript.syntax.cursor import INSTRUCTION_ENDS, VALUE_ENDS, Cursor
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, SIGNS, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
@@ -153,7 +153,7 @@ class ExpressionParser:
         tokens = cursor.tokens
         while True:
             token = cursor.inner() if read.brackets else tokens[cursor.i]
-            if token.kind not in AFTER_VALUE and token.kind is not ODD:
+            if token.kind not in VALUE_ENDS and token.kind is not ODD:
                 binary = BINARY.get(token.text)
                 if binary is not None:
                     if read.brackets:
@@ -305,12 +305,12 @@ class ExpressionParser:
         cursor = self.cursor
         first = cursor.token
         depth = 0
-        while first.kind in SIGNS and (depth > 0 or cursor.token.kind not in AFTER_VALUE):
+        while first.kind in SIGNS and (depth > 0 or cursor.token.kind not in VALUE_ENDS):
             depth += (cursor.token.kind == "(") - (cursor.token.kind == ")")
-            if cursor.token.kind in AT_END:
+            if cursor.token.kind in INSTRUCTION_ENDS:
                 break
             cursor.i += 1
-        is_unit = len(first.text) > 1 and bool(said_of(first.text, "unit"))
+        is_unit = len(first.text) > 1 and bool(lexicon_meaning(first.text, "unit"))
         is_name = first.kind is WORD and not is_unit
         return first if first.kind in SIGNS or is_name else None
 

@@ -18,11 +18,11 @@ from tiniscript.syntax.operators import SIGNS
 INDENT = "  "
 BEFORE_COMMENT = "  "
 # `//comment` becomes `// comment`. More spaces stay, and so do rulers like `/////`.
-_CLOSED_UP = re.compile(r"\A//(?=[^/\s])")
+_TIGHT_COMMENT = re.compile(r"\A//(?=[^/\s])")
 
 _ARMS = frozenset(("ELSE", "ELSEIF"))
-_OPENS = frozenset(BLOCK_ENDS) | _ARMS  # what follows stands further right
-_CLOSES = frozenset(BLOCK_ENDS.values()) | _ARMS  # stands further left than what is before
+_INDENTING_WORDS = frozenset(BLOCK_ENDS) | _ARMS  # what follows stands further right
+_DEDENTING_WORDS = frozenset(BLOCK_ENDS.values()) | _ARMS  # stands further left than what is before
 _WORD_OPERATORS = frozenset(("AND", "OR", "NOT"))
 _BEFORE_VALUE = _WORD_OPERATORS | SIGNS | {"(", ","}
 
@@ -87,7 +87,7 @@ def pieces_of(scanned: Scan) -> list[Piece]:
             is_open, brackets, after_blank = not is_comment, 0, False
         piece = pieces[-1]
         if is_comment:
-            piece.comments.append(_CLOSED_UP.sub("// ", token.text.rstrip()))
+            piece.comments.append(_TIGHT_COMMENT.sub("// ", token.text.rstrip()))
             continue
         piece.tokens.append(token._replace(text=ALIASES.get(token.text, token.text)))
         piece.last_line = line
@@ -164,7 +164,9 @@ def lines_of(rows: list[Row]) -> list[str]:
     lines: list[str] = []
     before = ""
     for row, depth in zip(rows, _depths(rows), strict=True):
-        is_apart = row.after_blank and before not in _OPENS and row.word not in _CLOSES
+        is_apart = (
+            row.after_blank and before not in _INDENTING_WORDS and row.word not in _DEDENTING_WORDS
+        )
         lines.append(("\n" if is_apart and lines else "") + INDENT * depth + row.text)
         before = row.word
     return lines
@@ -175,9 +177,9 @@ def _depths(rows: list[Row]) -> list[int]:
     depths: list[int] = []
     depth = 0
     for row in rows:
-        depth = max(0, depth - (row.word in _CLOSES))
+        depth = max(0, depth - (row.word in _DEDENTING_WORDS))
         depths.append(depth)
-        depth += row.word in _OPENS
+        depth += row.word in _INDENTING_WORDS
     for k in range(len(rows) - 2, -1, -1):
         if not rows[k].word:
             depths[k] = depths[k + 1]

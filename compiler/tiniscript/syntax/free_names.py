@@ -25,7 +25,7 @@ def numbered_names(text: str, stem: str) -> Iterator[str]:
     return (name for name in names if name not in names_in(text))
 
 
-def in_place_of(text: str, word: str) -> str:
+def free_word_name(text: str, word: str) -> str:
     """Return a name for what was called `word`, a word of the language: F_1, or F_2 beside F_1."""
     right = other_name(word)
     is_free = right not in names_in(text)

@@ -35,7 +35,7 @@ from tiniscript.base.words import BLOCK_ENDS, WORDS, Word
 from tiniscript.diagnostics import codes
 from tiniscript.syntax.ast import Argument, Assign, Break, Command, Parameter, Program
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
-from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.cursor import INSTRUCTION_ENDS, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
 from tiniscript.syntax.operators import SUMS
@@ -102,7 +102,9 @@ class Parser:
         cursor.i += 2
         if word.text == "PING":
             token, *rest = cursor.tokens[cursor.i :]
-            if token.text != "CHECK_CONNECTION" or any(item.kind not in AT_END for item in rest):
+            if token.text != "CHECK_CONNECTION" or any(
+                item.kind not in INSTRUCTION_ENDS for item in rest
+            ):
                 self.reporter.report(codes.PING_ALONE, word.span)
             cursor.i = len(cursor.tokens) - 1
         elif word.text not in ("SI", "SB"):
@@ -128,7 +130,7 @@ class Parser:
             self.assignment(token)
         else:
             _RULES.get(text, Parser.command)(self, token)
-        if tokens[cursor.i].kind not in AT_END:
+        if tokens[cursor.i].kind not in INSTRUCTION_ENDS:
             self.report_missing_separator(token)
 
     # -- simple instructions ----------------------------------------------------------------
@@ -162,7 +164,7 @@ class Parser:
             arguments = self.arguments_of(word, known)
         elif known is not None and known.arguments:
             self.report_missing_bracket(known)
-        if tokens[cursor.i].kind not in AT_END:
+        if tokens[cursor.i].kind not in INSTRUCTION_ENDS:
             until = self.until()
         span = cursor.span_from(word)
         self.blocks.here.append(Command(word.text, word.span, arguments, until, span))
@@ -174,7 +176,7 @@ class Parser:
 
     def own_name(self, word: Token, following: Token) -> None:
         """A word that may stand for a device or a DEF of the program, if no other follows it."""
-        if following.kind == "(" or following.kind in AT_END:
+        if following.kind == "(" or following.kind in INSTRUCTION_ENDS:
             return
         if word.text in self.variables and following.kind in SUMS:
             span = self.expressions.expression(in_brackets=False).span

@@ -11,7 +11,7 @@ from tiniscript.base.source import Source
 from tiniscript.syntax.lexer import Token
 
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
-_NAME = "SIZE"  # which a message translates
+_PLACEHOLDER_NAME = "SIZE"  # which a message translates
 _LONGEST = 60  # characters of an instruction that a message shows
 
 
@@ -26,7 +26,7 @@ def used_inside(source: Source, number: Token) -> dict[str, str]:
     for each in re.compile(r"[^;\r\n]+").finditer(text, head.end(), end.start()):
         said = each[0].partition("//")[0].strip()
         pattern = rf"(?<![\w.]){re.escape(number.text)}(?![\w.])"
-        inside = re.sub(pattern, _NAME, said.upper(), count=1)
+        inside = re.sub(pattern, _PLACEHOLDER_NAME, said.upper(), count=1)
         if inside != said.upper() and len(said) <= _LONGEST:
             return {"number": number.text, "inside": inside}
     return {}

@@ -11,8 +11,8 @@ from ipaddress import ip_address
 from zeroconf import Error, NonUniqueNameException, ServiceInfo, Zeroconf
 
 from tiniscript.link.port_names import TCP
-from tiniscript.link.transports.network import LONGEST, SERVICE, query_service
-from tiniscript.virtual.directory import LOCAL
+from tiniscript.link.transports.network import MOST_NAME_BYTES, SERVICE, query_service
+from tiniscript.virtual.directory import LOCAL_HOST
 
 ASK_MS = 2500  # timeout for a robot that has the name: for a second it may say nothing twice
 
@@ -26,14 +26,14 @@ class Announcement:
 
     def __init__(self, name: str, number: int) -> None:
         """`number` is the robot's TCP port. Raises NameTaken, and OSError without multicast."""
-        if not 0 < len(name.encode()) <= LONGEST:
+        if not 0 < len(name.encode()) <= MOST_NAME_BYTES:
             raise NameTaken
         self.port = TCP + name
-        self._network = Zeroconf(interfaces=[LOCAL])
+        self._network = Zeroconf(interfaces=[LOCAL_HOST])
         try:
             info = ServiceInfo(
                 SERVICE, f"{name}.{SERVICE}", number,
-                addresses=[ip_address(LOCAL).packed], server=f"tini-{number}.local.",
+                addresses=[ip_address(LOCAL_HOST).packed], server=f"tini-{number}.local.",
             )  # fmt: skip
             # two programs of one computer may miss each other's answers while they register
             if query_service(self._network, info.name, ASK_MS) is not None:

@@ -12,7 +12,7 @@ from tiniscript.virtual.robot import VirtualRobot
 
 T = TypeVar("T")
 
-LIMIT_MS = 60_000  # for a robot to answer
+ANSWER_MS = 60_000  # for a robot to answer
 
 
 class Computer:
@@ -46,7 +46,7 @@ class Computer:
         sent, self._sent = bytes(self._sent), bytearray()
         self.session.receive(sent, self.robot.now_ms)
 
-    def until(self, request: PendingRequest[T], limit_ms: int = LIMIT_MS) -> Reply[T]:
+    def until(self, request: PendingRequest[T], limit_ms: int = ANSWER_MS) -> Reply[T]:
         """Let time go on until a request has its outcome."""
         end_ms = self.robot.now_ms + limit_ms
         while request.outcome is None:

@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 from tiniscript.base import files
 from tiniscript.base.files import contents
-from tiniscript.link.port_names import same_for_all
+from tiniscript.link.port_names import canonical_port
 from tiniscript.link.sharing import peers
 from tiniscript.link.sharing.registry import is_taken
 
 FILE_BYTES = 10_000
-LOCAL = "127.0.0.1"
-PREFIX = f"socket://{LOCAL}:"
+LOCAL_HOST = "127.0.0.1"
+PREFIX = f"socket://{LOCAL_HOST}:"
 
 
 class RunningRobot(NamedTuple):
@@ -70,20 +70,20 @@ def is_of_another(port: str) -> bool:
     """Return whether a virtual robot of this user had a port, where another user listens now: the
     robot has crashed.
     """
-    address = same_for_all(port)
+    address = canonical_port(port)
     if not address.startswith(PREFIX) or not _is_listening(address):
         return False
     return _read(_path(address)) is not None and peers.is_of_another(_number_of(address))
 
 
-def for_all() -> list[RunningRobot]:
+def unclaimed_robots() -> list[RunningRobot]:
     """Return the robots to which any command may upload a program."""
     return [item for item in running_robots() if item.verb == "robot"]
 
 
 def is_virtual(port: str) -> bool:
     """Return whether a port belongs to a running virtual robot."""
-    known = {port, same_for_all(port)}
+    known = {port, canonical_port(port)}
     return any(known & {item.address, item.terminal} for item in running_robots())
 
 

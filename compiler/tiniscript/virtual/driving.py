@@ -19,10 +19,10 @@ TOUCH_CM = 0.3  # a smaller distance is contact
 STEP_MS = 10.0  # time step of a robot in contact
 STRIDE_MS = 100.0  # time between two kept poses
 NEAR_CM = 20.0  # obstacles further away than this are checked later
-KEPT = 20_000  # corners of the path; beyond that every other one is dropped
-LEANS_CM = 0.05  # a smaller one, and the obstacle pushes back
+MOST_CORNERS = 20_000  # corners of the path; beyond that every other one is dropped
+PUSHING_CM = 0.05  # a smaller one, and the obstacle pushes back
 EXACT_CM = 1e-6  # a smaller overlap does not count
-PUSHES = 6  # attempts to push the body out of obstacles in one place
+MOST_PUSHES = 6  # attempts to push the body out of obstacles in one place
 
 
 class Contact(NamedTuple):
@@ -167,7 +167,7 @@ class Driving:
                 self.corners[-1] = pose
             elif pose[:2] != last[:2]:
                 self.corners.append(pose)
-        if len(self.corners) > KEPT:
+        if len(self.corners) > MOST_CORNERS:
             self.corners = [*self.corners[:-1:2], self.corners[-1]]
         is_touching = self._free_cm < TOUCH_CM and self.touch_point(self._pose) is not None
         self.bumps += is_touching and not self._is_touching
@@ -221,7 +221,7 @@ class Driving:
         """
         left, right = self.left, self.right
         contact = self._contact(pose)
-        if contact is None or contact.gap_cm > LEANS_CM:
+        if contact is None or contact.gap_cm > PUSHING_CM:
             return left, right
         along = math.radians(pose.heading)
         cos, sin = math.cos(along), math.sin(along)
@@ -248,7 +248,7 @@ class Driving:
 
         It is pushed out of every obstacle; if that is not possible it stays where it was.
         """
-        for _ in range(PUSHES):
+        for _ in range(MOST_PUSHES):
             contact = self._contact(pose)
             if contact is None:
                 return pose, NEAR_CM

@@ -47,12 +47,12 @@ class Board(Protocol):
 
 
 # What a note says, from 1 on, and with how many numbers. As `What` in `robot.cpp`.
-_WHAT = (("motors", 2), ("read", 2), ("beep", 2), ("show", 3), ("set", 2), ("stop", 0),
+_NOTE_KINDS = (("motors", 2), ("read", 2), ("beep", 2), ("show", 3), ("set", 2), ("stop", 0),
          ("release", 0), ("light", 1), ("finished", 0), ("faulted", 0),
          ("actuators_off", 0), ("steer", 2), ("edges", 0))  # fmt: skip
-_ASKS = (2, 13)  # for a number
+_ASKING_KINDS = (2, 13)  # for a number
 _CLOCK = 1 << 32
-_NOTE = 5  # numbers of 32 bits
+_NOTE_NUMBERS = 5  # numbers of 32 bits
 
 
 class Circumstances(NamedTuple):
@@ -118,7 +118,7 @@ class Firmware:
         self._notes, self._noted = self.call("notes") // 4, self.call("noted") // 4
         self._reading = self.call("reading") // 4
         self.is_watched = False  # its program may be held
-        self._told = [(getattr(board, name), count) for name, count in _WHAT]
+        self._told = [(getattr(board, name), count) for name, count in _NOTE_KINDS]
         whole = ((memory or b"") + bytes(size).replace(b"\0", b"\xff"))[:size]
         self._instance.write(whole, self._eeprom)
         hashes = pack(f"<{len(what.hashes)}H", *what.hashes)
@@ -220,9 +220,9 @@ class Firmware:
         numbers = self._numbers
         count = numbers[self._noted]
         numbers[self._noted] = 0
-        for k in range(self._notes, self._notes + count * _NOTE, _NOTE):
-            now_ms, what, *values = numbers[k : k + _NOTE]
+        for k in range(self._notes, self._notes + count * _NOTE_NUMBERS, _NOTE_NUMBERS):
+            now_ms, what, *values = numbers[k : k + _NOTE_NUMBERS]
             tell, takes = self._told[what - 1]
             result = tell(now_ms % _CLOCK, *values[:takes])
-            if what in _ASKS:
+            if what in _ASKING_KINDS:
                 numbers[self._reading] = result

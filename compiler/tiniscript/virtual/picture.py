@@ -16,8 +16,8 @@ from tiniscript.virtual.driving import Hull
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
 
-FINE = 2  # drawn this many times larger, then scaled down: smooth lines
-LARGEST = 1200  # pixels of the longer side
+OVERSAMPLING = 2  # drawn this many times larger, then scaled down: smooth lines
+LONGEST_SIDE = 1200  # pixels of the longer side
 MARGIN = 24
 PAPER, FLOOR, WALL, BOX = "#ffffff", "#f5f2ea", "#37414b", "#8a97a3"
 LINE, LAMP, GLOW = "#202020", "#f5b400", "#fdf3c8"
@@ -33,9 +33,11 @@ def png(world: World, hull: Hull, corners: Sequence[Pose], pose: Pose, title: st
 class _Sheet:
     def __init__(self, world: World) -> None:
         self.world = world
-        self.scale = (LARGEST - 2 * MARGIN) / max(world.width_cm, world.height_cm) * FINE
-        self.margin = MARGIN * FINE
-        self.foot = 2 * MARGIN * FINE
+        self.scale = (
+            (LONGEST_SIDE - 2 * MARGIN) / max(world.width_cm, world.height_cm) * OVERSAMPLING
+        )
+        self.margin = MARGIN * OVERSAMPLING
+        self.foot = 2 * MARGIN * OVERSAMPLING
         size = (
             round(world.width_cm * self.scale) + 2 * self.margin,
             round(world.height_cm * self.scale) + 2 * self.margin + self.foot,
@@ -60,24 +62,29 @@ class _Sheet:
         for line in world.lines:
             self._row(line.points, LINE, line.width_cm * self.scale)
         for box in world.boxes:
-            draw.polygon([self.at(point) for point in box], fill=BOX, outline=WALL, width=2 * FINE)
+            draw.polygon(
+                [self.at(point) for point in box], fill=BOX, outline=WALL, width=2 * OVERSAMPLING
+            )
         for wall in world.walls:
-            self._row(wall, WALL, 5 * FINE)
+            self._row(wall, WALL, 5 * OVERSAMPLING)
         if world.has_border:
             draw.rectangle(
-                (*self.at(top_left), *self.at(bottom_right)), outline=WALL, width=4 * FINE
+                (*self.at(top_left), *self.at(bottom_right)), outline=WALL, width=4 * OVERSAMPLING
             )
         for lamp in world.lamps:
             self._disc(lamp.place, 2.5, LAMP)
-        self._row([*corners, pose], WAY, 2.5 * FINE)
+        self._row([*corners, pose], WAY, 2.5 * OVERSAMPLING)
         self._disc(corners[0], 1.5, BEGIN)
         draw.polygon(
-            [self.at(point) for point in hull.outline(pose)], outline=ROBOT, width=round(2.5 * FINE)
+            [self.at(point) for point in hull.outline(pose)],
+            outline=ROBOT,
+            width=round(2.5 * OVERSAMPLING),
         )
         self._disc(hull.spine(pose).b, 1.2, ROBOT)
         self._draw_title(title)
         small = self.image.resize(
-            (self.image.width // FINE, self.image.height // FINE), Image.Resampling.LANCZOS
+            (self.image.width // OVERSAMPLING, self.image.height // OVERSAMPLING),
+            Image.Resampling.LANCZOS,
         )
         file = BytesIO()
         about = PngInfo()
@@ -96,7 +103,7 @@ class _Sheet:
 
     def _draw_title(self, title: str) -> None:
         """Write the title, and draw how long a good length is."""
-        font = ImageFont.load_default(16 * FINE)
+        font = ImageFont.load_default(16 * OVERSAMPLING)
         y = self.image.height - self.foot
         self.draw.text((self.margin, y), title, fill=TEXT, font=font)
         length = max(
@@ -104,9 +111,13 @@ class _Sheet:
         )
         right = self.image.width - self.margin
         left = right - length * self.scale
-        bar = y + 24 * FINE
-        self.draw.line([(left, bar), (right, bar)], fill=TEXT, width=2 * FINE)
+        bar = y + 24 * OVERSAMPLING
+        self.draw.line([(left, bar), (right, bar)], fill=TEXT, width=2 * OVERSAMPLING)
         for x in (left, right):
-            self.draw.line([(x, bar - 5 * FINE), (x, bar + 5 * FINE)], fill=TEXT, width=2 * FINE)
+            self.draw.line(
+                [(x, bar - 5 * OVERSAMPLING), (x, bar + 5 * OVERSAMPLING)],
+                fill=TEXT,
+                width=2 * OVERSAMPLING,
+            )
         label = f"{length} cm"
         self.draw.text((right - self.draw.textlength(label, font), y), label, fill=TEXT, font=font)

@@ -9,22 +9,22 @@ from __future__ import annotations
 
 import re
 
-LONGEST = 2048  # bytes of a first line that is still open
+MOST_LINE_BYTES = 2048  # bytes of a first line that is still open
 
 _TOKEN = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"  # of RFC 9110: any method
 _METHOD = re.compile(_TOKEN)
 # a whole first line
 _REQUEST = re.compile(_TOKEN + rb"[ \t]+[^\x00-\x20]+[ \t]+HTTP/", re.IGNORECASE)
 # the beginning of one, and the whole first line of HTTP/0.9
-_KNOWN = re.compile(
+_HTTP_METHOD_AND_TARGET = re.compile(
     rb"(?:GET|HEAD|POST|PUT|DELETE|CONNECT|OPTIONS|TRACE|PATCH|PRI)[ \t]+(?:[/*]|https?:)",
     re.IGNORECASE,
 )
 _LINE_END = re.compile(rb"[\r\n\0]")
-_LINE = re.compile(rb"[ -~]{2}")  # how a line begins, and no frame
+_TEXT_START = re.compile(rb"[ -~]{2}")  # how a line begins, and no frame
 
 
-def is_for_robot(data: bytes) -> bool | None:
+def sniff_robot_client(data: bytes) -> bool | None:
     """Return whether bytes that begin like this may reach a robot; None: not known yet.
 
     A client of frames begins with a 0x00. Waiting costs nothing: a robot acts only when a frame or
@@ -38,14 +38,14 @@ def is_for_robot(data: bytes) -> bool | None:
         if len(data) < 3:
             return None
     is_framed = data[0] == 0
-    if is_framed and not _LINE.match(data, 1):
+    if is_framed and not _TEXT_START.match(data, 1):
         return True
-    return _is_text(data[is_framed:])
+    return _sniff_text(data[is_framed:])
 
 
-def _is_text(data: bytes) -> bool | None:
+def _sniff_text(data: bytes) -> bool | None:
     line, *after = _LINE_END.split(data.lstrip(b"\r\n"), 1)  # servers of HTTP skip empty lines
-    if _REQUEST.match(line) or _KNOWN.match(line):
+    if _REQUEST.match(line) or _HTTP_METHOD_AND_TARGET.match(line):
         return False
     method = _METHOD.match(line)
     if line and (method is None or line[method.end() : method.end() + 1] not in b" \t"):
@@ -53,4 +53,4 @@ def _is_text(data: bytes) -> bool | None:
     target = line[method.end() :].lstrip(b" \t") if method else b""
     if target[:1] == b"=" or after:
         return True  # `X = 5`: no target; and a line that has ended, and is no request
-    return None if len(data) <= LONGEST else False
+    return None if len(data) <= MOST_LINE_BYTES else False

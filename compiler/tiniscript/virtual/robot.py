@@ -37,8 +37,8 @@ from tiniscript.virtual.world import World, WorldRefused
 __all__ = ("POWER_ON", "RESET_BUTTON", "Settings", "VirtualRobot")
 
 LEVELS_PER_PERCENT = 2.55  # of a motor's power
-BITS = 10  # of a byte on the line
-EVENTS = 100_000  # that are kept until somebody takes them
+BITS_PER_BYTE = 10  # of a byte on the line
+MOST_EVENTS = 100_000  # that are kept until somebody takes them
 
 
 class Settings(NamedTuple):
@@ -60,9 +60,12 @@ class Settings(NamedTuple):
     rough: Roughness = Roughness()
 
 
-PLAIN = Settings()
+PLAIN_SETTINGS = Settings()
 EEPROM_US = 3400  # of an AVR, for a byte
-MODULES = {"mega": PATH_MEGA, **dict.fromkeys(ESP32S, PATH_ESP32)}  # of chips, beside an Uno's
+MODULE_BY_BOARD = {
+    "mega": PATH_MEGA,
+    **dict.fromkeys(ESP32S, PATH_ESP32),
+}  # of chips, beside an Uno's
 FLASH_US = 10  # of an ESP32, whose NVS writes a whole program at once
 
 
@@ -76,7 +79,7 @@ class VirtualRobot:
         self,
         profile: Robot,
         world: World,
-        settings: Settings = PLAIN,
+        settings: Settings = PLAIN_SETTINGS,
         memory: bytes | None = None,
     ) -> None:
         self.profile = profile
@@ -122,7 +125,7 @@ class VirtualRobot:
         self._settle()
         if self.is_at_rest:
             del self._traced.events[self._told :]
-        del self._traced.events[:-EVENTS]
+        del self._traced.events[:-MOST_EVENTS]
         return sent
 
     def press(self) -> None:
@@ -182,12 +185,12 @@ class VirtualRobot:
                 edge_cm=edge_cm,
                 edge_degrees=edge_degrees,
                 has_two=discs is not None and discs_of(discs).has_two,
-                byte_us=round(BITS * 1_000_000 / baud) if baud else 0,
+                byte_us=round(BITS_PER_BYTE * 1_000_000 / baud) if baud else 0,
                 eeprom_us=eeprom_us,
                 language=language_number(board.language),
             ),
             memory,
-            MODULES.get(board.chip, PATH_DISCS if board.discs else PATH),
+            MODULE_BY_BOARD.get(board.chip, PATH_DISCS if board.discs else PATH),
         )
 
     # -- what it does -----------------------------------------------------------------------------

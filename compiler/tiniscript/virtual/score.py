@@ -11,8 +11,8 @@ from typing import Any
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
 
-A_FLAG, A_BUMP, A_SECOND = 100, 10, 5  # points; for each second that is left
-LOOKS_MS = 5  # between two looks
+FLAG_POINTS, BUMP_POINTS, SECOND_POINTS = 100, 10, 5  # points; for each second that is left
+LOOK_PAUSE_MS = 5  # between two looks
 
 
 class Score:
@@ -31,7 +31,7 @@ class Score:
 
     def look(self, robot: VirtualRobot) -> None:
         """See where the robot is now. What it does with all flags taken counts no more."""
-        if self.is_whole or robot.now_ms % LOOKS_MS:
+        if self.is_whole or robot.now_ms % LOOK_PAUSE_MS:
             return
         if robot.started_ms is None:
             return
@@ -50,9 +50,9 @@ class Score:
             return None
         left_s = world.seconds - self._ms / 1000
         is_in_time = not world.seconds or left_s >= 0
-        points = A_FLAG * self._taken - A_BUMP * self._bumps
+        points = FLAG_POINTS * self._taken - BUMP_POINTS * self._bumps
         if self.is_whole:
-            points += A_SECOND * max(0, math.floor(left_s))
+            points += SECOND_POINTS * max(0, math.floor(left_s))
         return {
             "taken": self._taken,
             "of": len(world.flags),

@@ -19,10 +19,10 @@ from tiniscript.virtual.geometry import Point, Segment, crosses, distance, join_
 from tiniscript.virtual.world import World
 
 NEAREST_CM, FARTHEST_CM = 2.0, 400.0  # of an HC-SR04
-CONE = math.radians(15)  # to both sides
-BUMPER = math.radians(60)  # to both sides
+CONE_RADIANS = math.radians(15)  # to both sides
+BUMPER_RADIANS = math.radians(60)  # to both sides
 ROOM_CELSIUS = 20_000
-LEVELS = 50  # a range of more steps than these has whole numbers
+MOST_FINE_STEPS = 50  # a range of more steps than these has whole numbers
 
 
 class Sensing:
@@ -98,12 +98,12 @@ class Sensing:
             return round(self._distance_cm(eye, heading) * (1 + off), 1) * ONE
         if place.sees == "light":
             value = device.low + (self._light(eye, heading) + off) * span
-            return round(value / ONE) * ONE if span > LEVELS * ONE else value
+            return round(value / ONE) * ONE if span > MOST_FINE_STEPS * ONE else value
         is_there = self._is_black(eye) if place.sees == "line" else self._is_touched(place, pose)
         return float(device.high if is_there else device.low)
 
     def _distance_cm(self, eye: Point, heading: float) -> float:
-        nearest = nearest_seen(self.obstacles, eye, heading, CONE)
+        nearest = nearest_seen(self.obstacles, eye, heading, CONE_RADIANS)
         return FARTHEST_CM if nearest is None else min(max(nearest, NEAREST_CM), FARTHEST_CM)
 
     def _light(self, eye: Point, heading: float) -> float:
@@ -147,7 +147,7 @@ class Sensing:
         sits = math.atan2(place.y_cm, place.x_cm) if place.x_cm or place.y_cm else 0.0
         side = math.atan2(point.y - contact.body_point.y, point.x - contact.body_point.x)
         off = (side - sits - math.radians(heading) + math.pi) % (2 * math.pi) - math.pi
-        return abs(off) <= BUMPER
+        return abs(off) <= BUMPER_RADIANS
 
 
 def _sensor_pose(place: Place, pose: Pose) -> tuple[Point, float]:

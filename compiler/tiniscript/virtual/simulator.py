@@ -18,7 +18,7 @@ from tiniscript.virtual.transports import BadLine, Transports
 
 HEARTBEAT_MS = 300  # of the robot's time
 SILENT_S = 1.0
-LONGEST = 100  # bytes of a frame on the wire, and some
+MOST_FRAME_BYTES = 100  # bytes of a frame on the wire, and some
 
 
 class Heartbeat:
@@ -32,9 +32,9 @@ class Heartbeat:
         """Take bytes that the computer has sent."""
         self._heard_s = wall_s
         *whole, self._open = (self._open + data).split(b"\0")
-        self._open = self._open[:LONGEST]
+        self._open = self._open[:MOST_FRAME_BYTES]
         for item in whole:
-            if item and len(item) < LONGEST:
+            if item and len(item) < MOST_FRAME_BYTES:
                 self._frame = b"\0" + item + b"\0"  # it is repeated
 
     def forget(self) -> None:
@@ -50,7 +50,7 @@ class Heartbeat:
         return self._frame
 
 
-BEHIND_S = 0.25  # a larger delay slows the robot's clock down
+MOST_DELAY_S = 0.25  # a larger delay slows the robot's clock down
 BUSY_S = 0.002  # between two polls while bytes are in transit,
 NEAR_S = 0.02  # while a client is connected or a program runs,
 IDLE_S = 0.25  # and otherwise
@@ -120,7 +120,7 @@ class Simulator:
         is_full = self.waiting >= FULL_BYTES
         self.transports.wait(min(limit_s, self._pause_s()), is_full)
         wall_s = monotonic()
-        passed_s = min(wall_s - self._wall_s, BEHIND_S)
+        passed_s = min(wall_s - self._wall_s, MOST_DELAY_S)
         self._wall_s = wall_s
         data = b"" if is_full else self.transports.receive()
         if self.transports.visits != self._visits:
@@ -170,7 +170,7 @@ class Simulator:
             self._step(step_ms, is_hurrying)
             self._owed_ms = max(0.0, self._owed_ms - step_ms)
             if monotonic() > until_s:
-                self._owed_ms = min(self._owed_ms, BEHIND_S * 1000)
+                self._owed_ms = min(self._owed_ms, MOST_DELAY_S * 1000)
                 break
             if not is_hurrying:
                 break

@@ -20,16 +20,16 @@ from time import monotonic, sleep
 from tiniscript.link.messages import SILENCE_MS
 from tiniscript.link.sharing.peers import is_of_this_user
 from tiniscript.link.typed_stop import is_at_stop
-from tiniscript.virtual.directory import LOCAL
-from tiniscript.virtual.protocol_sniffer import is_for_robot
+from tiniscript.virtual.directory import LOCAL_HOST
+from tiniscript.virtual.protocol_sniffer import sniff_robot_client
 
 READ_BYTES = 1024
 KEPT_BYTES = 65_536  # buffer for a client that does not read; more is lost, as on a serial line
-TAKEN = b"Port already in use: another program is talking to this robot.\r\n"
-PATIENT_S = 0.3  # a second caller waits this long before it is told
+PORT_TAKEN = b"Port already in use: another program is talking to this robot.\r\n"
+PATIENCE_S = 0.3  # a second caller waits this long before it is told
 FAREWELL_S = 2.5  # and has this long to read the message
-CALLERS = 64  # at a time: file descriptors are few (macOS: 256)
-YOUNG_S = 0.25  # a caller is not dropped for a newer one within this time
+MOST_CALLERS = 64  # at a time: file descriptors are few (macOS: 256)
+PROTECTED_S = 0.25  # a caller is not dropped for a newer one within this time
 SILENT_S = 60.0  # timeout of a caller that sends nothing,
 OPENING_S = 10.0  # and of one whose first bytes or line are incomplete
 IDLE_S = 10.0  # a client that is silent for this time is replaced by a caller that sends
@@ -40,10 +40,10 @@ class Transports:
     """A port on this computer. Raises OSError where it cannot be had."""
 
     def __init__(self, port: int = 0, has_terminal: bool = False) -> None:
-        self._server = socket.create_server((LOCAL, port), backlog=BACKLOG)
+        self._server = socket.create_server((LOCAL_HOST, port), backlog=BACKLOG)
         self._server.setblocking(False)
         self.port: int = self._server.getsockname()[1]
-        self.address = f"socket://{LOCAL}:{self.port}"
+        self.address = f"socket://{LOCAL_HOST}:{self.port}"
         self.terminal = ""  # the path of the pseudo-terminal
         self.visits = 0  # how many have come to stay
         self._ours, self._theirs = -1, -1
@@ -70,9 +70,9 @@ class Transports:
         watched += [
             caller.peer for caller in self._callers if caller.is_told or not caller.may_enter
         ]
-        limit_s = min(limit_s, PATIENT_S) if self._callers else limit_s
+        limit_s = min(limit_s, PATIENCE_S) if self._callers else limit_s
         if not watched:
-            limit_s = min(limit_s, YOUNG_S / 4)
+            limit_s = min(limit_s, PROTECTED_S / 4)
         if not is_full:
             if self._client is not None:
                 watched.append(self._client)
@@ -175,7 +175,7 @@ class Transports:
 
     def _accept(self) -> None:
         """Accept new callers; if there are too many, drop the oldest."""
-        for _ in range(CALLERS):
+        for _ in range(MOST_CALLERS):
             if not self._has_room():
                 return
             try:
@@ -191,14 +191,14 @@ class Transports:
             if not is_of_this_user(peer):
                 peer.close()
                 continue
-            if len(self._callers) >= CALLERS:
+            if len(self._callers) >= MOST_CALLERS:
                 self._drop_oldest()
             self._callers.append(_Caller(peer, monotonic()))
 
     def _has_room(self) -> bool:
-        """Return whether one more caller may be accepted: each gets YOUNG_S to send something."""
-        past_s = monotonic() - YOUNG_S
-        is_few = len(self._callers) < CALLERS or self._callers[0].came_s < past_s
+        """Return whether one more caller may be accepted: each has PROTECTED_S to send."""
+        past_s = monotonic() - PROTECTED_S
+        is_few = len(self._callers) < MOST_CALLERS or self._callers[0].came_s < past_s
         return is_few and self._full_s < past_s
 
     def _drop_oldest(self) -> None:
@@ -213,7 +213,7 @@ class Transports:
 
 
 class _Caller:
-    """A connection that is not the client yet. After PATIENT_S it is told that there is another.
+    """A connection that is not the client yet. After PATIENCE_S it is told that there is another.
 
     Not at once: the client may be about to leave, and pyserial discards the first bytes. It stays
     open for FAREWELL_S, because closing at once would lose the message.
@@ -261,7 +261,7 @@ class _Caller:
             self._limit_s = now_s + OPENING_S
         self._heard_s = now_s
         self.opening += data
-        verdict = is_for_robot(self.opening)
+        verdict = sniff_robot_client(self.opening)
         self.may_enter = verdict is True
         return verdict is not False
 
@@ -273,12 +273,12 @@ class _Caller:
         return is_at_stop(line)
 
     def tell(self, now_s: float) -> None:
-        if self.is_told or now_s < self.came_s + PATIENT_S:
+        if self.is_told or now_s < self.came_s + PATIENCE_S:
             return
         self.is_told = True
         self._limit_s = now_s + FAREWELL_S
         with contextlib.suppress(OSError):  # it has gone already
-            self.peer.send(TAKEN)
+            self.peer.send(PORT_TAKEN)
             self.peer.shutdown(socket.SHUT_WR)
 
 

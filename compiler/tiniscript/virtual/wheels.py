@@ -14,11 +14,11 @@ from typing import NamedTuple
 from tiniscript.robots.profile import Body, Wiring
 
 LAG_MS = 60.0  # in which a motor comes 1 - 1/e nearer to its speed: on average
-LAGS = (0.75, 1.25)  # of that, from motor to motor
-STEADY = 0.05  # percent of speed: a smaller change is none
+LAG_RANGE = (0.75, 1.25)  # of that, from motor to motor
+STEADY_PERCENT = 0.05  # percent of speed: a smaller change is none
 SLIP_CM = 5.0  # a wheel slips as much for so far
 CLOCK = 1 << 16
-ANSWER = 1 << 31
+ANSWER_FLAG = 1 << 31
 
 
 class Roughness(NamedTuple):
@@ -40,7 +40,7 @@ class Wheel:
         self.edge_cm = math.pi * wiring.settings["wheel_cm"] / 1000 / count
         self._off = [chance.uniform(-rough.jitter, rough.jitter) for _ in range(count)]
         self.turned_cm = chance.uniform(0, self.edge_cm * count)  # as it stands when switched on
-        self._lag_ms = LAG_MS * chance.uniform(*LAGS)
+        self._lag_ms = LAG_MS * chance.uniform(*LAG_RANGE)
         self._slips_to_cm = 0.0
         self._slip = 0.0
         self._place = self._edges()
@@ -99,7 +99,7 @@ class Wheels:
             left, right = (wheel.step(self._has_two) for wheel in self.both)
             before = self._driven
             is_still = not left and not right
-            if is_still or max(abs(left - before[0]), abs(right - before[1])) > STEADY:
+            if is_still or max(abs(left - before[0]), abs(right - before[1])) > STEADY_PERCENT:
                 self._driven = (left, right)
                 self._drive(self._now_ms, left, right)
             self._now_ms += 1
@@ -108,7 +108,7 @@ class Wheels:
         """Return both counts as the board says them: the left one in the lower 16 bits."""
         self.go_on(now_ms)
         left, right = (wheel.counted % CLOCK for wheel in self.both)
-        return (right * CLOCK + left + ANSWER) % (2 * ANSWER) - ANSWER
+        return (right * CLOCK + left + ANSWER_FLAG) % (2 * ANSWER_FLAG) - ANSWER_FLAG
 
     def brake(self) -> None:
         """They stand at once, as where somebody lifts the robot or switches it off."""

@@ -19,9 +19,9 @@ from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import Flag, Lamp, Line, World, WorldRefused
 
 LARGEST_CM = 2000 * ONE
-PARTS = 100  # walls, and as many boxes, lines, lamps and flags
+MOST_PARTS = 100  # walls, and as many boxes, lines, lamps and flags
 MOST_S = 600 * ONE  # for its flags
-POINTS = 200  # of a wall or a line
+MOST_POINTS = 200  # of a wall or a line
 LABEL_CHARACTERS = 60
 T = TypeVar("T")
 
@@ -91,10 +91,10 @@ def _read(root: Table, name: str) -> World:
 
 def _parts(root: Table, key: str, read: Callable[[Table], T]) -> tuple[T, ...]:
     tables = root.tables(key)
-    if len(tables) > PARTS:
-        root.complain("too_many_parts", key, found=str(len(tables)), most=str(PARTS))
+    if len(tables) > MOST_PARTS:
+        root.complain("too_many_parts", key, found=str(len(tables)), most=str(MOST_PARTS))
     matches = []
-    for table in tables[:PARTS]:
+    for table in tables[:MOST_PARTS]:
         matches.append(read(table))
         table.finish()
     return tuple(matches)
@@ -115,9 +115,9 @@ def _place(table: Table) -> Point:
 def _row(table: Table) -> tuple[Point, ...]:
     example = "points = [[20, 50], [80, 50]]"
     pairs = table.pairs("points", -LARGEST_CM, LARGEST_CM, example)
-    if pairs is not None and not 2 <= len(pairs) <= POINTS:
-        table.complain("points_count", "points", found=str(len(pairs)), most=str(POINTS))
-    return tuple(Point(x / ONE, y / ONE) for x, y in (pairs or ())[:POINTS])
+    if pairs is not None and not 2 <= len(pairs) <= MOST_POINTS:
+        table.complain("points_count", "points", found=str(len(pairs)), most=str(MOST_POINTS))
+    return tuple(Point(x / ONE, y / ONE) for x, y in (pairs or ())[:MOST_POINTS])
 
 
 def _line(table: Table) -> Line:

@@ -25,9 +25,9 @@ def mark_stop(at: int) -> int:
 def handles(*names: str) -> Callable[[Handler], Handler]:
     """Note a handler under the names of its instructions."""
 
-    def note(handler: Handler) -> Handler:
+    def register(handler: Handler) -> Handler:
         for name in names:
             HANDLERS[name] = handler
         return handler
 
-    return note
+    return register

@@ -23,11 +23,13 @@ for _op in OPS:
     if _op.implied is not None:
         HANDLERS[_op.name] = HANDLERS[_op.family]
 
-_missing = [op.name for op in OPS if op.name not in HANDLERS and op.needs != NEEDS_TASKS]
-assert not _missing, f"no handler for {_missing}"
+_ops_without_handler = [
+    op.name for op in OPS if op.name not in HANDLERS and op.needs != NEEDS_TASKS
+]
+assert not _ops_without_handler, f"no handler for {_ops_without_handler}"
 
 
-def bound(m: Execution, code: bytes) -> list[Step]:
+def bind_steps(m: Execution, code: bytes) -> list[Step]:
     """Return the step of the instruction at each offset, for this machine. Jumps are offsets.
 
     After the code stands END.
@@ -35,7 +37,7 @@ def bound(m: Execution, code: bytes) -> list[Step]:
     steps = [HANDLERS["END"](m, 0)] * (len(code) + 1)
     at = 0
     while at < len(code):
-        op, after = instruction(code, at)
+        op, after = instruction_at(code, at)
         operands = read_operands(op, code, at) if op.implied is None else (op.implied.value,)
         kind = op.operands[-1].kind.name if op.operands else ""
         if kind.startswith("fwd"):
@@ -47,7 +49,7 @@ def bound(m: Execution, code: bytes) -> list[Step]:
     return steps
 
 
-def instruction(code: bytes, at: int) -> tuple[Op, int]:
+def instruction_at(code: bytes, at: int) -> tuple[Op, int]:
     """Return the instruction at an offset, and where the next one begins."""
     op = op_at(code, at)
     assert op is not None, "the code is not verified"
@@ -66,7 +68,7 @@ class Machine(Execution):
         self.at = 0  # where the instruction that runs, or has faulted, begins
         self.steps = 0  # instructions that have run
         self._code = code
-        self._steps = bound(self, code)
+        self._steps = bind_steps(self, code)
 
     def tick(self, now_ms: int, budget: int) -> str:
         """Run at most `budget` instructions at the time `now_ms`; return the status."""
@@ -94,7 +96,7 @@ class Machine(Execution):
         except Fault as fault:
             self.robot.off()
             self.status, self.fault = FAULT, fault.name
-            pc = instruction(self._code, at)[1]
+            pc = instruction_at(self._code, at)[1]
         self.at, task.pc = at, pc
         self.steps += budget - left
         return self.status

@@ -18,7 +18,7 @@ class Instance:
     """A module that runs, from the constructor until `close`."""
 
     def __init__(self, path: Path, imports: Mapping[str, Callable[[], None]]) -> None:
-        module = _module(path)
+        module = _load_module(path)
         self._proxies = []
         table: dict[str, dict[str, Any]] = {}
         for each in js.WebAssembly.Module.imports(module):
@@ -31,7 +31,7 @@ class Instance:
         self.functions = {name: getattr(exports, name) for name in names}
         buffer = self.functions.pop("memory").buffer
         self._bytes = js.Uint8Array.new(buffer)
-        self.numbers = Numbers(buffer)
+        self.numbers = MemoryNumbers(buffer)
 
     def call(self, name: str, *values: Any) -> int:
         if name == "run":  # until a time of 64 bits: JavaScript has a type of its own for those
@@ -53,7 +53,7 @@ class Instance:
         self._proxies = []
 
 
-class Numbers:
+class MemoryNumbers:
     """A memory, which does not grow, as numbers of 32 bits with a sign."""
 
     def __init__(self, buffer: Any) -> None:
@@ -69,5 +69,5 @@ class Numbers:
 
 
 @lru_cache(maxsize=8)
-def _module(path: Path) -> Any:
+def _load_module(path: Path) -> Any:
     return js.WebAssembly.Module.new(to_js(path.read_bytes()))

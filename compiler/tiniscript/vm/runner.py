@@ -14,7 +14,7 @@ from tiniscript.base.trace import Ending, Event, TracedRobot
 from tiniscript.vm.state import DONE, FAULT, WAITING, Robot
 from tiniscript.vm.tasks import machine_of as python_machine
 
-SLICE = 10_000  # instructions between two looks at the limit
+SLICE_INSTRUCTIONS = 10_000  # instructions between two looks at the limit
 MAX_STEPS = 10_000_000  # instructions, where no other limit is asked for
 
 
@@ -58,7 +58,7 @@ def run(
     before = 0  # instructions that ran before the clock last moved
     while True:
         left = max_steps - (machine.steps - before)
-        status = machine.tick(robot.now_ms, min(SLICE, left))
+        status = machine.tick(robot.now_ms, min(SLICE_INSTRUCTIONS, left))
         yield from robot.events
         robot.events.clear()
         if status in (DONE, FAULT):

@@ -13,7 +13,7 @@ from tiniscript.base.fixed_point import Fault
 from tiniscript.base.limits import CHECK_MS
 from tiniscript.vm.control import go
 from tiniscript.vm.handlers import STAY, Step, handles, mark_stop
-from tiniscript.vm.machine import Machine, instruction
+from tiniscript.vm.machine import Machine, instruction_at
 from tiniscript.vm.state import (
     CLOCK_MS,
     DONE,
@@ -29,7 +29,7 @@ from tiniscript.vm.state import (
 )
 
 NEVER_MS = 2**31 - 1  # from now: nothing happens by itself
-OFF = 0, 0
+MOTORS_OFF = 0, 0
 
 
 class TaskRecord:
@@ -66,7 +66,7 @@ class TaskRecord:
         self.drives = False
         self.to_its_end = False  # the clock is the end of the move
         # what it has of the motors beside its move
-        self.set_to = OFF  # by its M,
+        self.set_to = MOTORS_OFF  # by its M,
         self.has_set = False  # which is in force
         self.keeps = False  # a WHEN has wanted the motors, and has not found FALSE since
 
@@ -93,7 +93,7 @@ class TaskRecord:
         self.pc = self.check
 
     def forget_set(self) -> None:
-        self.set_to, self.has_set = OFF, False
+        self.set_to, self.has_set = MOTORS_OFF, False
 
 
 class TaskMachine(Machine):
@@ -113,7 +113,7 @@ class TaskMachine(Machine):
         self.is_first_round = True  # the main task has had its turn in it
         self.next_rank = 0  # in this round
         self.holder: TaskRecord | None = None  # who has the motors
-        self.powers = OFF  # that the motors were set to last
+        self.powers = MOTORS_OFF  # that the motors were set to last
 
     # -- turns --------------------------------------------------------------------------------
 
@@ -149,7 +149,7 @@ class TaskMachine(Machine):
         except Fault as fault:
             self.robot.off()
             self.status, self.fault = FAULT, fault.name
-            self.me.pc = instruction(self._code, at)[1]
+            self.me.pc = instruction_at(self._code, at)[1]
         self.at = at
         self.steps += budget - left
         return self.status
@@ -330,7 +330,7 @@ class TaskMachine(Machine):
 
     def _end_move(self) -> None:
         self.me.leave_move()
-        self._set_motors(OFF)
+        self._set_motors(MOTORS_OFF)
 
     def _block(self) -> int:
         """Wait for the motors."""
@@ -356,7 +356,7 @@ class TaskMachine(Machine):
         me.keeps = me.is_when
         if self._is_below():
             return
-        self._set_motors(OFF)
+        self._set_motors(MOTORS_OFF)
         if holder is not None:
             holder.forget_set()
             if holder.drives:
@@ -385,7 +385,7 @@ class TaskMachine(Machine):
             self.holder = highest
             if highest is not None and highest.is_blocked:
                 highest.clock_ms = self.now_ms + self.is_first_round
-            powers = OFF if highest is None else highest.set_to
+            powers = MOTORS_OFF if highest is None else highest.set_to
             if powers != self.powers:
                 self._set_motors(powers)
 
@@ -417,7 +417,7 @@ def find_tasks(code: bytes) -> list[Start]:
     tasks = []
     at = 0
     while at < len(code):
-        op, at = instruction(code, at)
+        op, at = instruction_at(code, at)
         if op.name in ("TASK", "WHEN"):
             tasks.append(Start(at, op.name == "WHEN"))
     return tasks

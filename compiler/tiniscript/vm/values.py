@@ -8,7 +8,7 @@ from collections.abc import Callable
 from tiniscript.base import fixed_point
 from tiniscript.base.fixed_point import ONE, in_range, next_random, random_between
 from tiniscript.base.words import COMPARATORS
-from tiniscript.bytecode.opcodes import PUSHED
+from tiniscript.bytecode.opcodes import PUSHED_NUMBERS
 from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, handles
 from tiniscript.vm.state import Execution
 
@@ -44,7 +44,7 @@ def _push_handler(n: int) -> Handler:
 
 HANDLERS["PUSH_FALSE"] = _push_handler(0)
 HANDLERS["PUSH_TRUE"] = _push_handler(1)
-for _number in PUSHED:
+for _number in PUSHED_NUMBERS:
     HANDLERS[f"PUSH_NUM_{_number}"] = _push_handler(_number * ONE)
 
 

@@ -7,24 +7,27 @@ from argparse import Namespace
 from pathlib import Path
 
 from tiniscript import robots
-from tiniscript.base.kit import OWN_BESIDE_REMOTE
+from tiniscript.base.kit import MOST_SENSORS_BESIDE_REMOTE
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.robots import firmware
 from tiniscript.robots.nearness import nearest_to
 from tiniscript.robots.profile import Robot
 
-SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the place in it
+SKETCH_FOLDER = Path("vm_arduino")
+HEADER_PATH = Path("src/boards/kits/own.h")  # in it
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.wired_robot(options, language).with_language(language)
     if not robot.kit.has_remote:
-        say_aside("board_no_remote", language, robot=robot.name, most=str(OWN_BESIDE_REMOTE))
+        say_aside(
+            "board_no_remote", language, robot=robot.name, most=str(MOST_SENSORS_BESIDE_REMOTE)
+        )
     if robots.is_path(options.robot):
         _compare(robot, language)
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
-    if not outputs.put(options.output, header.encode()):
+    if not outputs.write_output(options.output, header.encode()):
         return 0
     now = _next(options.robot, Path(options.output), robot.board.chip, language)
     say("board", language, file=inputs.printable_name(options.output), robot=robot.name,
@@ -47,12 +50,12 @@ def _next(robot: str, output: Path, chip: str, language: str) -> str:
     """Return the next step with a header: the build finds it in only one place."""
     path = output.absolute()
     folder = path.parents[3] if len(path.parents) > 3 else path.parent
-    if path == folder / HOME and (folder / "platformio.ini").is_file():
+    if path == folder / HEADER_PATH and (folder / "platformio.ini").is_file():
         build = f"pio run -d {_name(_relative_to_cwd(folder))} -e {chip}"
         return text("board_here", language).format(build=build)
-    build = f"pio run -d {SKETCH} -e {chip}"
+    build = f"pio run -d {SKETCH_FOLDER} -e {chip}"
     return text("board_elsewhere", language).format(
-        robot=_name(Path(robot)), home=(SKETCH / HOME).as_posix(), build=build
+        robot=_name(Path(robot)), home=(SKETCH_FOLDER / HEADER_PATH).as_posix(), build=build
     )
 
 

@@ -64,7 +64,7 @@ def _repair(options: Namespace, given: Input, robot: Robot, language: str) -> tu
         return result.compiled, result.compiled.is_right and not result.repairs
     if given.path is None:
         if says:
-            outputs.put(None, result.data)
+            outputs.write_output(None, result.data)
     elif result.repairs:
         outputs.write(given.path, result.data, "unwritable_source")
     if says and result.repairs and given.path is not None:
@@ -88,5 +88,5 @@ def _robot(options: Namespace, language: str) -> Robot:
 
     with Connection(options, robot, language) as connection:
         connection.meet()
-        own_kit.take(connection, options)
+        own_kit.use_answering_profile(connection, options)
         return connection.profile

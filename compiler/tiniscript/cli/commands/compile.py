@@ -14,7 +14,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import text
 from tiniscript.diagnostics.codes import WILL_FAULT
 from tiniscript.library import source_map
-from tiniscript.library.compiling import for_robot
+from tiniscript.library.compiling import fit_to_robot
 from tiniscript.semantics.duration import duration
 from tiniscript.semantics.ir import Program
 
@@ -34,7 +34,7 @@ def run(options: Namespace, language: str) -> int:
     if not compiled.is_right:
         return 1
     places = source_map.map_of_compiled(compiled)
-    outputs.put(target, compiled.image)
+    outputs.write_output(target, compiled.image)
     if options.map is not None:
         data = (source_map.as_json(places) + "\n").encode(errors="backslashreplace")
         outputs.write(Path(options.map), data, "unwritable_at --map")
@@ -58,7 +58,7 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     if options.map is not None:
         raise CommandError(2, "text_has_no_map")
     robot = inputs.robot_for(given, options, language)
-    compiled = for_robot(compiling.compile_input(given, robot, is_strict=True), robot)
+    compiled = fit_to_robot(compiling.compile_input(given, robot, is_strict=True), robot)
     compiled = compiling.for_level(compiled, robot, options.text_level)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
@@ -67,7 +67,7 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
 
     assert compiled.program is not None
     line = (line_of(compiled.source) + "\n").encode()
-    is_printed = not outputs.put(options.output, line)
+    is_printed = not outputs.write_output(options.output, line)
     sentence = text("compiled_text", language).format(
         source=inputs.printable_name(given.name),
         target="-" if is_printed else inputs.printable_name(options.output),

@@ -22,14 +22,14 @@ from tiniscript.cli.texts.options import (
     options_of,
 )
 from tiniscript.cli.texts.verbs import VERBS
-from tiniscript.cli.texts.verbs import of_verb as summary_of
+from tiniscript.cli.texts.verbs import verb_sentence as summary_of
 from tiniscript.cli.verbless import is_help
 from tiniscript.diagnostics.codes import CODES
 from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.link import ports
 from tiniscript.virtual import worlds
 
-FILES = ("program", "robot", "world", "file", "action", "port")  # kinds that may name a file
+FILE_KINDS = ("program", "robot", "world", "file", "action", "port")  # kinds that may name a file
 SCRIPTS = {
     "bash": """\
 # Tab completes commands of tsc. In ~/.bashrc:  eval "$(tsc help --completion bash)"
@@ -87,7 +87,7 @@ def run(options: Namespace, language: str) -> int:
     if last == "=":  # bash makes three words of --robot=liner
         last = ""
     kind, rows = _completions([word for word in before if word != "="], last, language)
-    print("files" if kind in FILES else "words")
+    print("files" if kind in FILE_KINDS else "words")
     for word, says in rows:
         if word.startswith(last):
             print(f"{word}\t{says}")
@@ -116,7 +116,7 @@ def _completions(before: list[str], last: str, language: str) -> tuple[str, list
     if kind is None:
         return "", [(flag, _first_clause(option.help(language))) for flag, option in flags.items()]
     begin = f"{name}=" if equals else ""
-    return kind.name, [(begin + word, says) for word, says in _words_of(kind, language)]
+    return kind.name, [(begin + word, says) for word, says in _values_of_kind(kind, language)]
 
 
 def _verb(before: list[str]) -> tuple[str, list[str]]:
@@ -128,7 +128,7 @@ def _verb(before: list[str]) -> tuple[str, list[str]]:
     return ("help" if word not in VERBS and is_help(word) else word), before[at + 1 :]
 
 
-def _words_of(kind: Kind, language: str) -> list[tuple[str, str]]:
+def _values_of_kind(kind: Kind, language: str) -> list[tuple[str, str]]:
     """Return the values of a kind that have names, and what they do where that is known."""
     if kind is VERB:
         return [(verb, _first_clause(summary_of(verb, "summary", language))) for verb in VERBS]

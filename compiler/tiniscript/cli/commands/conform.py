@@ -22,7 +22,7 @@ from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, Verdict, ve
 from tiniscript.conformance.kit import (
     FOLDER,
     LINK_VERSION,
-    VERSION,
+    MACHINE_VERSION,
     NotMade,
     link_test_suite,
     machine_cases,
@@ -35,10 +35,10 @@ from tiniscript.link.messages import MAJOR, MINOR, OWNED, STOP_BYTES
 from tiniscript.link.wire import Wire
 
 PATIENCE_S = 10
-MOST_SHOWN = 20
+MOST_ROWS = 20
 CABLE_MS, RADIO_MS = 300, 700  # for one try of an answer
 BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
-MAKER = "tools.builds.conformance"  # which no package brings
+CASES_BUILDER = "tools.builds.conformance"  # which no package brings
 ISA = f"{ISA_MAJOR}.{ISA_MINOR}"
 
 
@@ -58,7 +58,7 @@ def run(options: Namespace, language: str) -> int:
 
 def build_command() -> str:
     """Return the command that makes the cases of this installation in a clone."""
-    words = [sys.executable, "-m", MAKER]
+    words = [sys.executable, "-m", CASES_BUILDER]
     if not install_advice.is_clone(install_advice.CLONE):
         words.append(str(FOLDER))
     return " ".join(map(install_advice.quote, words))
@@ -78,7 +78,7 @@ def _machine(options: Namespace, timeout_s: int, language: str) -> int:
         ) from None
     finally:
         process.close()
-    facts = {"version": str(VERSION), "isa": ISA}
+    facts = {"version": str(MACHINE_VERSION), "isa": ISA}
     return report(result, len(cases), facts, "conform_machine_end", timeout_s, options, language)
 
 
@@ -143,10 +143,10 @@ def report(
         sums["found"] = rows
         print(json.dumps(sums, indent=2, ensure_ascii=False))
         return int(bool(differing))
-    for verdict in differing[:MOST_SHOWN]:
+    for verdict in differing[:MOST_ROWS]:
         print("\n".join(_rows(verdict, timeout_s, language)))
-    if len(differing) > MOST_SHOWN:
-        say("conform_others", language, n=len(differing) - MOST_SHOWN)
+    if len(differing) > MOST_ROWS:
+        say("conform_others", language, n=len(differing) - MOST_ROWS)
     if len(found) < count:
         say("conform_given_up", language)
     if lacking:

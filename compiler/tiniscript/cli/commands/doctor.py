@@ -24,7 +24,7 @@ from tiniscript.cli.robot.description import (
 )
 from tiniscript.cli.robot.diagnosing import diagnosis_of, examination_of, expected_of
 from tiniscript.cli.robot.fleet import run_together
-from tiniscript.cli.robot.member import Member, Result, are_many
+from tiniscript.cli.robot.member import Member, Result, select_port
 from tiniscript.cli.robot.port_rows import lines as lines_of_ports
 from tiniscript.cli.robot.port_rows import list_rows
 from tiniscript.cli.robot.simulator import running_address
@@ -41,16 +41,16 @@ from tiniscript.link.requests import device_info_of
 from tiniscript.link.trim import trim_from_reply
 
 LONGEST_WATCH_S = 600
-BLANK = "____"
+BLANK_FIELD = "____"
 # The steps of a bring-up: `step_` names one, `do_` says what to do, `see_` what must be seen.
-STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "power", "bluetooth",
+FORM_STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "power", "bluetooth",
          "wifi", "supply")  # fmt: skip
 
 
 def run(options: Namespace, language: str) -> int:
     count = whole_number("--count", options.count, PINGS, 1, 10_000, language)
     expected = expected_of(options, language, count)
-    if are_many(options):
+    if select_port(options):
         if options.report is not None or options.watch is not None:
             raise CommandError(2, "doctor_one")
         work = partial(_examine_member, expected)
@@ -156,8 +156,8 @@ def _form(told: Mapping[str, str], language: str) -> list[str]:
     rows = [text("bring_up_about", language), text("bring_up_person", language)]
     rows.append(text("bring_up_robot", language).format(**known) if known
                 else text("bring_up_no_robot", language))  # fmt: skip
-    for number, step in enumerate(STEPS, 1):
-        seen = BLANK
+    for number, step in enumerate(FORM_STEPS, 1):
+        seen = BLANK_FIELD
         if step == "answers" and "good" in known:
             seen = text("bring_up_answers", language).format(**known)
         rows.append(f"{number}. {text(f'step_{step}', language)}: {seen}")
@@ -168,7 +168,7 @@ def _form(told: Mapping[str, str], language: str) -> list[str]:
 
 def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> list[str]:
     """Return the lines of a report."""
-    rows = report.head(report.MARK, text("report_about", language),
+    rows = report.head(report.REPORT_MARK, text("report_about", language),
                        report.facts(diagnosis.computer), diagnosis.port)  # fmt: skip
     rows += [
         f"{finding.cause} {'sure' if finding.is_sure else 'probably'}"

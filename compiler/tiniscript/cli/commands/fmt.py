@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
-from tiniscript.base.source import LARGEST_SOURCE
+from tiniscript.base.source import LARGEST_SOURCE_BYTES
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say, text
@@ -21,7 +21,7 @@ def run(options: Namespace, language: str) -> int:
         outputs.print_diagnostics(parsed, language)
         return 1
     laid_out = format_source(parsed.source)
-    if len(laid_out.encode()) > LARGEST_SOURCE:
+    if len(laid_out.encode()) > LARGEST_SOURCE_BYTES:
         raise CommandError(2, "fmt_too_large", file=inputs.printable_name(given.name))
     name = inputs.printable_name(given.name)
     is_same = laid_out.encode() == given.data
@@ -30,7 +30,7 @@ def run(options: Namespace, language: str) -> int:
         print(text(key, language).format(file=name), file=sys.stdout if is_same else sys.stderr)
         return 0 if is_same else 1
     if given.path is None:
-        outputs.put(None, laid_out.encode())
+        outputs.write_output(None, laid_out.encode())
     elif not is_same:
         outputs.write(given.path, laid_out.encode(), "unwritable_source")
         say("formatted", language, file=name)

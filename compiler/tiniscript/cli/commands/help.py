@@ -9,7 +9,7 @@ from tiniscript.base.languages import languages
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.help import full_help, help_of, list_commands, overview, show
 from tiniscript.cli.inputs import printable_name
-from tiniscript.cli.texts.verbs import COMMANDS, WAS, command_words, verb_text
+from tiniscript.cli.texts.verbs import COMMANDS, FORMER_COMMANDS, command_words, verb_text
 from tiniscript.cli.verbless import guess_verb, refuse, verbs_for
 
 
@@ -20,7 +20,7 @@ def run(options: Namespace, language: str) -> int:
     elif any(about in verb_text("all", language).split() for language in languages()):
         show(full_help, language)
     elif command := next(
-        (item for item in COMMANDS if command_words(item) == about), WAS.get(about)
+        (item for item in COMMANDS if command_words(item) == about), FORMER_COMMANDS.get(about)
     ):
         show(partial(help_of, command), language)
     else:

@@ -8,12 +8,12 @@ from argparse import Namespace
 from tiniscript.cli import inputs
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.fleet import run_together
-from tiniscript.cli.robot.member import Member, Result, are_many
+from tiniscript.cli.robot.member import Member, Result, select_port
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
-    if are_many(options):
+    if select_port(options):
         return run_together(options, robot, language, _identify_member)
     with Connection(options, robot, language) as connection:
         connection.meet()

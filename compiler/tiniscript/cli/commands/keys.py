@@ -51,7 +51,7 @@ def _export(robot_keys: list[RobotKey], name: str, language: str) -> None:
     if path.exists():
         raise CommandError(2, "export_there", file=printable_name(name))
     taken = [key._replace(is_stale=False) for key in robot_keys if not key.is_pending]
-    outputs.write(path, keys.encode_keys(taken), "unwritable_more --export", keys.MODE)
+    outputs.write(path, keys.encode_keys(taken), "unwritable_more --export", keys.FILE_MODE)
     say("keys_exported", language, n=len(taken), file=printable_name(name))
 
 
@@ -64,7 +64,7 @@ def _import(own: KeyFile, name: str, language: str) -> None:
         changed = own.add(brought)
     except TooManyKeys:
         raise CommandError(
-            2, "too_many_keys", most=str(keys.MOST), file=printable_name(name)
+            2, "too_many_keys", most=str(keys.MOST_KEYS), file=printable_name(name)
         ) from None
     except BadKeys as why:
         raise _key_file_error(own, "own_keys_full", why) from None

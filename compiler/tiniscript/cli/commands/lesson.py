@@ -94,7 +94,7 @@ def _sheet(folder: Path, lesson: Lesson, options: Namespace, language: str) -> i
     if options.output is None:
         raise CommandError(2, "lesson_where", number=inputs.printable_name(options.number))
     page = sheet(_page(folder, options.teacher, language), lesson, options.teacher, language)
-    if not outputs.put(options.output, page.encode()):
+    if not outputs.write_output(options.output, page.encode()):
         return 0
     say(
         "lesson_sheet",

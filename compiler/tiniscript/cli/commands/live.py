@@ -9,11 +9,11 @@ from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator
 
 from tiniscript.base import files
-from tiniscript.base.words import WORDS, said_of
+from tiniscript.base.words import WORDS, lexicon_meaning
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit, remote_keys
-from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
+from tiniscript.cli.robot.bookkeeping import BOOKKEEPING_MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.description import introduce
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
@@ -22,7 +22,7 @@ from tiniscript.cli.robot.remote_keys import TerminalRemote
 from tiniscript.cli.robot.run_monitor import INTERRUPTED, RunMonitor, stop_and_say
 from tiniscript.cli.texts import say, say_aside, text
 from tiniscript.library import source_map
-from tiniscript.library.compiling import kit_of, with_robot_hints
+from tiniscript.library.compiling import add_robot_hints, kit_of
 from tiniscript.library.known_kits import missing_need
 from tiniscript.library.other_robots import is_other_robots
 from tiniscript.library.refusing import lacks_remote
@@ -63,7 +63,7 @@ def _is_runnable(line: str, known: LiveState, robot: Robot, options: Namespace) 
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
     language: str = options.language
     if options.robot is None:
-        compiled = with_robot_hints(known.line(line, 0).compiled, robot, is_chosen=True)
+        compiled = add_robot_hints(known.line(line, 0).compiled, robot, is_chosen=True)
         if is_other_robots(compiled.diagnostics):
             result = own_kit.find_answering_robot(options, robot, language)
             if result is not None:
@@ -84,9 +84,7 @@ def _compile(
         raise CommandError(1, "live_button")
     result = known.line(line, 0 if is_last else room)
     if warns or not result.compiled.is_right:
-        outputs.print_diagnostics(
-            with_robot_hints(result.compiled, robot, is_chosen=True), language
-        )
+        outputs.print_diagnostics(add_robot_hints(result.compiled, robot, is_chosen=True), language)
     if not result.compiled.is_right:
         return None
     assert result.compiled.verdict is not None
@@ -111,7 +109,7 @@ class Repl:
     def meet(self) -> None:
         """Send HELLO to the robot, and use its kit. Raises CommandError if none answers."""
         self.connection.meet()
-        if own_kit.take(self.connection, self.options):
+        if own_kit.use_answering_profile(self.connection, self.options):
             self.known.kit = self.connection.profile.kit
 
     def run_line(self, line: str, is_last: bool = False) -> int:
@@ -289,7 +287,11 @@ def requested_command(line: str, known: LiveState) -> str:
     word = re.sub(r"\s*(\(\s*\))?[\s;]*$", "", line.lstrip()).upper()
     if word in (*known.defs, *known.kit.names):
         return ""
-    return HELP_ME if word == "?" else "".join(said_of(word, LEAVE) or said_of(word, HELP_ME))
+    return (
+        HELP_ME
+        if word == "?"
+        else "".join(lexicon_meaning(word, LEAVE) or lexicon_meaning(word, HELP_ME))
+    )
 
 
 class Catch:
@@ -336,7 +338,7 @@ class Catch:
 
 
 def _is_mark(event: ShownEvent) -> bool:
-    return event.value == MARK and not event.is_yes_no
+    return event.value == BOOKKEEPING_MARK and not event.is_yes_no
 
 
 @contextlib.contextmanager

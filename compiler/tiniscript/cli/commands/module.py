@@ -21,7 +21,7 @@ from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
 from tiniscript.link.modules.set_up import (
     BAUD,
     DONE,
-    GOOD,
+    GOOD_OUTCOMES,
     NAME,
     PIN,
     Outcome,
@@ -38,12 +38,12 @@ def run(options: Namespace, language: str) -> int:
     try:
         wire = Wire(ports.open_port(port, BAUDS[0]))
     except PortError as failure:
-        return _end(open_failure(System(), port, failure)._replace(of="module"), language)
+        return _print_finding(open_failure(System(), port, failure)._replace(of="module"), language)
     steps: list[Step] = []  # the speed, once a command for it may have been sent
     try:
         return _SetUp(wire, options, expected, language, steps).run()
     except OSError:
-        code = _end(sure("port_gone")._replace(of="module"), language)
+        code = _print_finding(sure("port_gone")._replace(of="module"), language)
         print(_speed_after_abort(steps, language))
         return code
     except KeyboardInterrupt:
@@ -52,7 +52,7 @@ def run(options: Namespace, language: str) -> int:
         wire.close()
 
 
-def _end(finding: Finding, language: str) -> int:
+def _print_finding(finding: Finding, language: str) -> int:
     """Print what was found; return the exit code."""
     print("\n".join(rows([finding], language)), flush=True)
     return 3 if finding.is_wrong else 0
@@ -131,7 +131,7 @@ class _SetUp:
         )
         doing.end()
         if module is None:
-            return _end(sure("module_silent"), self.language)
+            return _print_finding(sure("module_silent"), self.language)
         what = set_up.misfit(self.wanted, module.dialect)
         if what:
             _refuse(self.wanted, module.dialect, what)
@@ -144,7 +144,7 @@ class _SetUp:
             outcomes = set_up.apply_steps(self.wire, module, plan, self._print_outcome)
         else:
             self._show(plan)
-        is_done = all(outcome.how in GOOD for outcome in outcomes)
+        is_done = all(outcome.how in GOOD_OUTCOMES for outcome in outcomes)
         if not plan:
             pin = "123456"[: module.dialect.pin_digits]
             print(self._text("module_nothing", port=self.port, pin=pin))
@@ -194,4 +194,4 @@ class _SetUp:
         if step.what == BAUD and how == DONE:
             how = "done_baud" if text == step.value else "done_later"
         text = printable_name(text) or self._text("module_no_word")
-        _end(sure(f"module_{how}", name=name, said=text), self.language)
+        _print_finding(sure(f"module_{how}", name=name, said=text), self.language)

@@ -8,7 +8,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import name_bytes
 from tiniscript.cli.robot.connect import connect
-from tiniscript.link.requests import TAKEN
+from tiniscript.link.requests import ACCEPTING_STATUSES
 
 
 def run(options: Namespace, language: str) -> int:
@@ -18,7 +18,7 @@ def run(options: Namespace, language: str) -> int:
     data = name_bytes(name)
     with connect(options, language) as connection:
         connection.meet()
-        reply = connection.request(lambda session: session.name(data), TAKEN)
+        reply = connection.request(lambda session: session.name(data), ACCEPTING_STATUSES)
         connection.remember(name)
         if reply.status:  # the name is set, but may not be saved
             raise connection.failure(reply)

@@ -12,18 +12,18 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import baud_of, open_client
-from tiniscript.cli.robot.in_reach import AT_ONCE, find_robots
-from tiniscript.cli.robot.port_rows import NOWHERE, Row, lines, list_rows
+from tiniscript.cli.robot.in_reach import MOST_CHECKS_AT_ONCE, find_robots
+from tiniscript.cli.robot.port_rows import EMPTY_REACH, Row, lines, list_rows
 from tiniscript.cli.texts import Sentence, text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
-from tiniscript.library.known_kits import shipped_of_kit
+from tiniscript.library.known_kits import shipped_name_of_kit
 from tiniscript.link import known_ports
 from tiniscript.link.authority import ownership_of
 from tiniscript.link.connection import stranger
 from tiniscript.link.foreign import explain
 from tiniscript.link.requests import OK
-from tiniscript.link.sharing.protocol import LOOKER
+from tiniscript.link.sharing.protocol import LOOKING_VERB
 from tiniscript.robots.profile import Robot
 
 OPEN_S = 12.0
@@ -32,7 +32,7 @@ OPEN_S = 12.0
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     baud = None if options.baud is None else baud_of(options, robot, language)
-    in_reach = NOWHERE
+    in_reach = EMPTY_REACH
     if options.ask and options.port is None:
         in_reach = find_robots(list(known_ports.remembered_ports().names), language)
         for note in in_reach.notes:  # what could not be searched
@@ -46,7 +46,7 @@ def run(options: Namespace, language: str) -> int:
             is_absent = port in in_reach.absent and row["held_by"] is None
             return absent if is_absent else _ask(port, baud, robot, language)
 
-        with ThreadPoolExecutor(AT_ONCE) as pool:
+        with ThreadPoolExecutor(MOST_CHECKS_AT_ONCE) as pool:
             for row, answer in zip(rows, pool.map(ask, rows), strict=True):
                 row.update(answer)
     if options.json:
@@ -59,7 +59,7 @@ def run(options: Namespace, language: str) -> int:
 def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     """Return the robot that answers on a port, or why none does."""
     try:
-        with closing(open_client(port, robot, LOOKER, baud, language, OPEN_S)) as client:
+        with closing(open_client(port, robot, LOOKING_VERB, baud, language, OPEN_S)) as client:
             reply = client.hello()
             device_info, heard = client.line.robot, client.line.heard
             found = stranger(client.line)
@@ -71,7 +71,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
         opening.remember(port, device_info.name, is_used=False)
         called = (
             printable_name(device_info.name)
-            or shipped_of_kit(device_info.kit)
+            or shipped_name_of_kit(device_info.kit)
             or f"{device_info.id:08x}"
         )
         owner = ownership_of(device_info)

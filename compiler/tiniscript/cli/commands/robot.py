@@ -35,7 +35,7 @@ from tiniscript.virtual.transports import Transports, can_have_terminal
 if TYPE_CHECKING:
     from tiniscript.virtual.announcement import Announcement
 
-MOST_BYTES = 1_000_000  # of a file that may be a robot's memory: that of an ESP32 has 16,640
+MOST_MEMORY_BYTES = 1_000_000  # of a file that may be a robot's memory: that of an ESP32 has 16,640
 SAVE_S = 1.0  # between two looks at what the robot keeps
 QUIT = "qQ\x04"
 
@@ -248,7 +248,7 @@ def _memory(name: str | None) -> bytes | None:
         )
     try:
         with Path(name).open("rb") as file:
-            return file.read(MOST_BYTES)
+            return file.read(MOST_MEMORY_BYTES)
     except FileNotFoundError:
         return None
     except (OSError, ValueError) as why:

@@ -8,7 +8,7 @@ from tiniscript.cli import compiling, images, inputs, outputs
 from tiniscript.cli.disassembling import print_disassembly, print_json
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import say
-from tiniscript.codegen.sketch.writing import BOARDS, missing_feature, sketch_of
+from tiniscript.codegen.sketch.writing import BOARD_TITLES, missing_feature, sketch_of
 from tiniscript.robots.profile import Robot
 
 
@@ -36,8 +36,8 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
         raise CommandError(2, "sketch_or_json")
     if given.is_image:
         raise CommandError(2, "sketch_needs_text", file=inputs.printable_name(given.name))
-    if robot.board.chip not in BOARDS:
-        known = ", ".join(BOARDS)
+    if robot.board.chip not in BOARD_TITLES:
+        known = ", ".join(BOARD_TITLES)
         raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=known)
     compiled = compiling.compile_input(given, robot, is_strict=False)
     outputs.print_diagnostics(compiled, language)
@@ -47,7 +47,7 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if missing := missing_feature(compiled.program, robot.kit):
         raise CommandError(2, f"sketch_no_{missing}", file=inputs.printable_name(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
-    if outputs.put(options.output, sketch):
+    if outputs.write_output(options.output, sketch):
         name = inputs.printable_name(robot.labels[language]["robot"])
         say("sketch", language, file=inputs.printable_name(options.output), robot=name)
     return 0

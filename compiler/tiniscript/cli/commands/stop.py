@@ -9,20 +9,20 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.member import are_many
+from tiniscript.cli.robot.member import select_port
 from tiniscript.cli.robot.stopping import hold_back, may_be_opened, stop_one
 from tiniscript.cli.texts import say
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
-    is_many = are_many(options)
+    is_many = select_port(options)
     if not is_many and options.port is None:
         from tiniscript.cli.robot import in_reach
 
         options.ports = in_reach.ports_to_stop(options.virtual)
         options.virtual = options.virtual and not options.ports
-        is_many = are_many(options)
+        is_many = select_port(options)
     if is_many:
         from tiniscript.cli.robot.fleet import run_together
 

@@ -22,7 +22,7 @@ from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 
 PORT = 7070
-ELSEWHERE = "198.51.100.1"  # an address of documents, which nobody has
+UNUSED_ADDRESS = "198.51.100.1"  # an address of documents, which nobody has
 
 
 class _Class(NamedTuple):
@@ -48,7 +48,7 @@ def _serve(
     options: Namespace, language: str, place: tuple[str, int], hosting: Hosting,
     taught: _Class | None = None,
 ) -> int:  # fmt: skip
-    went_on = _go_on(taught) if taught else 0
+    went_on = _resume_class(taught) if taught else 0
     if not serving.is_built() or building.is_possible():
         page_build.prepare(options, language)
     host, port = place
@@ -104,7 +104,7 @@ def _class_keeper() -> class_keeping.Keeper:
         raise CommandError(3, "studio_two_classes") from None
 
 
-def _go_on(taught: _Class) -> int:
+def _resume_class(taught: _Class) -> int:
     """Go on with a class that a crash has ended; return how many pupils it has."""
     kept = taught.keeper.read()
     return taught.room.go_on(*kept) if kept is not None else 0
@@ -121,7 +121,7 @@ def _address() -> str:
     """Return this computer's address in the network of the room. Asks nobody for it."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as connection:
         try:
-            connection.connect((ELSEWHERE, 9))  # chooses a way, and sends nothing
+            connection.connect((UNUSED_ADDRESS, 9))  # chooses a way, and sends nothing
             return str(connection.getsockname()[0])
         except OSError:
             raise CommandError(3, "studio_no_network") from None

@@ -12,7 +12,7 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.fleet import run_together
-from tiniscript.cli.robot.member import Member, Result, are_many
+from tiniscript.cli.robot.member import Member, Result, select_port
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.library import source_map
 from tiniscript.link.names import saved_name
@@ -28,7 +28,7 @@ class UndoSaving(Saving):
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
-    if are_many(options):
+    if select_port(options):
         return run_together(options, robot, language, _undo_member)
     with Connection(options, robot, language) as connection:
         connection.meet()

@@ -12,7 +12,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import printer_of
-from tiniscript.cli.robot.member import are_many
+from tiniscript.cli.robot.member import select_port
 from tiniscript.cli.robot.program_upload import (
     follow_run,
     has_button,
@@ -31,7 +31,7 @@ from tiniscript.robots.profile import Robot
 def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
     robot = inputs.robot_for(given, options, language)
-    is_many = are_many(options)
+    is_many = select_port(options)
     # the robot that answers may not be the default one
     is_open = options.robot is None and not is_many and not given.is_image
     ready = _ready(given, robot, options, is_open)
@@ -60,7 +60,7 @@ def run(options: Namespace, language: str) -> int:
             return introduce(connection, options.json)
         connection.meet()
         is_kit_wrong = ready.image.devices and connection.device_info.kit != robot.kit.fingerprint
-        if is_open and is_kit_wrong and own_kit.take(connection, options):
+        if is_open and is_kit_wrong and own_kit.use_answering_profile(connection, options):
             ready = images.ready(given, connection.profile, language, is_strict=True)
             if ready is None:
                 return 1

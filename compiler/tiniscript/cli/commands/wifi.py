@@ -25,7 +25,7 @@ from tiniscript.link.payloads import WifiReply
 from tiniscript.link.wifi import MODES, STATES, Network, address
 
 # states from which nothing further follows by itself
-ENDS = tuple(map(STATES.index, ("READY", "REFUSED", "RESTS")))
+FINAL_STATES = tuple(map(STATES.index, ("READY", "REFUSED", "RESTS")))
 
 
 def run(options: Namespace, language: str) -> int:
@@ -37,8 +37,8 @@ def run(options: Namespace, language: str) -> int:
     is_about_network = options.network is not None or options.forget
     if is_about_broker and (is_about_network or (options.broker is not None and options.no_broker)):
         raise CommandError(2, "wifi_one_way")
-    of_broker = (options.user, options.group, options.trust, options.tls or None)
-    if options.broker is None and any(item is not None for item in of_broker):
+    broker_options = (options.user, options.group, options.trust, options.tls or None)
+    if options.broker is None and any(item is not None for item in broker_options):
         raise CommandError(2, "broker_no_user")
     broker = robot_broker.settings(options, language) if options.broker is not None else None
     name = None if options.network is None else _name_bytes(options.network)
@@ -82,7 +82,8 @@ def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
     connection.request(lambda session: session.join(network))
     ask = partial(_wifi_state, connection)
     _print_wifi_state(
-        connection, robot_broker.await_state(ask, lambda wifi_reply: wifi_reply.state in ENDS)
+        connection,
+        robot_broker.await_state(ask, lambda wifi_reply: wifi_reply.state in FINAL_STATES),
     )
 
 

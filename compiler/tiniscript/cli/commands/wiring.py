@@ -16,7 +16,7 @@ from tiniscript.robots.wiring.page import rail_rows, wire_rows
 from tiniscript.robots.wiring.plan import plan_of
 
 GAP = "  "  # between columns
-NARROWEST = 16  # a column on a terminal that is too narrow for the table
+LEAST_COLUMN_WIDTH = 16  # a column on a terminal that is too narrow for the table
 
 
 def run(options: Namespace, language: str) -> int:
@@ -29,7 +29,7 @@ def run(options: Namespace, language: str) -> int:
         print()
         say("wiring_page", language)
         return 0
-    if outputs.put(options.output, html_of(plan).encode()):
+    if outputs.write_output(options.output, html_of(plan).encode()):
         say(
             "wiring",
             language,
@@ -54,7 +54,7 @@ def _print_rows(rows: list[tuple[str, ...]]) -> None:
     indent = sum(widths[:-1]) + len(GAP) * (len(widths) - 1)
     room = widths[-1]
     if sys.stdout.isatty():
-        room = min(room, max(NARROWEST, get_terminal_size().columns - indent - 1))
+        room = min(room, max(LEAST_COLUMN_WIDTH, get_terminal_size().columns - indent - 1))
     for *row, last in shown:
         cells = GAP.join(
             set_cell_size(cell, width) for cell, width in zip(row, widths, strict=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tiniscript.link.outcomes import Event
 
-MARK = -(2**31)  # the smallest number there is
+BOOKKEEPING_MARK = -(2**31)  # the smallest number there is
 
 
 class Bookkeeping:
@@ -18,7 +18,7 @@ class Bookkeeping:
             self.is_on = False
         elif event.name != "SHOW":
             return False
-        elif event.value == MARK and not event.is_yes_no:
+        elif event.value == BOOKKEEPING_MARK and not event.is_yes_no:
             self.is_on = True
         return self.is_on
 
@@ -26,6 +26,6 @@ class Bookkeeping:
         """The same for an action in the trace of a virtual robot."""
         if what in ("START", "DONE", "FAULT", "STOP", "OFF"):
             self.is_on = False
-        elif what == "SHOW" and values == (MARK,):
+        elif what == "SHOW" and values == (BOOKKEEPING_MARK,):
             self.is_on = True
         return self.is_on and what == "SHOW"

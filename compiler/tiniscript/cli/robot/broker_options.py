@@ -15,7 +15,7 @@ from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
 from tiniscript.link.wifi import is_class
 
 PLAIN_PORT, TLS_PORT = 1883, 8883
-GROUP = "class"  # of who names none
+DEFAULT_GROUP = "class"  # of who names none
 
 
 class Place(NamedTuple):
@@ -37,7 +37,7 @@ def place(options: Namespace, is_tls: bool = False) -> Place:
 
 def group(options: Namespace) -> str:
     """Return the name of the class. Raises CommandError."""
-    name = GROUP if options.group is None else str(options.group)
+    name = DEFAULT_GROUP if options.group is None else str(options.group)
     if not is_class(name):
         raise CommandError(2, "class_bad_name", found=printable_name(name) or "''")
     return name

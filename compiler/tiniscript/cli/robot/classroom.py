@@ -15,7 +15,7 @@ from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import CLASS_ROWS
 from tiniscript.cli.robot import broker_options
 from tiniscript.cli.robot.connect import Connection, convert_port_error
-from tiniscript.cli.robot.description import in_a_line
+from tiniscript.cli.robot.description import describe_in_a_line
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import run_together
 from tiniscript.cli.robot.fleet_upload import upload_to_many
@@ -31,8 +31,8 @@ from tiniscript.link.port_connection import now_ms
 if TYPE_CHECKING:
     from tiniscript.link.transports.broker import Access, Broker, Present
 
-STOPS = 3  # messages to all, as each may be lost
-UPLOAD = "upload"  # the verb that asks most of a fleet's options
+STOP_MESSAGES = 3  # messages to all, as each may be lost
+UPLOAD_VERB = "upload"  # the verb that asks most of a fleet's options
 
 
 class Classroom:
@@ -88,10 +88,10 @@ class Classroom:
         from tiniscript.link.transports.broker import port_of
 
         ports = [port_of(*self.place, self.group, item.id) for item in found if item.is_here]
-        of_fleet = {option.name: option.unset for option in options_of(UPLOAD)}
-        own = Namespace(**{**of_fleet, "port": None, **vars(self.options)})
+        fleet_defaults = {option.name: option.unset for option in options_of(UPLOAD_VERB)}
+        own = Namespace(**{**fleet_defaults, "port": None, **vars(self.options)})
         own.ports, own.verb = ports, verb
-        if verb == UPLOAD:
+        if verb == UPLOAD_VERB:
             own.attend = self.broker.attend
         return own
 
@@ -99,7 +99,7 @@ class Classroom:
 def list_robots(room: Classroom) -> int:
     result = room.present()
     own = room.targets(result)
-    code = run_together(own, inputs.robot(own, room.language), room.language, in_a_line)
+    code = run_together(own, inputs.robot(own, room.language), room.language, describe_in_a_line)
     for item in result:
         if not item.is_here and not own.json:
             say("class_gone", room.language, robot=printable_name(item.name), id=item.id)
@@ -108,7 +108,7 @@ def list_robots(room: Classroom) -> int:
 
 def upload(room: Classroom) -> int:
     """Send a program to all at once, and follow it until it ends on each."""
-    own = room.targets(room.present(), UPLOAD)
+    own = room.targets(room.present(), UPLOAD_VERB)
     given = inputs.program(own)
     robot = inputs.robot_for(given, own, room.language)
     ready = images.ready(given, robot, room.language, is_strict=True)
@@ -120,7 +120,7 @@ def upload(room: Classroom) -> int:
 def stop(room: Classroom) -> int:
     """Stop all at once, with one message; then ask each of them whether it stands."""
     is_published = False
-    for _ in range(STOPS):
+    for _ in range(STOP_MESSAGES):
         with suppress(OSError):
             is_published = room.broker.stop(room.group) or is_published
     try:

@@ -25,7 +25,7 @@ from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
-from tiniscript.library.known_kits import shipped_of_kit
+from tiniscript.library.known_kits import shipped_name_of_kit
 from tiniscript.link import known_ports
 from tiniscript.link.connection import FOREIGN, PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
@@ -46,9 +46,9 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 # verbs that stay on a port, and share it
-SHARED = ("doctor", "live", "monitor", "monitor --hold", "start", "upload")
+SHARED_VERBS = ("doctor", "live", "monitor", "monitor --hold", "start", "upload")
 STOP_S = 1.5  # timeout for a stop when the command ends and may have no reader
-VIRTUAL = ""  # no port: this command starts its own virtual robot
+OWN_VIRTUAL_ROBOT = ""  # no port: this command starts its own virtual robot
 
 
 def connect(options: Namespace, language: str) -> Connection:
@@ -88,7 +88,7 @@ class Connection(Client):
         self._is_meeting = False
         self.simulator: CommandSimulator | None = None  # a virtual robot for this command alone
         result = _select_port(options, language)
-        if result == VIRTUAL:
+        if result == OWN_VIRTUAL_ROBOT:
             from tiniscript.cli.robot.simulator import CommandSimulator
 
             self.simulator = CommandSimulator(options, robot, language)
@@ -101,7 +101,7 @@ class Connection(Client):
             verb = options.verb
             with self._show_wait(), convert_robot_error():
                 super().__init__(
-                    result, verb, robot, asked_baud, language, is_shared=verb in SHARED,
+                    result, verb, robot, asked_baud, language, is_shared=verb in SHARED_VERBS,
                     heed=self._raise_if_interrupted,
                 )  # fmt: skip
         except BaseException:
@@ -302,7 +302,7 @@ class Connection(Client):
         """Return the meaning of a robot's refusal, and what to do."""
         said, advice = sentence(reply.status, reply.detail, self.language)
         if reply.status == STATUSES["WRONG_KIT"]:
-            name = shipped_of_kit(reply.detail)
+            name = shipped_name_of_kit(reply.detail)
             if name is not None:
                 advice = text("choose_kit", self.language).format(robot=name)
         return f"{said} {advice}".strip()
@@ -315,7 +315,7 @@ class Connection(Client):
 
 def name_of(info: DeviceInfo, language: str) -> str:
     """Return the name of a robot for messages: its own, else that of its profile."""
-    return printable_name(info.name) or shipped_of_kit(info.kit) or text("robot", language)
+    return printable_name(info.name) or shipped_name_of_kit(info.kit) or text("robot", language)
 
 
 @contextmanager
@@ -335,7 +335,7 @@ def open_client(
 ) -> Client:  # fmt: skip
     """Connect to a port through its server, or open it. Raises CommandError."""
     with convert_robot_error():
-        return Client(port, verb, robot, baud, language, limit_s, is_shared=verb in SHARED)
+        return Client(port, verb, robot, baud, language, limit_s, is_shared=verb in SHARED_VERBS)
 
 
 def port_failure(port: str, failure: PortError) -> CommandError:
@@ -365,7 +365,7 @@ def _select_port(options: Namespace, language: str) -> str:
     """Return the port of `--port`, else the last used one, else the one that the user chooses.
 
     A port is not chosen because a robot answers on it: it may be another group's robot. A running
-    virtual robot is the user's own. VIRTUAL stands for a virtual robot of this command.
+    virtual robot is the user's own. OWN_VIRTUAL_ROBOT stands for a virtual robot of this command.
     """
     port: str | None = options.port
     can_bring = hasattr(options, "world")
@@ -374,7 +374,7 @@ def _select_port(options: Namespace, language: str) -> str:
             raise CommandError(2, "virtual_and_port")
         from tiniscript.cli.robot.simulator import running_address
 
-        return running_address(options) or VIRTUAL
+        return running_address(options) or OWN_VIRTUAL_ROBOT
     for name in virtual_names() if can_bring else ():
         if getattr(options, name):
             raise CommandError(2, "only_virtual", option=f"--{name}")
@@ -383,7 +383,7 @@ def _select_port(options: Namespace, language: str) -> str:
     if (there := opening.last_port()) is not None:
         return there
     last = known_ports.remembered_ports().last
-    virtual = directory.for_all() if can_bring else directory.running_robots()
+    virtual = directory.unclaimed_robots() if can_bring else directory.running_robots()
     if len(virtual) == 1:
         return virtual[0].address
     if not asking.can_ask() or getattr(options, "asks_nothing", False):
@@ -397,13 +397,13 @@ def _select_port(options: Namespace, language: str) -> str:
     return _ask_port(language, can_bring, virtual)
 
 
-def about_port(listed: ListedPort, language: str) -> str:
+def describe_port(listed: ListedPort, language: str) -> str:
     """Return the description of a port; of a built-in one the system has none."""
     is_told = bool(listed.description) or not is_built_in(listed.port)
     return listed.description if is_told else text("port_built_in", language)
 
 
-def about_virtual(running: directory.RunningRobot, language: str) -> str:
+def describe_virtual_robot(running: directory.RunningRobot, language: str) -> str:
     """Return the description of a virtual robot; a shipped world has a name in each language."""
     from tiniscript.virtual import worlds
 
@@ -426,13 +426,13 @@ def _ask_port(language: str, can_bring: bool, virtual: list[directory.RunningRob
     choices += [item.address for item in virtual if item.address not in choices]
     if not choices:
         if can_bring:
-            from tiniscript.cli.robot.simulator import offer
+            from tiniscript.cli.robot.simulator import offer_virtual_robot
 
-            if offer(language):
-                return VIRTUAL
+            if offer_virtual_robot(language):
+                return OWN_VIRTUAL_ROBOT
         raise CommandError(3, "no_ports")
-    about = {item.port: about_port(item, language) for item in result}
-    about |= {item.address: about_virtual(item, language) for item in virtual}
+    about = {item.port: describe_port(item, language) for item in result}
+    about |= {item.address: describe_virtual_robot(item, language) for item in virtual}
     say_aside("choose_port", language)
     for number, port in enumerate(choices, 1):
         more = "   ".join(filter(None, (names.get(port), about.get(port))))
@@ -440,7 +440,7 @@ def _ask_port(language: str, can_bring: bool, virtual: list[directory.RunningRob
             f"  {number}  {printable_name(port)}   {printable_name(more)}".rstrip(), file=sys.stderr
         )
     if can_bring:
-        choices.append(VIRTUAL)
+        choices.append(OWN_VIRTUAL_ROBOT)
         print(f"  {len(choices)}  {text('choice_virtual', language)}", file=sys.stderr)
     while True:
         typed = asking.answer(text("choose_number", language))

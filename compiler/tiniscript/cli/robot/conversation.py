@@ -17,10 +17,10 @@ from tiniscript.cli.texts import say_aside, text
 from tiniscript.link.outcomes import Event
 from tiniscript.link.trim import Trim
 
-TURNING = 60  # percent, while the person looks at a motor
-YES = 1
-NOTHING, AGAIN = 5, 6  # answers of `turned`
-MOTORS = {"left": f"M({TURNING}, 0)", "right": f"M(0, {TURNING})"}
+TURNING_POWER = 60  # percent, while the person looks at a motor
+ANSWER_YES = 1
+ANSWER_NOTHING, ANSWER_AGAIN = 5, 6  # answers of `turned`
+MOTORS = {"left": f"M({TURNING_POWER}, 0)", "right": f"M(0, {TURNING_POWER})"}
 
 
 class NoPerson(Exception):
@@ -34,13 +34,13 @@ class WheelTurn(NamedTuple):
     is_forward: bool
 
 
-SEEN = (
+WHEEL_ANSWERS = (
     WheelTurn("left", True),
     WheelTurn("left", False),
     WheelTurn("right", True),
     WheelTurn("right", False),
 )
-STILL = WheelTurn("", False)
+NO_WHEEL_TURN = WheelTurn("", False)
 
 
 class Conversation:
@@ -101,8 +101,8 @@ class Conversation:
     def turn_motor(self, side: str) -> WheelTurn:
         """Turn the motor of a side; return what the person saw. Raises NoPerson, CommandError."""
         key = "ask_turned" if side == "left" else "ask_turned_other"
-        result = self.ask_what_was_seen(f"{MOTORS[side]}; W(1); M(0, 0)", key, AGAIN)
-        return STILL if result == NOTHING else SEEN[result - 1]
+        result = self.ask_what_was_seen(f"{MOTORS[side]}; W(1); M(0, 0)", key, ANSWER_AGAIN)
+        return NO_WHEEL_TURN if result == ANSWER_NOTHING else WHEEL_ANSWERS[result - 1]
 
 
 def trim_from_answers(before: Trim, left: WheelTurn, right: WheelTurn) -> Trim | None:

@@ -16,7 +16,7 @@ from tiniscript.cli.texts import text
 from tiniscript.doctor.examination import trips_of
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.library import source_map
-from tiniscript.library.known_kits import shipped_of_kit
+from tiniscript.library.known_kits import shipped_name_of_kit
 from tiniscript.link.authority import OF_ANOTHER, ownership_of
 from tiniscript.link.messages import (
     RESETS,
@@ -35,7 +35,7 @@ from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.trim import Pace, Trim, trim_from_reply
 
-COUNT = 10  # round trips
+ROUND_TRIPS = 10  # round trips
 
 
 class Description(NamedTuple):
@@ -63,7 +63,7 @@ class Description(NamedTuple):
             "port": self.port,
             "owner": self.owner,
             "kit": f"{self.device_info.kit:04x}",
-            "robot": shipped_of_kit(self.device_info.kit),
+            "robot": shipped_name_of_kit(self.device_info.kit),
             "link": f"{hello.major}.{hello.minor}",
             "isa": f"{self.device_info.isa[0]}.{self.device_info.isa[1]}",
             "room": self.device_info.room,
@@ -167,7 +167,7 @@ def describe_robot(connection: Connection) -> Description:
     )
 
 
-def in_a_line(connection: Connection, member: Member) -> Result:
+def describe_in_a_line(connection: Connection, member: Member) -> Result:
     """Describe one of many robots."""
     member.meet(connection)
     description = describe_robot(connection)
@@ -177,7 +177,7 @@ def in_a_line(connection: Connection, member: Member) -> Result:
 def introduce(connection: Connection, is_json: bool) -> int:
     """Print what a robot says about itself and how soon it answers; return the exit code."""
     connection.meet()
-    trips = _trips(connection, COUNT)
+    trips = _trips(connection, ROUND_TRIPS)
     description = describe_robot(connection)
     if is_json:
         print(json.dumps({**description.fields(), **trips_as_data(trips)}, indent=2))
@@ -189,9 +189,9 @@ def introduce(connection: Connection, is_json: bool) -> int:
 
 def measure_line(connection: Connection, member: Member) -> Result:
     """Describe one of many robots, and say how soon it answers."""
-    result = in_a_line(connection, member)
+    result = describe_in_a_line(connection, member)
     member.tell("crew_pinging")
-    trips = _trips(connection, COUNT)
+    trips = _trips(connection, ROUND_TRIPS)
     text = f"{result.said}; {trips_in_words(trips, connection.language)}"
     return Result(True, text, {**result.fields, **trips_as_data(trips)})
 

@@ -22,7 +22,7 @@ from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
 from tiniscript.library import opening
-from tiniscript.library.known_kits import name_of
+from tiniscript.library.known_kits import robot_name_of_kit
 from tiniscript.link import ports
 from tiniscript.link.authority import has_to_seal, is_other
 from tiniscript.link.connection import LinkConnection
@@ -30,7 +30,7 @@ from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import OWNED, SEALS
 from tiniscript.link.outcomes import LOST
 from tiniscript.link.payloads import HelloReply
-from tiniscript.link.port_names import same_for_all
+from tiniscript.link.port_names import canonical_port
 from tiniscript.link.requests import Reply, device_info_of
 from tiniscript.link.sharing.shared_connection import join
 from tiniscript.link.wire import Wire
@@ -53,7 +53,7 @@ def diagnosis_of(
         expected,
         int.from_bytes(os.urandom(4), "little"),
         watch_ms,
-        tuple(item.address for item in directory.for_all()),
+        tuple(item.address for item in directory.unclaimed_robots()),
     )
     doing = Doing(not options.json)
     try:
@@ -66,7 +66,7 @@ def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expect
     """Return the robot that the options name, and what this computer knows of all."""
     robot = inputs.robot(options, language)
     kit = None if options.robot is None else robot.kit.fingerprint
-    return Expectations(kit, robot.name, name_of, _has_key, _doubt, pings=pings)
+    return Expectations(kit, robot.name, robot_name_of_kit, _has_key, _doubt, pings=pings)
 
 
 def examination_of(
@@ -90,7 +90,7 @@ def _has_key(robot: int) -> bool:
 def _doubt(port: str, hello: HelloReply) -> str:
     """Return the cause why this may be another robot than the one of a key of this computer."""
     keys, info = KeyFile(is_for_virtual=opening.is_virtual(port)), device_info_of(hello)
-    if is_other(keys, same_for_all(port), info):
+    if is_other(keys, canonical_port(port), info):
         return "other_robot"
     is_right = hello.features & (OWNED | SEALS) == (OWNED | SEALS)
     return "unproven" if has_to_seal(keys, info) and not is_right else ""

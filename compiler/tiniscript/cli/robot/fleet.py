@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 LOOK_S = 0.1
 STRANGER_S = 4.0  # timeout for a port that the user has not named and that never had a robot
 # failures that may only mean that a port that the user has not named has no robot
-NOBODY = (
+ABSENT_REASONS = (
     "port_missing", "port_missing_but", "port_unreachable", "port_not_found", "port_not_found_but",
     "port_not_announced",
 )  # fmt: skip
@@ -216,7 +216,9 @@ class Fleet:
 
     def _failure_result(self, member: Member, failure: CommandError) -> Result:
         target = member.target
-        is_absent = failure.key in NOBODY or (failure.key in NO_ROBOT and not target.is_known)
+        is_absent = failure.key in ABSENT_REASONS or (
+            failure.key in NO_ROBOT and not target.is_known
+        )
         sentence = failure.plain(self.language)
         return Result(False, sentence, {}, is_absent and not target.is_named)
 

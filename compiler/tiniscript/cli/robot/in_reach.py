@@ -20,10 +20,10 @@ from tiniscript.link.port_names import (
     BLE,
     TCP,
     canonical,
+    canonical_port,
     is_bluetooth,
     is_network_name,
     name_in,
-    same_for_all,
 )
 from tiniscript.link.sharing.registry import Registration, find_all
 from tiniscript.link.sharing.shared_connection import is_alive
@@ -46,7 +46,7 @@ def find_robots(known: list[str], language: str) -> InReach:
     reasons = set()  # where both packages are missing, one note says it
     with ThreadPoolExecutor(2) as pool:
         searches = [(kind, pool.submit(search, known, language))
-                    for kind, search in ((BLE, _by_radio), (TCP, _by_name))]  # fmt: skip
+                    for kind, search in ((BLE, _find_by_radio), (TCP, _find_by_name))]  # fmt: skip
         for kind, search in searches:
             try:
                 part = search.result()
@@ -61,7 +61,7 @@ def find_robots(known: list[str], language: str) -> InReach:
     return result
 
 
-def _by_radio(known: list[str], language: str) -> InReach:
+def _find_by_radio(known: list[str], language: str) -> InReach:
     seen = ports.find_in_reach()
     names = [canonical(each.name) for each in seen]
     rows = []
@@ -74,14 +74,14 @@ def _by_radio(known: list[str], language: str) -> InReach:
     return _rows(rows, ours)
 
 
-def _by_name(known: list[str], language: str) -> InReach:
+def _find_by_name(known: list[str], language: str) -> InReach:
     there = ports.find_announced()
     rows = []
     for announced in there:
         name = TCP + announced.name if announced.name.isprintable() else announced.port
         sentence = text("announced_port", language).format(port=announced.port)
-        rows.append((name, {same_for_all(name), same_for_all(announced.port)}, sentence))
-    ours = {port: same_for_all(port) for port in known if is_network_name(port)}
+        rows.append((name, {canonical_port(name), canonical_port(announced.port)}, sentence))
+    ours = {port: canonical_port(port) for port in known if is_network_name(port)}
     reach = _rows(rows, ours)
     reach.others.extend(announced.port for announced in there if announced.port not in reach.about)
     return reach
@@ -100,26 +100,26 @@ def _rows(rows: list[tuple[str, set[str], str]], ours: dict[str, str]) -> InReac
     return reach
 
 
-AT_ONCE = 16  # servers that are checked at the same time
+MOST_CHECKS_AT_ONCE = 16  # servers that are checked at the same time
 
 
-def in_use(is_virtual: bool = False) -> list[str]:
+def ports_in_use(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
-    held = [registration.port for registration in alive()]
+    held = [registration.port for registration in running_servers()]
     result = [] if is_virtual else held[:]
     for robot in directory.running_robots():
         names = [robot.address, *([robot.terminal] if robot.terminal else [])]
-        through = [port for port in names if same_for_all(port) in held]
+        through = [port for port in names if canonical_port(port) in held]
         result.append(through[0] if through else robot.address)  # one robot, one port
     return _unique_ports(result)
 
 
-def alive() -> list[Registration]:
+def running_servers() -> list[Registration]:
     """Return the servers that still run; a hanging one delays no other check."""
     registrations = find_all()
     if len(registrations) < 2:  # starting threads takes longer than one answer
         return list(filter(is_alive, registrations))
-    with ThreadPoolExecutor(AT_ONCE) as pool:
+    with ThreadPoolExecutor(MOST_CHECKS_AT_ONCE) as pool:
         return list(compress(registrations, pool.map(is_alive, registrations)))
 
 
@@ -128,10 +128,10 @@ def ports_to_stop(is_virtual: bool = False) -> list[str]:
 
     They include that of the last used robot, which may drive on without any command.
     """
-    result = in_use(is_virtual)
+    result = ports_in_use(is_virtual)
     last = None if is_virtual else opening.last_port()
     return _unique_ports([*result, *([last] if last is not None else [])])
 
 
 def _unique_ports(ports: Iterable[str]) -> list[str]:
-    return list({same_for_all(port): port for port in ports}.values())
+    return list({canonical_port(port): port for port in ports}.values())

@@ -14,7 +14,7 @@ from tiniscript.base.fixed_point import as_text, value_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
-from tiniscript.cli.robot.bookkeeping import MARK
+from tiniscript.cli.robot.bookkeeping import BOOKKEEPING_MARK
 from tiniscript.diagnostics import codes
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compile_text
@@ -95,7 +95,7 @@ class LiveState:
         if all(isinstance(node, ast.Def) for node in parsed):
             return Line(_compiled_part(plain, len(before)), (), own, does_nothing=True)
         if shown:
-            after = "".join(f"\nSHOW({name})" for name in (as_text(MARK), *shown))
+            after = "".join(f"\nSHOW({name})" for name in (as_text(BOOKKEEPING_MARK), *shown))
             full = compile_text(f"{before}{body}{after}", self.kit)
             if full.is_right and len(full.code) <= room:
                 line = _compiled_part(full, len(before), len(before + body))

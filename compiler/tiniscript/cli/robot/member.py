@@ -17,7 +17,7 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.texts import text
 from tiniscript.link import known_ports
-from tiniscript.link.port_names import is_there, same_for_all
+from tiniscript.link.port_names import canonical_port, is_there
 from tiniscript.link.sharing.registry import find_all
 from tiniscript.virtual import directory
 
@@ -32,7 +32,7 @@ class Target(NamedTuple):
     is_known: bool
 
 
-def are_many(options: Namespace) -> bool:
+def select_port(options: Namespace) -> bool:
     """Whether the options name many robots; if not, `port` becomes the only port."""
     options.port = options.ports[0] if options.ports else None
     if options.virtual and (options.all or options.ports):
@@ -56,8 +56,8 @@ def targets(options: Namespace) -> list[Target]:
 
         expected += [item.port for item in ports.list_ports()]
         expected += [robot.address for robot in directory.running_robots()]
-    names = {same_for_all(port): name for port, name in reversed(known.items())}
-    chosen = {same_for_all(port): port for port in reversed(expected)}
+    names = {canonical_port(port): name for port, name in reversed(known.items())}
+    chosen = {canonical_port(port): port for port in reversed(expected)}
     return [
         Target(port, names.get(same, ""), not options.all, same in names)
         for same, port in reversed(chosen.items())

@@ -16,7 +16,7 @@ from tiniscript.library.known_kits import robot_of_kit
 from tiniscript.robots.profile import Robot
 
 
-def take(connection: Connection, options: Namespace) -> bool:
+def use_answering_profile(connection: Connection, options: Namespace) -> bool:
     """Use the profile of the robot that has answered, and print so; return True if it is another.
 
     If the user has named a robot, or the kit is unknown, nothing changes.

@@ -3,33 +3,33 @@
 from __future__ import annotations
 
 from tiniscript.cli.inputs import printable_name
-from tiniscript.cli.robot.connect import about_port, about_virtual
-from tiniscript.cli.robot.in_reach import InReach, alive
+from tiniscript.cli.robot.connect import describe_port, describe_virtual_robot
+from tiniscript.cli.robot.in_reach import InReach, running_servers
 from tiniscript.cli.texts import text
 from tiniscript.link import known_ports, ports
-from tiniscript.link.port_names import is_there, same_for_all
+from tiniscript.link.port_names import canonical_port, is_there
 from tiniscript.virtual import directory
 
-NOWHERE = InReach({}, [], [], [])  # nothing was searched
+EMPTY_REACH = InReach({}, [], [], [])  # nothing was searched
 
 Row = dict[str, object]  # a port as data
 
 
-def list_rows(language: str, only: str | None = None, in_reach: InReach = NOWHERE) -> list[Row]:
+def list_rows(language: str, only: str | None = None, in_reach: InReach = EMPTY_REACH) -> list[Row]:
     """Return the ports that the system lists, those in reach, and others that had a robot."""
     known = known_ports.remembered_ports()
     virtual = {each.address: each for each in directory.running_robots()}
-    about = {each.port: about_port(each, language) for each in ports.list_ports()}
+    about = {each.port: describe_port(each, language) for each in ports.list_ports()}
     about |= in_reach.about
-    held = {registration.port: registration.verb for registration in alive()}
+    held = {registration.port: registration.verb for registration in running_servers()}
     names = [only] if only is not None else list(about)
     if only is None:
         names += [port for port in known.names if port not in about and is_there(port)
                   and port not in in_reach.others and not directory.is_gone(port)]  # fmt: skip
         names += [port for port in virtual if port not in (*names, *in_reach.others)]
-        listed = {same_for_all(port) for port in names}
+        listed = {canonical_port(port) for port in names}
         names += [port for port in held if port not in listed]
-    about |= {port: about_virtual(each, language) for port, each in virtual.items()}
+    about |= {port: describe_virtual_robot(each, language) for port, each in virtual.items()}
     return [
         {
             "port": port,
@@ -37,7 +37,7 @@ def list_rows(language: str, only: str | None = None, in_reach: InReach = NOWHER
             "remembered": known.names.get(port),
             "is_last_used": known.last == port,
             "is_virtual": port in virtual,
-            "held_by": held.get(same_for_all(port)),
+            "held_by": held.get(canonical_port(port)),
         }
         for port in names
     ]

@@ -141,8 +141,8 @@ def follow_line(
     return RunMonitor(connection, printer, hold).follow(run)
 
 
-PUSH = "bB "  # the keys that `tsc robot` has, too
-QUIT = "qQ\x04"
+PUSH_KEYS = "bB "  # the keys that `tsc robot` has, too
+QUIT_KEYS = "qQ\x04"
 
 
 def has_keys(connection: Connection) -> bool:
@@ -165,9 +165,9 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
     with Keys() as keys:
         while True:
             for key in keys.read_pressed() if is_person else "":
-                if key in QUIT:
+                if key in QUIT_KEYS:
                     return DONE
-                if key in PUSH:
+                if key in PUSH_KEYS:
                     simulator.push()
             result = connection.event()
             saving.look()

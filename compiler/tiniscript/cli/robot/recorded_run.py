@@ -23,8 +23,8 @@ from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual.robot import Settings
 
 # options of `tsc run` that are not for the virtual robot, and those that a recorded run has in it
-NOT_RECORDED = ("max_steps", "machine", "show", "pace")
-NOT_PLAYED = ("sensor", "seed", "max_time", "robot", "record", *NOT_RECORDED)
+UNRECORDED_OPTIONS = ("max_steps", "machine", "show", "pace")
+UNPLAYED_OPTIONS = ("sensor", "seed", "max_time", "robot", "record", *UNRECORDED_OPTIONS)
 MAX_MS = 60_000
 
 
@@ -50,7 +50,7 @@ def source_text(given: Input) -> str:
 
 def record(given: Input, options: Namespace, language: str) -> int:
     """Run a program on the virtual robot, print its trace, and write the file of the run."""
-    refuse(options, NOT_RECORDED, "record_only")
+    refuse(options, UNRECORDED_OPTIONS, "record_only")
     source = source_text(given)
     robot = inputs.robot_for(given, options, language)
     require_known_robot(robot)
@@ -89,7 +89,7 @@ def record(given: Input, options: Namespace, language: str) -> int:
 
 def play(given: Input, options: Namespace, language: str) -> int:
     """Play the file of a run again; return the exit code: 1 where it is another run then."""
-    refuse(options, NOT_PLAYED, "play_only")
+    refuse(options, UNPLAYED_OPTIONS, "play_only")
     run = _read(given)
     if options.world is not None and run.recording.is_virtual:
         raise CommandError(2, "play_only", option="--world")

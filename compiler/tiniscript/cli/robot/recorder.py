@@ -67,7 +67,7 @@ class Rows:
         return unwritable_error(self._how, printable_name(self._name), why)
 
 
-ENDS = ("DONE", "FAULT", "STOPPED", "MISSED")
+ENDING_EVENTS = ("DONE", "FAULT", "STOPPED", "MISSED")
 
 
 class Recorder:
@@ -93,7 +93,7 @@ class Recorder:
 
     def add(self, _: int, name: str, what: str, __: str = "") -> None:
         """Add an event as `EventPrinter` tells it, at the time at which it came here."""
-        if self._is_over or name not in ("SHOW", *ENDS):
+        if self._is_over or name not in ("SHOW", *ENDING_EVENTS):
             return
         event = f"{name} {what}" if name in ("SHOW", "FAULT") else name
         if self._began_s is None:
@@ -102,7 +102,7 @@ class Recorder:
         is_kept = self._kept.add(row)
         if is_kept:
             self._rows.line(recordings.line(row))
-        if not is_kept or name in ENDS:
+        if not is_kept or name in ENDING_EVENTS:
             self._end(row.ms)
 
     def end(self, event: str) -> None:

@@ -16,19 +16,19 @@ from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.payloads import EmptyReply
-from tiniscript.link.remote import NOTHING, Pressed, has_remote, pressed_of
+from tiniscript.link.remote import NOTHING_PRESSED, Pressed, has_remote, pressed_of
 from tiniscript.link.requests import OK, Reply
 
 FIRST_S, REPEAT_S = 0.7, 0.15  # for which a press holds a key
 SAY_S = 0.1  # what is held is said so often: after half a second of silence nothing is
 LOOK_S = 0.02  # between two looks at the keys
-_QUIT = ("q", "Q", "\x04")
+_QUIT_KEYS = ("q", "Q", "\x04")
 _ARROWS = {"A": "UP", "B": "DOWN", "C": "RIGHT", "D": "LEFT"}
 _WINDOWS_ARROWS = {"H": "UP", "P": "DOWN", "M": "RIGHT", "K": "LEFT"}
 _LETTERS = ("A", "B")
-_BEGUN = r"\x1b(?:[\[O][0-9;]*)?"  # a key of several characters may come in two pieces
-_FOUND = re.compile(r"\x1b[\[O][0-9;]*([A-Za-z~])|[\0\xe0](.)|(.)", re.DOTALL)
-_IS_BEGUN = re.compile(_BEGUN + (r"\Z|[\0\xe0]\Z" if sys.platform == "win32" else r"\Z"))
+_KEY_START = r"\x1b(?:[\[O][0-9;]*)?"  # a key of several characters may come in two pieces
+_WHOLE_KEY = re.compile(r"\x1b[\[O][0-9;]*([A-Za-z~])|[\0\xe0](.)|(.)", re.DOTALL)
+_UNFINISHED_KEY = re.compile(_KEY_START + (r"\Z|[\0\xe0]\Z" if sys.platform == "win32" else r"\Z"))
 
 
 class HeldKeys:
@@ -43,14 +43,14 @@ class HeldKeys:
         text, at = self._begun + typed, 0
         self._begun = ""
         while at < len(text):
-            if _IS_BEGUN.match(text, at):
+            if _UNFINISHED_KEY.match(text, at):
                 self._begun = text[at:]
                 return False
-            match = _FOUND.match(text, at)
+            match = _WHOLE_KEY.match(text, at)
             assert match
             at = match.end()
             arrow, windows, letter = match.groups()
-            if letter in _QUIT:
+            if letter in _QUIT_KEYS:
                 return True
             name = _ARROWS.get(arrow) or _WINDOWS_ARROWS.get(windows)
             if letter is not None and letter.upper() in _LETTERS:
@@ -75,7 +75,7 @@ class TerminalRemote:
         self._connection = connection
         self._keys = Keys()
         self._held = HeldKeys()
-        self._said, self._said_s = NOTHING, 0.0
+        self._said, self._said_s = NOTHING_PRESSED, 0.0
         self._request: PendingRequest[EmptyReply] | None = None
 
     def __enter__(self) -> TerminalRemote:
@@ -95,7 +95,7 @@ class TerminalRemote:
             raise KeyboardInterrupt
         self._refuse()
         held = self._held.pressed_at(now_s)
-        if held == self._said and (held == NOTHING or now_s - self._said_s < SAY_S):
+        if held == self._said and (held == NOTHING_PRESSED or now_s - self._said_s < SAY_S):
             return
         self._said, self._said_s = held, now_s
         self._request = self._connection.begin_request(lambda session: session.press(*held))

@@ -23,7 +23,7 @@ from tiniscript.link.wifi import STATES, BrokerSettings, Tls, address
 
 READY_S = 20  # until the robot is in the network, or at the broker
 LOOK_S = 0.5
-NOT_BEGUN = ("OFF", "RESTS")  # states of the robot's WiFi
+UNSTARTED_STATES = ("OFF", "RESTS")  # states of the robot's WiFi
 _PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
 
 
@@ -144,7 +144,7 @@ def _class_command(options: Namespace) -> str:
 def _state(wifi_reply: WifiReply) -> str:
     """Return SEARCHING for a robot that has not begun, or whose WiFi rests, too."""
     state = STATES[wifi_reply.state] if wifi_reply.state < len(STATES) else "OFF"
-    return "SEARCHING" if state in NOT_BEGUN else state
+    return "SEARCHING" if state in UNSTARTED_STATES else state
 
 
 def _broker_state(connection: Connection) -> WifiReply:

@@ -62,7 +62,7 @@ class RunMonitor:
                 continue
             time_ms, event = result
             try:
-                if not follower.is_about(event, printable_name(self.connection.port)):
+                if not follower.follow(event, printable_name(self.connection.port)):
                     continue
             except RobotError as error:
                 raise CommandError(3, error.reason, **error.values) from None
@@ -90,7 +90,7 @@ def exit_code_of(event: Event, run: int | None) -> int | None:
         return None
     if end.name == "DONE":
         return DONE
-    return FAULTY if end.is_the_programs else LOST
+    return FAULTY if end.is_by_program else LOST
 
 
 def stop_and_say(connection: Connection) -> int:

@@ -14,7 +14,7 @@ from tiniscript.base.kit import Device
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.conversation import (
-    YES,
+    ANSWER_YES,
     Conversation,
     NoPerson,
     WheelTurn,
@@ -201,7 +201,7 @@ class SelfTest(Conversation):
         if trim is None or trim == self.trim:
             return False
         with suppress(NoPerson):
-            if self.choice("ask_learn", 2) == YES:
+            if self.choice("ask_learn", 2) == ANSWER_YES:
                 self.connection.request(lambda session: session.trim(trim.data()))
                 self.trim = trim
                 return True

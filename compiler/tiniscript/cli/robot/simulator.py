@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tiniscript.cli.terminal.world_drawing import WorldPicture
 
 ROUND_S = 1.0  # the longest round; a robot draws at least 15 pictures per second
-TOLD = ("SHOW", "DONE", "FAULT", "STOP")  # events of a robot that it tells its client, too
+TOLD_EVENTS = ("SHOW", "DONE", "FAULT", "STOP")  # events of a robot that it tells its client, too
 MOST_EVENTS = 10_000  # that nobody has asked for yet; the oldest are lost
 
 
@@ -40,7 +40,7 @@ def running_address(options: Namespace) -> str | None:
     can_bring = hasattr(options, "world")
     if can_bring and simulator_options.wants_own(options):
         return None
-    result = directory.for_all() if can_bring else directory.running_robots()
+    result = directory.unclaimed_robots() if can_bring else directory.running_robots()
     if not result and not can_bring:
         raise CommandError(3, "no_virtual")
     if len(result) > 1:
@@ -131,7 +131,7 @@ class CommandSimulator(SimulatorThread):
 
         with self._drawing:
             started_ms = self.robot.started_ms or 0
-            if expected.partition(" ")[0] not in TOLD or not self._drawing.wait_for(
+            if expected.partition(" ")[0] not in TOLD_EVENTS or not self._drawing.wait_for(
                 is_there, ROUND_S
             ):
                 return self.robot.now_ms - started_ms
@@ -179,7 +179,7 @@ class CommandSimulator(SimulatorThread):
     def on_turn(self) -> None:
         with self._drawing:
             events = self.robot.take_events()
-            self._told.extend(event for event in events if event.what in TOLD)
+            self._told.extend(event for event in events if event.what in TOLD_EVENTS)
             self._undrawn.extend(events)
             while self._picture is not None and self._undrawn:
                 event = self._undrawn.popleft()
@@ -196,7 +196,7 @@ class CommandSimulator(SimulatorThread):
             screen.draw(self._picture, self.robot.now_ms)
 
 
-def offer(language: str) -> bool:
+def offer_virtual_robot(language: str) -> bool:
     """Ask whether to use the virtual robot; an empty answer is yes."""
     answer = asking.answer(text("offer_virtual", language))
     return bool(answer) and answer.strip().lower()[:1] in ("", "y", "s")

@@ -10,25 +10,25 @@ import sys
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.conversation import YES, Conversation, NoPerson, trim_from_answers
+from tiniscript.cli.robot.conversation import ANSWER_YES, Conversation, NoPerson, trim_from_answers
 from tiniscript.cli.texts import say_aside
 from tiniscript.cli.texts.causes import label, sentences_of
 from tiniscript.doctor.findings import Finding, sure
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
-from tiniscript.link.requests import TAKEN
+from tiniscript.link.requests import ACCEPTING_STATUSES
 from tiniscript.link.trim import MOST_PACE, Pace, Trim
 
-POWERS = 40, 80  # percent: it is seen and measured at both
-AHEAD_S, TURN_S = 2, 1  # how long it is measured
+MEASURED_POWERS = 40, 80  # percent: it is seen and measured at both
+DRIVE_S, TURN_S = 2, 1  # how long it is measured
 INCH_CM = 2.54
 NUMBER = r"([0-9]{1,4}(?:[.,][0-9]{1,3})?)"
-INCHES = ("in", "inch", "inches", "pulg", "pulgada", "pulgadas", '"')
-DEGREES = ("°", "º")
+INCH_WORDS = ("in", "inch", "inches", "pulg", "pulgada", "pulgadas", '"')
+DEGREE_SIGNS = ("°", "º")
 LEAST_STEP = 5  # percent
 FIRST_STEP = 16  # percent of balance; halved each time that the drift changes side
 AGAIN = 4
 # failures after a stop by another command
-STOPPED = ("stopped_elsewhere", "stopped_midway", "plain")
+STOPPED_KEYS = ("stopped_elsewhere", "stopped_midway", "plain")
 TRIES = 4
 
 
@@ -49,20 +49,20 @@ def guide(connection: Connection, before: Trim) -> Trim:
 
 def _is_there(failure: CommandError) -> bool:
     """Whether the robot can still be reached."""
-    return failure.key in STOPPED or failure.key.startswith("trim_")
+    return failure.key in STOPPED_KEYS or failure.key.startswith("trim_")
 
 
 def _give_back(connection: Connection, before: Trim) -> None:
     """Restore the robot's former trim, with retries: a stop may still be in progress."""
     for _ in range(TRIES - 1):
         try:
-            connection.request(lambda session: session.trim(before.data()), TAKEN)
+            connection.request(lambda session: session.trim(before.data()), ACCEPTING_STATUSES)
         except CommandError as failure:
             if not _is_there(failure):
                 raise
         else:
             return
-    connection.request(lambda session: session.trim(before.data()), TAKEN)
+    connection.request(lambda session: session.trim(before.data()), ACCEPTING_STATUSES)
 
 
 class TrimWizard(Conversation):
@@ -74,16 +74,16 @@ class TrimWizard(Conversation):
         trim = trim._replace(least=self._least())
         self._set(trim)
         self.answer("trim_floor")
-        slow = self._balance_wheels(trim, POWERS[0])
-        quick = self._balance_wheels(trim._replace(balance=slow), POWERS[1])
+        slow = self._balance_wheels(trim, MEASURED_POWERS[0])
+        quick = self._balance_wheels(trim._replace(balance=slow), MEASURED_POWERS[1])
         trim = trim._replace(balance=round((slow + quick) / 2))
         self._set(trim)
         if before.pace is None:
             say_aside("trim_no_pace_here", self.language)
             return trim
-        if self.choice("trim_measure", 2) != YES:
+        if self.choice("trim_measure", 2) != ANSWER_YES:
             return trim._replace(pace=before.pace)
-        ahead = self._measure("F", AHEAD_S, "trim_how_far")
+        ahead = self._measure("F", DRIVE_S, "trim_how_far")
         turning = self._measure("R", TURN_S, "trim_how_round")
         return trim._replace(pace=Pace(*ahead, *turning))
 
@@ -112,7 +112,7 @@ class TrimWizard(Conversation):
         """Return the smallest power that moves both wheels, or 0 if the smallest step does."""
         for power in range(LEAST_STEP, MOST_LEAST + 1, LEAST_STEP):
             self.run_line(f"M({power}, {power}); W(1); M(0, 0)")
-            if self.choice("trim_moves", 2, n=str(power)) == YES:
+            if self.choice("trim_moves", 2, n=str(power)) == ANSWER_YES:
                 return power if power > LEAST_STEP else 0
         raise self._failure(sure("too_weak", n=str(MOST_LEAST)))
 
@@ -120,7 +120,8 @@ class TrimWizard(Conversation):
         """Return how much it went, or turned, in a second at each power."""
         while True:
             result = [
-                self._measure_move(move, power, seconds, question) / seconds for power in POWERS
+                self._measure_move(move, power, seconds, question) / seconds
+                for power in MEASURED_POWERS
             ]
             if result[0] < result[1]:
                 return result
@@ -167,7 +168,9 @@ class TrimWizard(Conversation):
         return CommandError(3, "trim_found", part=part, found=result.what, then=result.then)
 
     def _set(self, trim: Trim) -> None:
-        self.connection.request(lambda session: session.trim(trim.data()), TAKEN)  # kept at the end
+        self.connection.request(
+            lambda session: session.trim(trim.data()), ACCEPTING_STATUSES
+        )  # kept at the end
 
 
 def parse_measure(answer: str, is_turn: bool) -> float | None:
@@ -177,7 +180,7 @@ def parse_measure(answer: str, is_turn: bool) -> float | None:
         return None
     number, unit = float(match[1].replace(",", ".")), match[2]
     if is_turn:
-        return number if unit in ("", *DEGREES) else None
-    if unit in INCHES:
+        return number if unit in ("", *DEGREE_SIGNS) else None
+    if unit in INCH_WORDS:
         return number * INCH_CM
     return number if unit in ("", "cm") else None

@@ -11,10 +11,10 @@ from itertools import pairwise
 
 from rich.text import Text
 
-ACROSS, DOWN = 2, 4  # dots of a character
+DOTS_PER_COLUMN, DOTS_PER_ROW = 2, 4  # dots of a character
 _BLANK = 0x2800  # the braille character without dots
-_BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # of a dot, by row and column
-_LONGEST = 10_000  # steps of a line: one that is longer has its dots further apart
+_DOT_BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # of a dot, by row and column
+_MOST_STEPS = 10_000  # steps of a line: one that is longer has its dots further apart
 
 Dot = tuple[int, int]
 
@@ -37,14 +37,14 @@ class Canvas:
     def lines(self, dots: Iterable[Dot]) -> None:
         """Draw straight lines from dot to dot."""
         for (ax, ay), (bx, by) in pairwise(dots):
-            steps = min(max(abs(bx - ax), abs(by - ay), 1), _LONGEST)
+            steps = min(max(abs(bx - ax), abs(by - ay), 1), _MOST_STEPS)
             for k in range(steps + 1):
                 x = ax + ((bx - ax) * k * 2 + steps) // (2 * steps)
                 y = ay + ((by - ay) * k * 2 + steps) // (2 * steps)
-                if 0 <= x < ACROSS * self.columns and 0 <= y < DOWN * self.rows:
-                    self._cells[y // DOWN * self.columns + x // ACROSS] |= _BITS[y % DOWN][
-                        x % ACROSS
-                    ]
+                if 0 <= x < DOTS_PER_COLUMN * self.columns and 0 <= y < DOTS_PER_ROW * self.rows:
+                    self._cells[y // DOTS_PER_ROW * self.columns + x // DOTS_PER_COLUMN] |= (
+                        _DOT_BITS[y % DOTS_PER_ROW][x % DOTS_PER_COLUMN]
+                    )
 
     def row(self, number: int) -> bytes:
         """Return the dots of each character in a row, as bits of U+2800."""
@@ -72,9 +72,9 @@ def merge_layers(layers: Sequence[tuple[Canvas, str]]) -> list[Text]:
     return texts
 
 
-def put(lines: Sequence[Text], dot: Dot, letter: str, style: str = "") -> None:
+def put_letter(lines: Sequence[Text], dot: Dot, letter: str, style: str = "") -> None:
     """Put a letter of one column in place of the character that a dot lies in."""
-    column, row = dot[0] // ACROSS, dot[1] // DOWN
+    column, row = dot[0] // DOTS_PER_COLUMN, dot[1] // DOTS_PER_ROW
     if not (0 <= row < len(lines) and 0 <= column < len(lines[row].plain)):
         return
     line = lines[row]

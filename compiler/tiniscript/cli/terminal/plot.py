@@ -15,15 +15,15 @@ from rich.text import Text
 
 from tiniscript.base.fixed_point import as_text
 from tiniscript.cli.terminal import FRAME_S
-from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, merge_layers
+from tiniscript.cli.terminal.canvas import DOTS_PER_COLUMN, DOTS_PER_ROW, Canvas, merge_layers
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.link.outcomes import Event, ShownEvent
 
-SECONDS = 30  # from the left edge to the right one
+SHOWN_S = 30  # from the left edge to the right one
 ROWS = 12  # at most
-KEPT = 5000  # values of a curve, the newest
+MOST_VALUES = 5000  # values of a curve, the newest
 STYLES = ("cyan", "magenta", "yellow", "green", "blue", "red")  # of curves; so many there are
-NAMELESS = "SHOW"  # the curve of all values without a name
+NAMELESS_CURVE = "SHOW"  # the curve of all values without a name
 STEPS = 4  # between the marks of the axis, about
 
 
@@ -68,7 +68,7 @@ class Plot:
 
     def take(self, time_ms: int, value: int, is_yes_no: bool, name: str = "") -> None:
         self.now_ms = time_ms
-        name = name or NAMELESS
+        name = name or NAMELESS_CURVE
         if name not in self.curves:
             self._add(name)
         self.curves[name].append((time_ms, value * 1000 if is_yes_no else value))
@@ -78,13 +78,13 @@ class Plot:
         if len(self.curves) == len(STYLES):
             oldest = min(self.curves, key=lambda each: self.curves[each][-1][0])
             del self.curves[oldest], self.styles[oldest]
-        self.curves[name] = deque(maxlen=KEPT)
+        self.curves[name] = deque(maxlen=MOST_VALUES)
         self.styles[name] = next(style for style in STYLES if style not in self.styles.values())
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines of at most `width` columns: a title and the curves."""
         width -= 2  # the ^C of the terminal stands after the last line
-        begin_ms = now_ms - SECONDS * 1000
+        begin_ms = now_ms - SHOWN_S * 1000
         for values in self.curves.values():
             while len(values) > 1 and values[1][0] < begin_ms:
                 values.popleft()
@@ -121,8 +121,8 @@ class Plot:
         if self.curves:
             title.right_crop(1)
         else:
-            title.append(f"{NAMELESS} {self.waiting} ")
-        end = f" {SECONDS} s "
+            title.append(f"{NAMELESS_CURVE} {self.waiting} ")
+        end = f" {SHOWN_S} s "
         title.append("─" * (width - 6 - title.cell_len) + end)
         title.truncate(max(1, width))
         return title
@@ -132,12 +132,12 @@ class Plot:
     ) -> Canvas:
         """Return a curve: each value holds until the next one."""
         canvas = Canvas(columns, rows)
-        right, bottom = ACROSS * columns - 1, DOWN * rows - 1
+        right, bottom = DOTS_PER_COLUMN * columns - 1, DOTS_PER_ROW * rows - 1
         before: int | None = None
-        ends = [*[time_ms for time_ms, _ in values][1:], begin_ms + SECONDS * 1000]
+        ends = [*[time_ms for time_ms, _ in values][1:], begin_ms + SHOWN_S * 1000]
         for (time_ms, value), end_ms in zip(values, ends, strict=True):
             x, end = (
-                round(min(1.0, max(0.0, (item - begin_ms) / (SECONDS * 1000))) * right)
+                round(min(1.0, max(0.0, (item - begin_ms) / (SHOWN_S * 1000))) * right)
                 for item in (time_ms, end_ms)
             )
             y = round((high - value) / (high - low) * bottom)

@@ -9,7 +9,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import printable_name
-from tiniscript.cli.streams import are_read
+from tiniscript.cli.streams import reads_sequences
 from tiniscript.cli.texts import text
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class Doing:
     """The line on the terminal that says what is done just now."""
 
     def __init__(self, is_shown: bool = True) -> None:
-        self._is_shown = is_shown and are_read(sys.stderr)
+        self._is_shown = is_shown and reads_sequences(sys.stderr)
 
     def tell(self, said: str) -> None:
         if self._is_shown:

@@ -20,9 +20,9 @@ from tiniscript.cli.terminal.sketch import Sketch
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 
-SHOWN = 5  # values of SHOW that stay in the picture
+MOST_SHOWN_VALUES = 5  # values of SHOW that stay in the picture
 WIDEST = 80  # columns of the values, where the way leaves so many
-BESIDE = 60  # columns from which on the values are beside the way, not below it
+COLUMNS_FOR_VALUES_BESIDE = 60  # columns from which on the values are beside the way, not below it
 
 
 def watch(events: Iterator[Event | Ending], robot: Robot, pace: float, language: str) -> Ending:
@@ -45,7 +45,7 @@ def watch(events: Iterator[Event | Ending], robot: Robot, pace: float, language:
                 now_ms += screen.rest() * 1000 * pace
             picture.take(event)
             screen.say(str(event))
-            if pace and screen.is_late():
+            if pace and screen.restart_if_late():
                 screen.draw(picture, picture.now_ms)
         raise AssertionError("a run without an ending")
     finally:
@@ -63,7 +63,7 @@ class Picture:
         self.now_ms = 0  # when the newest event was
         self.readings: dict[int, int] = {}
         self.settings: dict[int, int] = {}
-        self.shown: deque[str] = deque(maxlen=SHOWN)
+        self.shown: deque[str] = deque(maxlen=MOST_SHOWN_VALUES)
         self.hertz, self.silent_ms = 0, 0  # the newest note, and when it ends
         self.ending = ""
         self.widest = [0, 0]  # columns of values and units, so far
@@ -90,7 +90,7 @@ class Picture:
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines of at most `width` columns."""
         room = max(1, height - 1)  # below the title
-        if width >= BESIDE:
+        if width >= COLUMNS_FOR_VALUES_BESIDE:
             columns = self.sketch.columns(width - min(44, width * 11 // 20) - 2, room)
             values = self._values(min(WIDEST, width - columns - 2), room, now_ms)
             way = self.sketch.draw(columns, room, now_ms)

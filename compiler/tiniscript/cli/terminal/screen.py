@@ -15,11 +15,11 @@ from typing import Protocol
 from rich.console import Console
 from rich.text import Text
 
-from tiniscript.cli.streams import DRAWN, are_read
+from tiniscript.cli.streams import DRAWING_SUBSTITUTES, reads_sequences
 from tiniscript.cli.terminal import FRAME_S
 
-BEGIN, END = "\x1b[?2026h", "\x1b[?2026l"  # of a synchronized update
-HIDE, SHOW = "\x1b[?25l", "\x1b[?25h"  # the cursor
+BEGIN_UPDATE, END_UPDATE = "\x1b[?2026h", "\x1b[?2026l"  # of a synchronized update
+HIDE_CURSOR, SHOW_CURSOR = "\x1b[?25l", "\x1b[?25h"  # the cursor
 TO_LINE_END, TO_SCREEN_END = "\x1b[K", "\x1b[J"  # erase
 
 
@@ -30,11 +30,11 @@ class Frame:
         self._width = 0  # of the terminal, when they were written
 
     def begin(self) -> None:
-        self._write(HIDE)
+        self._write(HIDE_CURSOR)
 
     def end(self) -> None:
         """Leave the picture, and go on below it."""
-        self._write(("\n" if self.lines else "") + SHOW)
+        self._write(("\n" if self.lines else "") + SHOW_CURSOR)
         self.lines = []
 
     def draw(self, lines: Sequence[Text], above: str = "") -> None:
@@ -47,7 +47,7 @@ class Frame:
         self.lines = [line.copy() for line in lines]
         self._width = width
         if text:
-            self._write(BEGIN + text + END)
+            self._write(BEGIN_UPDATE + text + END_UPDATE)
 
     def _full_picture(self, lines: Sequence[Text], above: str) -> str:
         """Return what writes all of it, from the first line of the last picture on."""
@@ -97,7 +97,7 @@ class Screen:
 
     def __init__(self) -> None:
         # rich looks at standard output, and does not ask the console to read sequences
-        is_legacy = sys.platform == "win32" and not are_read(sys.stderr)
+        is_legacy = sys.platform == "win32" and not reads_sequences(sys.stderr)
         self.console = Console(stderr=True, legacy_windows=is_legacy)
         self.frame = Frame(self.console)
         self.is_begun = False
@@ -154,7 +154,7 @@ class Screen:
         self.frame_s = time.monotonic()
         return min(self.frame_s - last_s, SLOWEST_S)
 
-    def is_late(self) -> bool:
+    def restart_if_late(self) -> bool:
         """Return whether a frame is overdue: much has happened that takes the robot no time."""
         now_s = time.monotonic()
         if now_s - self.frame_s < 2 * FRAME_S:
@@ -169,7 +169,7 @@ class Screen:
         if not self.console.encoding.startswith("utf"):
             for line in lines:
                 line.plain = "".join("*" if "⠀" <= c <= "⣿" else c for c in line.plain)
-                line.plain = line.plain.translate(DRAWN)
+                line.plain = line.plain.translate(DRAWING_SUBSTITUTES)
         self.last = Text("\n", no_wrap=True).join(lines)
         if not self.is_begun:
             self.flush()

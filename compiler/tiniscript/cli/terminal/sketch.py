@@ -12,20 +12,39 @@ from typing import NamedTuple
 
 from rich.text import Text
 
-from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, Dot, merge_layers, put
+from tiniscript.cli.terminal.canvas import (
+    DOTS_PER_COLUMN,
+    DOTS_PER_ROW,
+    Canvas,
+    Dot,
+    merge_layers,
+    put_letter,
+)
 from tiniscript.robots.kinematics import START, Pose, Way
 from tiniscript.robots.profile import Robot
 
-CORNERS = 5000  # of the way that stay in the picture
+MOST_CORNERS = 5000  # of the way that stay in the picture
 WAY, ROBOT = "cyan", "bold green"
 ARROWS = "↑↖←↙↓↘→↗"  # every 45 degrees, counterclockwise from straight ahead
-_ROUND = (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10, 20)  # scales at which the ruler has a round length
+_ROUND_SCALES = (
+    1,
+    1.5,
+    2,
+    2.5,
+    3,
+    4,
+    5,
+    6,
+    8,
+    10,
+    20,
+)  # scales at which the ruler has a round length
 
 
 def round_scale(cm_per_dot: float) -> float:
     """Return the least scale, not below this one, at which the ruler has a round length."""
     tens = 10.0 ** floor(log10(cm_per_dot))
-    return next(item * tens for item in _ROUND if item * tens >= cm_per_dot)
+    return next(item * tens for item in _ROUND_SCALES if item * tens >= cm_per_dot)
 
 
 class View(NamedTuple):
@@ -41,13 +60,13 @@ class View(NamedTuple):
         """Return where a place lies on the canvas."""
         right, down = (self.y_cm - pose.y_cm), (self.x_cm - pose.x_cm)
         return (
-            floor(right / self.cm_per_dot + ACROSS / 2 * self.columns),
-            floor(down / self.cm_per_dot + DOWN / 2 * self.rows),
+            floor(right / self.cm_per_dot + DOTS_PER_COLUMN / 2 * self.columns),
+            floor(down / self.cm_per_dot + DOTS_PER_ROW / 2 * self.rows),
         )
 
     def holds(self, pose: Pose) -> bool:
         right, down = self.dot(pose)
-        return 0 <= right < ACROSS * self.columns and 0 <= down < DOWN * self.rows
+        return 0 <= right < DOTS_PER_COLUMN * self.columns and 0 <= down < DOTS_PER_ROW * self.rows
 
 
 class Sketch:
@@ -63,8 +82,8 @@ class Sketch:
 
     def set_motors(self, now_ms: float, left: int, right: int) -> None:
         self.way.set_motors(now_ms, left, right)
-        if len(self.way.corners) > CORNERS:
-            self.way.thin_out(CORNERS // 2)
+        if len(self.way.corners) > MOST_CORNERS:
+            self.way.thin_out(MOST_CORNERS // 2)
             self.canvas.clear()
             self.joined = 0
 
@@ -72,7 +91,7 @@ class Sketch:
         """Return how long ten columns are."""
         if self.view is None:
             return ""
-        cm = 10 * ACROSS * self.view.cm_per_dot
+        cm = 10 * DOTS_PER_COLUMN * self.view.cm_per_dot
         length = f"{cm:g} cm" if cm < 100 else f"{cm / 100:g} m" if cm < 1e5 else f"{cm / 1e5:g} km"
         return f" ├────────┤ {length} "
 
@@ -90,8 +109,8 @@ class Sketch:
         whole.lines(map(view.dot, [corners[-1], *ahead]))
         lines = merge_layers([(whole, WAY)])
         here = self.way.pose(now_ms)
-        put(lines, view.dot(START), "o", WAY)
-        put(lines, view.dot(here), ARROWS[round(here.heading / 45) % 8], ROBOT)
+        put_letter(lines, view.dot(START), "o", WAY)
+        put_letter(lines, view.dot(here), ARROWS[round(here.heading / 45) % 8], ROBOT)
         return lines
 
     def _view(self, columns: int, rows: int, ahead: Sequence[Pose]) -> View:
@@ -107,7 +126,8 @@ class Sketch:
         ):  # fmt: skip
             return view
         needed = max(
-            (high_x - low_x) / (DOWN * rows - 3), (high_y - low_y) / (ACROSS * columns - 3)
+            (high_x - low_x) / (DOTS_PER_ROW * rows - 3),
+            (high_y - low_y) / (DOTS_PER_COLUMN * columns - 3),
         )
         if self.view is not None:
             needed *= 1.2

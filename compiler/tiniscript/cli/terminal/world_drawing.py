@@ -11,7 +11,14 @@ from collections.abc import Sequence
 from rich.text import Text
 
 from tiniscript.base.trace import Event
-from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, Dot, merge_layers, put
+from tiniscript.cli.terminal.canvas import (
+    DOTS_PER_COLUMN,
+    DOTS_PER_ROW,
+    Canvas,
+    Dot,
+    merge_layers,
+    put_letter,
+)
 from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.cli.terminal.sketch import ARROWS, ROBOT, WAY, Sketch, round_scale
 from tiniscript.cli.texts import text
@@ -82,13 +89,13 @@ class WorldSketch(Sketch):
     def ruler(self) -> str:
         if self.floor is None:
             return ""
-        return f" ├────────┤ {10 * ACROSS * self.floor.cm_per_dot:g} cm "
+        return f" ├────────┤ {10 * DOTS_PER_COLUMN * self.floor.cm_per_dot:g} cm "
 
     def columns(self, most: int, rows: int) -> int:
         """Return how many columns the floor takes; the values are beside it, not at the edge."""
         if self._room[:2] != (most, rows):
             right, _ = Floor(self.world, most, rows).dot(Point(self.world.width_cm, 0))
-            self._room = most, rows, min(most, right // ACROSS + 1)
+            self._room = most, rows, min(most, right // DOTS_PER_COLUMN + 1)
         return self._room[2]
 
     def draw(self, columns: int, rows: int, now_ms: float) -> list[Text]:
@@ -103,8 +110,8 @@ class WorldSketch(Sketch):
         way = ground.way(driving.corners, pose)
         lines = merge_layers([(hull, ROBOT), (way, WAY), (ground.walls, WALLS)])
         for lamp in self.world.lamps:
-            put(lines, ground.dot(lamp.place), "*", LAMP)
-        put(lines, ground.dot(pose), ARROWS[round((pose.heading - 90) / 45) % 8], ROBOT)
+            put_letter(lines, ground.dot(lamp.place), "*", LAMP)
+        put_letter(lines, ground.dot(pose), ARROWS[round((pose.heading - 90) / 45) % 8], ROBOT)
         return lines
 
 
@@ -115,8 +122,8 @@ class Floor:
         self.columns, self.rows = columns, rows
         self.cm_per_dot = round_scale(
             max(
-                world.width_cm / max(1, ACROSS * columns - 1),
-                world.height_cm / max(1, DOWN * rows - 1),
+                world.width_cm / max(1, DOTS_PER_COLUMN * columns - 1),
+                world.height_cm / max(1, DOTS_PER_ROW * rows - 1),
             )
         )
         self.height_cm = world.height_cm

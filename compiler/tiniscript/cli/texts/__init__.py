@@ -17,7 +17,7 @@ LONGEST = 2000  # characters of what is put into a sentence
 # What is counted, right after its number: catalogues have how one of it is called, and several.
 # Other words have a sentence of their own for one.
 COUNTED = ("counted_bytes", "counted_checks")
-SEVERAL = 5  # as sentences have it
+SEVERAL_COUNT = 5  # as sentences have it
 
 
 class Sentence(str):
@@ -28,7 +28,7 @@ class Sentence(str):
     `language` is the one that it is in.
     """
 
-    language = languages.SOURCE
+    language = languages.SOURCE_LANGUAGE
 
     def __str__(self) -> str:
         return self
@@ -41,7 +41,7 @@ class Sentence(str):
                 for counted in COUNTED:
                     several, form = (
                         f"{{{key}}} {languages.plural_text(CATALOGUE, counted, n, self.language)}"
-                        for n in (SEVERAL, int(value))
+                        for n in (SEVERAL_COUNT, int(value))
                     )
                     template = template.replace(several, form)
         return Sentence(template.format(*map(_printable, values), **plain))
@@ -71,7 +71,7 @@ def say_aside(key: str, language: str, /, **values: object) -> None:
 
 
 def has_text(key: str) -> bool:
-    return languages.find_text(CATALOGUE, key, languages.SOURCE) is not None
+    return languages.find_text(CATALOGUE, key, languages.SOURCE_LANGUAGE) is not None
 
 
 def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:
@@ -83,7 +83,7 @@ def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.enviro
         if value in languages.languages():
             return value
     names = (environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
-    return languages.find(next(filter(None, names), None) or _system_language())
+    return languages.find_language(next(filter(None, names), None) or _system_language())
 
 
 def _system_language() -> str:

@@ -38,9 +38,9 @@ def sentences_of(
         seen, then = "seen_no_port_others", "next_no_port_others"
     if cause in foreign.NAMES:
         what, advice = (Sentence(each) for each in foreign.sentence(cause, language))
-        if cause == foreign.ECHO:
+        if cause == foreign.ECHO_SKETCH:
             seen = "seen_echo_sketch"
-        elif cause == foreign.TEXT and not filled["said"]:
+        elif cause == foreign.OTHER_SKETCH and not filled["said"]:
             seen = "seen_other_sketch_silent"
         else:
             seen = "seen_foreign"

@@ -113,14 +113,16 @@ P, N, S, X = "P", "N", "S", "X"
 YES = "yes|no"
 A_LEVEL = "|".join(LEVELS)
 
-TO_ONE = "live hold start monitor fetch name trim claim disown text wifi selftest"
-OWN = "upload live robot"  # may bring a virtual robot along
+ONE_ROBOT_VERBS = "live hold start monitor fetch name trim claim disown text wifi selftest"
+VIRTUAL_ROBOT_VERBS = "upload live robot"  # may bring a virtual robot along
 # Verbs that take an option which hardly anybody combines with them.
-NO_BAUD = (
+VERBS_WITHOUT_BAUD = (
     "check upload stop undo identify live start monitor fetch name trim claim disown text wifi "
     "selftest"
 )
-NO_ROBOT = "ports stop hold start monitor fetch name trim undo claim disown text wifi identify"
+VERBS_WITHOUT_ROBOT = (
+    "ports stop hold start monitor fetch name trim undo claim disown text wifi identify"
+)
 
 # fmt: off
 OPTIONS: tuple[Option, ...] = (
@@ -269,7 +271,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--port", "doctor", PORT, P, "ports", repeats=True),
     Option("--port", "check", PORT, P),
     Option("--port", "ports", PORT, P),
-    Option("--port", TO_ONE, PORT, P),
+    Option("--port", ONE_ROBOT_VERBS, PORT, P),
     Option("--port", "undo identify", PORT, P, "ports", repeats=True),
     Option("--port", "upload", PORT, P, "ports", repeats=True),
     Option("--port", "stop", PORT, P, "ports", repeats=True),
@@ -277,12 +279,12 @@ OPTIONS: tuple[Option, ...] = (
     Option("--all", "upload undo"),
     Option("--all", "stop"),
     Option("--baud", "doctor", NUMBER, N),
-    Option("--baud", f"check {TO_ONE} upload stop undo identify", NUMBER, N, silent=NO_BAUD),
+    Option("--baud", f"check {ONE_ROBOT_VERBS} upload stop undo identify", NUMBER, N, silent=VERBS_WITHOUT_BAUD),
     Option("--baud", "conform", NUMBER, N),
     Option("--baud", "ports", NUMBER, N, silent="ports"),
     Option("--baud", "robot", NUMBER, N),
     Option("--robot", "compile check run show fmt upload live class", ROBOT, A_ROBOT),
-    Option("--robot", "wiring ports stop hold start monitor fetch name trim undo claim disown text wifi identify robot", ROBOT, A_ROBOT, silent=NO_ROBOT),
+    Option("--robot", "wiring ports stop hold start monitor fetch name trim undo claim disown text wifi identify robot", ROBOT, A_ROBOT, silent=VERBS_WITHOUT_ROBOT),
     Option("--robot", "selftest doctor", ROBOT, A_ROBOT),
     Option("--robot", "firmware", ROBOT, A_ROBOT),
     Option("--virtual", "check"),
@@ -298,15 +300,15 @@ OPTIONS: tuple[Option, ...] = (
     Option("--json", "hold start monitor", silent="hold"),
     Option("--json", "trim", silent="trim"),
     # a virtual robot of one's own
-    Option("--world", OWN, WORLD, A_ROBOT, virtual=True),
-    Option("--plot", OWN, PICTURE, "F.png", virtual=True, silent="live"),
-    Option("--for", OWN, NUMBER, S, virtual=True, silent="live"),
-    Option("--hurry", OWN, HURRY, "N|max", virtual=True),
-    Option("--sensor", OWN, SENSOR, READINGS, repeats=True, virtual=True, silent="live"),
-    Option("--noise", OWN, NUMBER, X, virtual=True, silent="live"),
-    Option("--motors", OWN, NUMBER, "L,R", virtual=True, silent="live"),
-    Option("--faults", OWN, NUMBER, X, virtual=True, silent="live"),
-    Option("--seed", OWN, NUMBER, N, virtual=True, silent="live"),
+    Option("--world", VIRTUAL_ROBOT_VERBS, WORLD, A_ROBOT, virtual=True),
+    Option("--plot", VIRTUAL_ROBOT_VERBS, PICTURE, "F.png", virtual=True, silent="live"),
+    Option("--for", VIRTUAL_ROBOT_VERBS, NUMBER, S, virtual=True, silent="live"),
+    Option("--hurry", VIRTUAL_ROBOT_VERBS, HURRY, "N|max", virtual=True),
+    Option("--sensor", VIRTUAL_ROBOT_VERBS, SENSOR, READINGS, repeats=True, virtual=True, silent="live"),
+    Option("--noise", VIRTUAL_ROBOT_VERBS, NUMBER, X, virtual=True, silent="live"),
+    Option("--motors", VIRTUAL_ROBOT_VERBS, NUMBER, "L,R", virtual=True, silent="live"),
+    Option("--faults", VIRTUAL_ROBOT_VERBS, NUMBER, X, virtual=True, silent="live"),
+    Option("--seed", VIRTUAL_ROBOT_VERBS, NUMBER, N, virtual=True, silent="live"),
     # every verb
     Option("--lang", "*", LANGUAGE, "|".join(LANGUAGE.choices)),
     Option("-h --help", "*"),

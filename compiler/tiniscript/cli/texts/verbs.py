@@ -78,13 +78,13 @@ STEPS: dict[str, Step] = {
 }
 COMMANDS = (*VERBS, *STEPS)
 # What was a verb before 0.3, and the command that it is now; no verb is called so.
-WAS = {
+FORMER_COMMANDS = {
     **{name: name for name in STEPS if name != "hold"},
     "link": "hold",
     "info": "doctor",
     "ping": "doctor",
 }
-FIRST = (
+FIRST_COMMANDS = (
     "studio",
     "lesson",
     "check",
@@ -125,7 +125,7 @@ def settings() -> tuple[str, ...]:
     return tuple(dict.fromkeys(words))
 
 
-def of_verb(verb: str, what: str, language: str) -> str:
+def verb_sentence(verb: str, what: str, language: str) -> str:
     """Return what is said of a command.
 
     `example` is what may be typed for it, `summary` what that does, `says` what the command does,

@@ -15,13 +15,13 @@ from tiniscript.base.fixed_point import ONE, as_text
 from tiniscript.semantics.ir import Expression
 from tiniscript.syntax.operators import SIGN_OF
 
-_BINDS = {
+_PRECEDENCE = {
     "MUL": 9, "DIV": 9, "MOD": 9, "ADD": 8, "SUB": 8,
     "LT": 7, "LE": 7, "GT": 7, "GE": 7, "EQ": 6, "NE": 6, "AND": 5, "OR": 4,
 }  # fmt: skip
 SIGNS = {**SIGN_OF, "EQ": "==", "NE": "!=", "AND": "&&", "OR": "||"}  # those of C++
-ARITHMETIC = frozenset(("MUL", "DIV", "MOD", "ADD", "SUB"))
-COMPARED = frozenset(("LT", "LE", "GT", "GE", "EQ", "NE"))
+ARITHMETIC_OPS = frozenset(("MUL", "DIV", "MOD", "ADD", "SUB"))
+COMPARISON_OPS = frozenset(("LT", "LE", "GT", "GE", "EQ", "NE"))
 FUNCTIONS = {"MIN": "smaller", "MAX": "larger", "ROUND": "rounded", "RANDOM": "random"}
 _UNARY, _PRIMARY = 10, 11
 
@@ -103,16 +103,18 @@ class Expressions:
             if first:
                 operand = _Operand(f"({kept}{operand.text})", _PRIMARY)
             return operand._replace(is_random=is_random)
-        sign, binds = SIGNS[op], _BINDS[op]
-        if op in ARITHMETIC or op in COMPARED:
-            if left.is_literal and (right.is_literal or (op in ARITHMETIC and not self.is_exact)):
+        sign, binds = SIGNS[op], _PRECEDENCE[op]
+        if op in ARITHMETIC_OPS or op in COMPARISON_OPS:
+            if left.is_literal and (
+                right.is_literal or (op in ARITHMETIC_OPS and not self.is_exact)
+            ):
                 left = self._as_number(left)
-            if op in ARITHMETIC or self.is_exact:
+            if op in ARITHMETIC_OPS or self.is_exact:
                 self.use(op)
         # Brackets that C++ does not need stand where it warns without them.
-        low, high = (8, 8) if op in COMPARED else (binds, binds + 1)
+        low, high = (8, 8) if op in COMPARISON_OPS else (binds, binds + 1)
         if op == "OR":
-            low, high = (6 if left.binds == _BINDS["AND"] else binds), 6
+            low, high = (6 if left.binds == _PRECEDENCE["AND"] else binds), 6
         made_text = f"{_bracket(left, low)} {sign} {_bracket(right, high)}"
         if first:
             return _Operand(f"({kept}{made_text})", _PRIMARY, is_random=True)

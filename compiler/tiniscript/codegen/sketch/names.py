@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.base.languages import find_text, keys, languages, text
+from tiniscript.base.languages import find_text, languages, plain_text_keys, text
 
 # What has a name of its own in each language, and the parameters and variables of helpers.
 IDENTIFIERS, LOCALS = (
-    [key.partition("/")[2] for key in keys("sketch") if key.startswith(kind)]
+    [key.partition("/")[2] for key in plain_text_keys("sketch") if key.startswith(kind)]
     for kind in ("name/", "local/")
 )
 _LOCAL = re.compile(rf"(?<![$\w.])({'|'.join(LOCALS)})(?!\w)")
@@ -28,7 +28,7 @@ def translated_name(key: str, language: str) -> str:
     return find_text("sketch", f"name/{key}", language) or key
 
 
-def with_locals(code: str, language: str) -> str:
+def translate_locals(code: str, language: str) -> str:
     """Return a helper whose parameters and own variables are called as in the language."""
     return _LOCAL.sub(lambda match: text("sketch", f"local/{match[1]}", language), code)
 
@@ -72,7 +72,7 @@ RESERVED = frozenset(
 )
 
 
-_COUNTER = re.compile(r"[ijk][0-9]*|first[0-9]+")  # of a LOOP; of a value that is kept
+_COUNTER_NAME = re.compile(r"[ijk][0-9]*|first[0-9]+")  # of a LOOP; of a value that is kept
 
 
 class Names:
@@ -89,7 +89,7 @@ class Names:
         words = [word for word in name.lower().split("_") if word]
         result = "".join(word.capitalize() for word in words)
         result = before + result if before else words[0] + result[len(words[0]) :]
-        if result in RESERVED or result in self._taken or _COUNTER.fullmatch(result):
+        if result in RESERVED or result in self._taken or _COUNTER_NAME.fullmatch(result):
             result = self._prefix + result[0].upper() + result[1:]
         found, number = result, 2
         while found in self._taken:

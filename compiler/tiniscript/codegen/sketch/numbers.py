@@ -6,7 +6,7 @@ and `operator +` by `@ADD`.
 
 from __future__ import annotations
 
-from tiniscript.codegen.sketch.expressions import ARITHMETIC, COMPARED, SIGNS
+from tiniscript.codegen.sketch.expressions import ARITHMETIC_OPS, COMPARISON_OPS, SIGNS
 
 STRUCT = """\
 struct $Number {
@@ -35,14 +35,14 @@ if (b.$thousandths == 0) return $fault("DIVIDE_BY_ZERO");
 
 def _operator(op: str) -> str:
     sign = SIGNS[op]
-    if op in ARITHMETIC:
+    if op in ARITHMETIC_OPS:
         return f"$Number operator{sign}($Number a, $Number b) {{\n  {_RESULTS[op]}\n}}"
     compared = f"a.$thousandths {sign} b.$thousandths"
     return f"bool operator{sign}($Number a, $Number b) {{ return {compared}; }}"
 
 
 NUMBERS: dict[str, str] = {
-    **{op: _operator(op) for op in (*_RESULTS, *sorted(COMPARED))},
+    **{op: _operator(op) for op in (*_RESULTS, *sorted(COMPARISON_OPS))},
     "NEG": "$Number operator-($Number a) {\n  return $in_range(-(long long)a.$thousandths);\n}",
     "exactly": """\
 $Number $exactly(long $thousandths) {

@@ -19,11 +19,16 @@ from tiniscript.semantics.ir import Term
 from tiniscript.semantics.optimizer import constant
 from tiniscript.semantics.ways import to_timed
 
-WIDEST = 100  # columns of a line with what stands beside it
-BESIDE = 40  # the column of what stands beside code
-_MOVES = {"F": "forward", "B": "backward", "L": "turn_left", "R": "turn_right"}
-_STARTS = {"F": "start_forward", "B": "start_backward", "L": "start_left", "R": "start_right"}
-_INT = 2**15 - 1
+MOST_COLUMNS = 100  # columns of a line with what stands beside it
+COMMENT_COLUMN = 40  # the column of what stands beside code
+_MOVE_FUNCTIONS = {"F": "forward", "B": "backward", "L": "turn_left", "R": "turn_right"}
+_START_FUNCTIONS = {
+    "F": "start_forward",
+    "B": "start_backward",
+    "L": "start_left",
+    "R": "start_right",
+}
+_LARGEST_INT = 2**15 - 1
 
 Part = tuple[ir.Expression, tuple[int, int] | None]  # and its limits; None: a time
 
@@ -85,11 +90,11 @@ class Statements:
         indent = "  " * self.depth
         plain = f"{indent}{code}"
         if beside:
-            padded = f"{plain:<{BESIDE - 2}}  // {beside}"
-            if len(padded) <= WIDEST:
+            padded = f"{plain:<{COMMENT_COLUMN - 2}}  // {beside}"
+            if len(padded) <= MOST_COLUMNS:
                 plain = padded
             else:
-                self.lines.append(f"{indent}// {_truncate(beside, WIDEST - len(indent) - 3)}")
+                self.lines.append(f"{indent}// {_truncate(beside, MOST_COLUMNS - len(indent) - 3)}")
         self.lines.append(plain)
 
     def instruction_text(self, start: int) -> str:
@@ -109,16 +114,16 @@ class Statements:
             open_brackets += {"(": 1, ")": -1}.get(letter, 0)
             at += 1
         result = re.sub(r"//[^\r\n]*", " ", text[start:at])
-        return harmless(" ".join(result.split()))
+        return comment_text(" ".join(result.split()))
 
     def remarks(self, start: int) -> None:
         """Add the comments of the program before an offset, and those in its line."""
         line = self.source.position(start)[0]
         while self.waiting and (self.waiting[-1].start < start or self.waiting[-1].line == line):
-            for row in _rows(self.waiting.pop().text, WIDEST - 2 * self.depth - 3):
+            for row in _rows(self.waiting.pop().text, MOST_COLUMNS - 2 * self.depth - 3):
                 self.line(f"// {row}")
 
-    def rest(self) -> None:
+    def remaining_comments(self) -> None:
         """Add the comments after the last instruction."""
         self.remarks(len(self.source.text) + 1)
 
@@ -209,7 +214,7 @@ class Statements:
         if move.power is None:
             self.call("wait", said, self.drive(move))
         else:
-            self.call(_MOVES[move.direction], said, self.drive(move))
+            self.call(_MOVE_FUNCTIONS[move.direction], said, self.drive(move))
 
     def drive(self, move: ir.Move) -> list[str]:
         if move.unit:
@@ -230,7 +235,7 @@ class Statements:
         self.line(f"{self.names.sets[statement.actuator]}({value});", said)
 
     def until(self, move: ir.Move, until: ir.Until, said: str) -> None:
-        self.call(_STARTS.get(move.direction, "start_wait"), said, self.drive(move))
+        self.call(_START_FUNCTIONS.get(move.direction, "start_wait"), said, self.drive(move))
         self.line(f"while ({self.use('move_lasts')}()) {{")
         self.depth += 1
         condition = self.condition(until.reads, until.condition)
@@ -311,7 +316,7 @@ class Statements:
                 self.line(f"for (long {name} = {times}; {name} > 0; {name}--) {{", said)
             else:
                 count = whole(fixed)
-                kind = "int" if abs(count) <= _INT else "long"
+                kind = "int" if abs(count) <= _LARGEST_INT else "long"
                 self.line(f"for ({kind} {name} = 0; {name} < {count}; {name}++) {{", said)
         self.block(loop.body, is_loop=True)
         self.line("}")
@@ -330,7 +335,7 @@ class Statements:
         self.line("}")
 
 
-def harmless(text: str) -> str:
+def comment_text(text: str) -> str:
     """Return a text that stays in its comment: no controls, and nothing that joins lines."""
     return printable(text).replace("??/", "?? /").rstrip("\\ ")
 
@@ -340,4 +345,4 @@ def _truncate(text: str, most: int) -> str:
 
 
 def _rows(text: str, most: int) -> list[str]:
-    return [harmless(text[at : at + most]) for at in range(0, len(text), most)] or [""]
+    return [comment_text(text[at : at + most]) for at in range(0, len(text), most)] or [""]

@@ -17,10 +17,10 @@ from tiniscript.codegen.sketch.names import (
     IDENTIFIERS,
     Names,
     note_text,
+    translate_locals,
     translated_name,
-    with_locals,
 )
-from tiniscript.codegen.sketch.statements import Comment, SketchNames, Statements, harmless
+from tiniscript.codegen.sketch.statements import Comment, SketchNames, Statements, comment_text
 from tiniscript.codegen.sketch.wiring import SketchPlan, is_count, is_small
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
@@ -71,9 +71,9 @@ def _needs_arithmetic(term: ir.Term) -> bool:
                                                "TIME")  # fmt: skip
 
 
-WIDEST = 98
+MOST_COLUMNS = 98
 _WORD = re.compile(r"\$(\w+?)(?=_\$|_PIN\b|\b)")
-BOARDS = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
+BOARD_TITLES = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
 
 
 def missing_feature(program: ir.Program, kit: Kit) -> str | None:
@@ -85,7 +85,7 @@ def missing_feature(program: ir.Program, kit: Kit) -> str | None:
     read = {statement.sensor for statement in statements if isinstance(statement, ir.Read)}
     if program.tasks:
         return "tasks"
-    if any(k >= len(kit.sensors) for k in read | ir.referenced("SENSOR", statements)):
+    if any(k >= len(kit.sensors) for k in read | ir.referenced_numbers("SENSOR", statements)):
         return "remote"
     return "ways" if any(map(is_open_way, statements)) else None
 
@@ -102,7 +102,7 @@ class _Sketch:
     def __init__(self, source: Source, program: ir.Program, robot: Robot, language: str) -> None:
         self.source, self.program, self.robot, self.language = source, program, robot, language
         self.is_exact = needs_numbers(program, robot)
-        self.yes_no = ir.are_yes_no(program, robot.kit)  # of each variable
+        self.yes_no = ir.yes_no_variables(program, robot.kit)  # of each variable
         self.arguments = frozenset(k for procedure in program.procedures for k in procedure.values)
         self.needed: dict[str, None] = {}  # helpers, in the order in which they are met
         names = Names(language)
@@ -140,12 +140,12 @@ class _Sketch:
         return translated_name(key, self.language)
 
     def label(self, name: str) -> str:
-        return harmless(self.robot.labels[self.language][name])
+        return comment_text(self.robot.labels[self.language][name])
 
-    def in_language(self, code: str) -> str:
-        return with_locals(code, self.language)
+    def translate_code(self, code: str) -> str:
+        return translate_locals(code, self.language)
 
-    def says(self, key: str, **values: str) -> str:
+    def text_of_key(self, key: str, **values: str) -> str:
         return note_text(key, self.language).format(**values)
 
     # -- the whole
@@ -164,15 +164,15 @@ class _Sketch:
         if isinstance(last, ir.Loop) and loop:
             start = last.span.start
             rows.remarks(start)
-            rows.line(f"// {rows.instruction_text(start)}: {self.says('in_loop')}")
+            rows.line(f"// {rows.instruction_text(start)}: {self.text_of_key('in_loop')}")
         main, rows.lines = rows.lines, []
         rows.body(loop)
-        rows.rest()
+        rows.remaining_comments()
         repeated, rows.lines = rows.lines, []
         if is_ping:
             main = []
         elif not loop:
-            rows.line(f"{self.use('finish')}();", self.says("no_more"))
+            rows.line(f"{self.use('finish')}();", self.text_of_key("no_more"))
             main += [*repeated, *rows.lines]
             repeated = []
         return self.layout(rows, main, repeated, procedures)
@@ -182,7 +182,7 @@ class _Sketch:
             Comment(
                 comment.start,
                 self.source.position(comment.start)[0],
-                harmless(comment.text[2:].strip()),
+                comment_text(comment.text[2:].strip()),
             )
             for comment in scan(self.source.text).comments
         ]
@@ -195,7 +195,7 @@ class _Sketch:
         name = self.named.procedures[self.program.procedures.index(procedure)]
         head, rows.lines = rows.lines, []
         rows.given = self.arguments - {*procedure.values}  # those of this DEF it sets itself
-        read = ir.referenced("VARIABLE", ir.walk(procedure.body))
+        read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
         for k in procedure.values:
             if k not in read:  # or a compiler warns
                 rows.line(f"(void){self.named.variables[k]};")
@@ -220,22 +220,28 @@ class _Sketch:
                 for k in sorted(rows.read_sensors)
             },
             **{
-                self.named.sets[k]: self.in_language(self.plan.setter(k, self.named.sets[k]))
+                self.named.sets[k]: self.translate_code(self.plan.setter(k, self.named.sets[k]))
                 for k in sorted(rows.set_actuators)
             },
         }
         self.functions.update(parts.functions)
         self.functions["halt"] = self.halt()
         begin = [] if is_ping else self.begin()
-        self.follow([*main, *repeated, *procedures, *own.values(), *begin])
+        self.add_needed_helpers([*main, *repeated, *procedures, *own.values(), *begin])
         wired = [*own.values()]
         kit = self.robot.kit
         about = [
-            *(self.says("read", name=kit.sensors[k].name) for k in sorted(rows.read_sensors)),
-            *(self.says("set", name=kit.actuators[k].name) for k in sorted(rows.set_actuators)),
+            *(
+                self.text_of_key("read", name=kit.sensors[k].name)
+                for k in sorted(rows.read_sensors)
+            ),
+            *(
+                self.text_of_key("set", name=kit.actuators[k].name)
+                for k in sorted(rows.set_actuators)
+            ),
         ]
         functions = {
-            key: self.in_language(self.functions[key])
+            key: self.translate_code(self.functions[key])
             for key in self.needed
             if key in self.functions
         }
@@ -255,9 +261,12 @@ class _Sketch:
             f"void loop() {{\n{_lines(repeated)}}}\n",
         ]
         if procedures:
-            pieces += [_heading(self.says("def")), *(f"{procedure}\n" for procedure in procedures)]
+            pieces += [
+                _heading(self.text_of_key("def")),
+                *(f"{procedure}\n" for procedure in procedures),
+            ]
         if written:
-            pieces += [_heading(self.says("helpers")), *written]
+            pieces += [_heading(self.text_of_key("helpers")), *written]
         return self.fill_words("\n".join(piece for piece in pieces if piece))
 
     # -- its parts
@@ -281,7 +290,7 @@ class _Sketch:
         return lines
 
     def needs_serial(self) -> bool:
-        self.follow([])
+        self.add_needed_helpers([])
         return "Serial" in self.needed or any(
             "Serial" in self.functions.get(key, "") for key in self.needed
         )
@@ -292,7 +301,7 @@ class _Sketch:
         code = f"void $halt() {{\n{body}\n  }}\n}}"
         return code if self.robot.board.buzzer is not None else _silent(code)
 
-    def follow(self, texts: Iterable[str]) -> None:
+    def add_needed_helpers(self, texts: Iterable[str]) -> None:
         """Find the helpers that texts and other helpers need."""
         by_name = {
             translated_name(key, self.language): key for key in self.functions if key in IDENTIFIERS
@@ -322,10 +331,10 @@ class _Sketch:
                 self.needed["exactly"] = None
 
     def opening(self) -> str:
-        file = harmless(self.source.name or "-e")
-        robot, board = self.label("robot"), BOARDS[self.robot.board.chip]
-        rows = [self.says("made", file=file, robot=robot, board=board), ""]
-        rows.append(self.says("limits"))
+        file = comment_text(self.source.name or "-e")
+        robot, board = self.label("robot"), BOARD_TITLES[self.robot.board.chip]
+        rows = [self.text_of_key("made", file=file, robot=robot, board=board), ""]
+        rows.append(self.text_of_key("limits"))
         limits = ["limit_ping"]
         if self.program.start != "PING":
             limits = ["limit_link", "limit_watch", "limit_time"]
@@ -336,17 +345,19 @@ class _Sketch:
         baud = str(self.robot.board.baud)
         lines = ["// " + row if row else "//" for row in rows]
         for key in limits:
-            lines += _wrap(self.says(key, baud=baud), "// - ", "//   ")
+            lines += _wrap(self.text_of_key(key, baud=baud), "// - ", "//   ")
         return "\n".join(lines) + "\n"
 
     def constants(self) -> str:
         if not self.plan.constants:
             return ""
-        head = f"// {self.says('pins', robot=self.label('robot'))}"
+        head = f"// {self.text_of_key('pins', robot=self.label('robot'))}"
         return "\n".join([head, *self.plan.constants]) + "\n"
 
     def number(self) -> str:
-        return self.with_comment(self.says("Number"), self.in_language(numbers.STRUCT.rstrip()))
+        return self.with_comment(
+            self.text_of_key("Number"), self.translate_code(numbers.STRUCT.rstrip())
+        )
 
     def variables(self, rows: Statements) -> str:
         """Return the variables of the program, of the readings, and those that functions share."""
@@ -354,19 +365,19 @@ class _Sketch:
         for k, name in enumerate(self.named.variables):
             if k not in self.arguments:
                 lines.append(f"bool {name} = false;" if self.yes_no[k] else f"$N {name} = 0;")
-        named = ir.referenced("SENSOR", ir.all_statements(self.program))  # read or not
+        named = ir.referenced_numbers("SENSOR", ir.all_statements(self.program))  # read or not
         for k in sorted(rows.read_sensors | named):
             kind = self.plan.kind(k)
             lines.append(f"{kind} {self.named.sensors[k]} = {'false' if kind == 'bool' else '0'};")
-        pieces = ["\n".join([f"// {self.says('values')}", *lines])] if lines else []
+        pieces = ["\n".join([f"// {self.text_of_key('values')}", *lines])] if lines else []
         for key, (note, code) in helpers.SHARED.items():
             if key in self.needed:
-                pieces.append((f"// {self.says(note)}\n" if note else "") + code)
+                pieces.append((f"// {self.text_of_key(note)}\n" if note else "") + code)
         if self.plan.servo_pins:
             pieces.append(helpers.shared_servo_code(self.plan.servo_pins))
         if self.write.kept:
             kept = ", ".join(f"first{k + 1}" for k in range(self.write.kept))
-            pieces.append(f"// {self.says('shared_first')}\n$N {kept};")
+            pieces.append(f"// {self.text_of_key('shared_first')}\n$N {kept};")
         return "\n".join(pieces) + "\n" if pieces else ""
 
     def prototypes(self, codes: Iterable[str]) -> str:
@@ -379,17 +390,17 @@ class _Sketch:
         if not matches:
             return ""
         last = helpers.FOREVER[self.is_exact] if "FOREVER" in self.needed else ""
-        lines = [f"// {self.says('prototypes')}", *matches, *([last] if last else [])]
+        lines = [f"// {self.text_of_key('prototypes')}", *matches, *([last] if last else [])]
         return "\n".join(lines) + "\n"
 
     def note(self, key: str) -> str:
         if key in ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG"):
-            return self.says("operator")
-        if key in numbers.NUMBERS and not self.says(key):
-            return self.says("compare")
+            return self.text_of_key("operator")
+        if key in numbers.NUMBERS and not self.text_of_key(key):
+            return self.text_of_key("compare")
         if key.startswith("start_") and key != "start_wait" and key != "start_move":
-            return self.says("start_forward")
-        return self.says(key)
+            return self.text_of_key("start_forward")
+        return self.text_of_key(key)
 
     def with_comment(self, note: str, code: str) -> str:
         comment = "\n".join(_wrap(note, "// ", "// ")) + "\n" if note else ""
@@ -397,7 +408,7 @@ class _Sketch:
 
     def fill_words(self, text: str) -> str:
         """Return a text with names in the place of its `$words`."""
-        is_forever = self.in_language(helpers.IS_FOREVER[self.is_exact])
+        is_forever = self.translate_code(helpers.IS_FOREVER[self.is_exact])
         text = text.replace("$is_forever", is_forever)
         text = re.sub(
             r"\$N\b", translated_name("Number", self.language) if self.is_exact else "float", text
@@ -428,4 +439,4 @@ def _heading(text: str) -> str:
 
 
 def _wrap(text: str, first: str, other: str) -> list[str]:
-    return wrap(text, WIDEST, initial_indent=first, subsequent_indent=other)
+    return wrap(text, MOST_COLUMNS, initial_indent=first, subsequent_indent=other)

@@ -17,7 +17,7 @@ from tiniscript.semantics.ir import Program
 from tiniscript.syntax.checksums import with_checksum
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token, scan
 
-EMPTY = "SI|"  # a program that does nothing: an empty line would be none
+EMPTY_PROGRAM = "SI|"  # a program that does nothing: an empty line would be none
 
 
 def spell_out(tokens: Iterable[Token]) -> Iterator[Token]:
@@ -71,7 +71,7 @@ def line_of(source: Source) -> str:
         parts.append(ALIASES.get(token.text, token.text))
         brackets += (kind == "(") - (kind == ")")
         before, is_ended = kind, False
-    return with_checksum("".join(parts) or EMPTY)
+    return with_checksum("".join(parts) or EMPTY_PROGRAM)
 
 
 class PlainPlace(NamedTuple):

@@ -18,7 +18,7 @@ from tiniscript.base.words import FUNCTIONS, TASKS, WAYS, WORDS, Word
 from tiniscript.bytecode.opcodes import SHORTS
 from tiniscript.codegen.lower_expression import push_bytes
 from tiniscript.syntax.blocks import ENDS
-from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.cursor import INSTRUCTION_ENDS
 from tiniscript.syntax.later_words import kit_for_tokens
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
@@ -26,8 +26,8 @@ from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
 MOST_BRACKETS = 254  # open at once
 _BLOCK_BYTES = 3  # and three sets of sensors
 _DEF_BYTES = 6  # in front of the name of a DEF, and a set of sensors
-_JUMP = 2  # bytes of an instruction with a short jump
-_TASK = 3  # of one that begins a task
+_JUMP_BYTES = 2  # bytes of an instruction with a short jump
+_TASK_BYTES = 3  # of one that begins a task
 
 
 class Need(NamedTuple):
@@ -91,7 +91,7 @@ class Reader:
 
     # -- memory -------------------------------------------------------------------------------
 
-    def has_room(self, more: int) -> None:
+    def require_room(self, more: int) -> None:
         """Note that a byte is wanted after the code and `more` bytes."""
         expected = self.length + more + 1 + self.used
         if expected > self.most:
@@ -100,14 +100,14 @@ class Reader:
 
     def emit(self, count: int) -> None:
         for _ in range(count):
-            self.has_room(0)
+            self.require_room(0)
             self.length += 1
 
     def emit_numbered(self, number: int) -> None:
         self.emit(1 if number < SHORTS else 2)
 
     def push(self) -> None:
-        self.has_room(0)
+        self.require_room(0)
         self.used += 1
 
     def pop(self) -> None:
@@ -115,7 +115,7 @@ class Reader:
 
     def add_name(self, name: str, more: int) -> None:
         count = 1 + more + len(name)
-        self.has_room(len(name) + count - 1)
+        self.require_room(len(name) + count - 1)
         self.used += count
 
     # -- tokens -------------------------------------------------------------------------------
@@ -129,7 +129,7 @@ class Reader:
         token = self.tokens[self.i]
         if token.kind is WORD and token.end - token.start == len(token.text):  # no degree sign
             self.i += 1
-            self.has_room(len(token.text) - 1)
+            self.require_room(len(token.text) - 1)
         else:
             self.i += 1
         return token
@@ -148,7 +148,7 @@ class Reader:
 
     def program(self) -> None:
         while self.token.kind is not END:
-            if self.token.kind in AT_END or self.token.kind == "|":
+            if self.token.kind in INSTRUCTION_ENDS or self.token.kind == "|":
                 self.i += 1
             else:
                 self.instruction()
@@ -164,11 +164,11 @@ class Reader:
         elif token.text == "DEF":
             name = self.take().text
             self.add_name(name, self.def_bytes)
-            self.emit(_JUMP)
+            self.emit(_JUMP_BYTES)
             self.open("DEF", name)
             self.names()
         elif token.text in TASKS:
-            self.emit(_TASK)
+            self.emit(_TASK_BYTES)
             self.open(token.text)
             if token.text == "WHEN":
                 self.arguments()
@@ -177,7 +177,7 @@ class Reader:
             self.next_arm()
             self.blocks[-1].has_else = True
         elif token.text == "BREAK":
-            self.emit(_JUMP)
+            self.emit(_JUMP_BYTES)
         elif word.role.name == "stop":
             self.emit(1)
         elif word.arguments:
@@ -192,7 +192,7 @@ class Reader:
         elif name in self.defs:
             self.give(self.defs[name].values)
             self.read |= self.defs[name].read
-            self.emit(_JUMP)
+            self.emit(_JUMP_BYTES)
         else:
             self.arguments()
             self.emit_numbered(self.actuators[name])
@@ -252,7 +252,7 @@ class Reader:
         if word == "ELSEIF":
             self.next_arm()
         elif word == "WHILE":
-            self.emit(_JUMP)
+            self.emit(_JUMP_BYTES)
             self.open(word)
         is_forever = self.arguments()
         if spec.role.lasts:
@@ -267,10 +267,10 @@ class Reader:
                 code += 2
             self.emit(code)
         elif word == "LOOP":
-            self.emit(1 if is_forever else _JUMP)
+            self.emit(1 if is_forever else _JUMP_BYTES)
             self.open(word)
         elif word in ("IF", "ELSEIF", "WHILE"):
-            self.emit(_JUMP)
+            self.emit(_JUMP_BYTES)
             if word == "IF":
                 self.open(word)
             self.blocks[-1].taken = self.known
@@ -280,7 +280,7 @@ class Reader:
     # -- blocks -------------------------------------------------------------------------------
 
     def open(self, word: str, name: str = "") -> None:
-        self.has_room(self.block_bytes - 1)
+        self.require_room(self.block_bytes - 1)
         self.used += self.block_bytes
         self.blocks.append(_Block(word, self.read, self.known, name))
         if word != "IF":
@@ -288,7 +288,7 @@ class Reader:
 
     def next_arm(self) -> None:
         block = self.blocks[-1]
-        self.emit(_JUMP)
+        self.emit(_JUMP_BYTES)
         block.after &= self.read
         self.read, self.known = block.before, block.taken
 
@@ -297,7 +297,7 @@ class Reader:
         if word == "IF":
             self.read &= block.after & (-1 if block.has_else else block.before)
         else:
-            self.emit(1 if word in ("DEF", *TASKS) else _JUMP)
+            self.emit(1 if word in ("DEF", *TASKS) else _JUMP_BYTES)
             if word == "DEF":
                 self.defs[block.name] = _Def(self.read, tuple(self.own.values()))
                 self.own = {}

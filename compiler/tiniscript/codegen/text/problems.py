@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from tiniscript.base.languages import find_text
 
-LONGEST = 40  # characters of a text
+MOST_CHARACTERS = 40  # characters of a text
 
 # By number, from 1. In front of what is said stands a column; of RANGE, the number and the least
 # that goes there, and after it the most.
@@ -20,7 +20,7 @@ PROBLEMS = (
     "BREAK", "DEF", "TAKEN", "LIMIT", "FULL", "LACKS", "COMMA",
     "ONE_TASK",
 )
-OF_DEFS = frozenset(("DEF", "ONE_TASK"))  # only a robot whose reader has DEFs says these
+DEF_PROBLEMS = frozenset(("DEF", "ONE_TASK"))  # only a robot whose reader has DEFs says these
 # Of MISTAKE and HELP the firmware makes the text.
 REMARKS = (
     "OK", "OK_BUTTON", "LOST", "WAITING", "GIVEN_UP", "STOPPED", "LATCHED", "SAVING",
@@ -30,7 +30,7 @@ REMARKS = (
 )
 # fmt: on
 
-NAMES = dict(enumerate(PROBLEMS, 1))
+PROBLEM_NAMES = dict(enumerate(PROBLEMS, 1))
 
 
 def problem_text(kind: str, name: str, language: str) -> str:

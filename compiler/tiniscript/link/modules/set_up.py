@@ -18,9 +18,9 @@ NAME, PIN, BAUD = "name", "pin", "baud"
 DONE, UNSEEN, REFUSED, SILENT, DIFFERS, ELSEWHERE, LOST = (
     "done", "unseen", "refused", "lost_midway", "differs", "elsewhere", "lost",
 )  # fmt: skip
-GOOD = (DONE, UNSEEN)
-LETTERS = set("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_ ")
-TINI = "Tini-"  # how a name from a robot's id begins
+GOOD_OUTCOMES = (DONE, UNSEEN)
+NAME_LETTERS = set("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_ ")
+NAME_START = "Tini-"  # how a name from a robot's id begins
 
 
 class WantedSettings(NamedTuple):
@@ -49,14 +49,14 @@ class Outcome(NamedTuple):
 
 def name_for(robot_id: int) -> str:
     """Return the name of the module of a robot: `Tini-7F3A`."""
-    return f"{TINI}{robot_id & 0xFFFF:04X}"
+    return f"{NAME_START}{robot_id & 0xFFFF:04X}"
 
 
 def misfit(wanted: WantedSettings, dialect: Dialect) -> str:
     """Return what this kind of module cannot have: `name`, `pin`, `baud`, or an empty text."""
     name, pin, baud = wanted
     if name is not None and (
-        not name.strip() or name != name.strip() or set(name) - LETTERS
+        not name.strip() or name != name.strip() or set(name) - NAME_LETTERS
         or len(name) > dialect.name_bytes
     ):  # fmt: skip
         return NAME
@@ -89,7 +89,7 @@ def apply_steps(
             outcome = _check_speed(wire, module, outcome)
         outcomes.append(outcome)
         on_outcome(outcome)
-        if outcome.how not in GOOD:
+        if outcome.how not in GOOD_OUTCOMES:
             return outcomes
     return outcomes
 

@@ -27,7 +27,7 @@ from tiniscript.link.modules.dialects import (
 )
 from tiniscript.link.wire import Wire
 
-SHOWN = 60  # characters of a version
+MOST_VERSION_CHARACTERS = 60  # characters of a version
 TRIES = 2  # the first command after power-on may meet half a command of before
 
 
@@ -67,10 +67,10 @@ def find_module(
             if is_awake:
                 wire.send(b"w" * WAKE_BYTES)
                 wire.receive(ANSWER_MS)
-            ending = _listens(wire)
+            ending = _find_line_ending(wire)
             if ending is not None:
-                dialect, version = _kind(wire, ending)
-                return Module(dialect, baud, version[:SHOWN])
+                dialect, version = _identify_dialect(wire, ending)
+                return Module(dialect, baud, version[:MOST_VERSION_CHARACTERS])
     return None
 
 
@@ -79,7 +79,7 @@ def is_there(wire: Wire, dialect: Dialect) -> bool:
     return any(is_ok(ask(wire, "AT", dialect.ending, dialect.wait_ms)) for _ in range(TRIES))
 
 
-def _listens(wire: Wire) -> bytes | None:
+def _find_line_ending(wire: Wire) -> bytes | None:
     """Return how a command ends for the module on the wire, or None where none answers.
 
     A module that waits for a silence must not hear more before that; one that waits for the end of
@@ -97,7 +97,7 @@ def _is_accepted(said: str) -> bool:
     return "OK" in said.split()
 
 
-def _kind(wire: Wire, ending: bytes) -> tuple[Dialect, str]:
+def _identify_dialect(wire: Wire, ending: bytes) -> tuple[Dialect, str]:
     """Return which module this is, and what it says of itself."""
     if not ending:
         text = ask(wire, "AT+VERSION", ending, SLOW_ANSWER_MS)
@@ -109,17 +109,17 @@ def _kind(wire: Wire, ending: bytes) -> tuple[Dialect, str]:
         return HC06, text
     text = ask(wire, "AT+VERSION", ending, ANSWER_MS)
     if "BT05" in text.upper():
-        return BT05, _line(text)
+        return BT05, _version_line(text)
     if text.startswith("+VERSION="):
-        return CC41, _line(text)
+        return CC41, _version_line(text)
     role = ask(wire, "AT+ROLE?", ending, ANSWER_MS)
     if role.startswith("+ROLE"):
         text = ask(wire, "AT+VERSION?", ending, ANSWER_MS)
-        return (HC05_3 if ":3." in text else HC05), _line(text)
-    return (HC06_3, _line(text)) if not is_error(text) else (HC05, "")
+        return (HC05_3 if ":3." in text else HC05), _version_line(text)
+    return (HC06_3, _version_line(text)) if not is_error(text) else (HC05, "")
 
 
-def _line(said: str) -> str:
+def _version_line(said: str) -> str:
     """Return the version in an answer: its first line, without what it is called."""
     first = said.splitlines()[0] if said else ""
     return first.removeprefix("+").removeprefix("VERSION").lstrip(":=")

@@ -17,13 +17,13 @@ _SOCK_DIAG = 4  # of netlink, and its request and its answer
 _BY_FAMILY, _REQUEST, _ERROR = 20, 1, 2
 _ALL_STATES, _NO_COOKIE = 0xFFFFFFFF, b"\xff" * 8
 _HEAD = struct.Struct("=IHHII")  # length, type, flags, number, sender
-_ASK = struct.Struct("=BBBBI")  # family, protocol, extensions, padding, states
-_ENDS = struct.Struct(">HH16s16sI8s")  # ports, addresses, interface, cookie
+_REQUEST_BODY = struct.Struct("=BBBBI")  # family, protocol, extensions, padding, states
+_SOCKET_ENDS = struct.Struct(">HH16s16sI8s")  # ports, addresses, interface, cookie
 _ANSWER = struct.Struct("=BBBB48sIIIII")  # family, state, .., expires, queues, user, inode
-ROOT = 0
+ROOT_USER = 0
 HOST = "127.0.0.1"
 # Nobody has the other end any more; or this process has too many files open to ask.
-_NOBODY = (errno.ENOENT, errno.EMFILE, errno.ENFILE)
+_NO_SOCKET_ERRORS = (errno.ENOENT, errno.EMFILE, errno.ENFILE)
 
 
 class End(NamedTuple):
@@ -55,8 +55,8 @@ def is_of_this_user(peer: socket.socket) -> bool:
     try:
         result = _socket_owner(there, here)
     except OSError as why:  # a system that has no answer to that lets everybody in
-        return why.errno not in _NOBODY
-    return result.is_open and result.user in (os.geteuid(), ROOT)
+        return why.errno not in _NO_SOCKET_ERRORS
+    return result.is_open and result.user in (os.geteuid(), ROOT_USER)
 
 
 def is_of_another(number: int) -> bool:
@@ -70,7 +70,7 @@ def is_of_another(number: int) -> bool:
         result = _socket_owner((HOST, number), ("0.0.0.0", 0))
     except OSError:
         return False
-    return result.user not in (os.geteuid(), ROOT)
+    return result.user not in (os.geteuid(), ROOT_USER)
 
 
 def tells_users() -> bool:
@@ -92,9 +92,9 @@ def _socket_owner(there: tuple[str, int], here: tuple[str, int]) -> End:
     """Return what the kernel knows of the socket at `there`. Raises OSError."""
     if sys.platform != "linux":
         raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
-    ends = _ENDS.pack(there[1], here[1], socket.inet_aton(there[0]), socket.inet_aton(here[0]),
-                      0, _NO_COOKIE)  # fmt: skip
-    ask = _ASK.pack(socket.AF_INET, socket.IPPROTO_TCP, 0, 0, _ALL_STATES) + ends
+    addresses = socket.inet_aton(there[0]), socket.inet_aton(here[0])
+    ends = _SOCKET_ENDS.pack(there[1], here[1], *addresses, 0, _NO_COOKIE)
+    ask = _REQUEST_BODY.pack(socket.AF_INET, socket.IPPROTO_TCP, 0, 0, _ALL_STATES) + ends
     head = _HEAD.pack(_HEAD.size + len(ask), _BY_FAMILY, _REQUEST, 1, 0)
     with socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, _SOCK_DIAG) as kernel:
         kernel.send(head + ask)

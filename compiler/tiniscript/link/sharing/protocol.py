@@ -35,7 +35,7 @@ from tiniscript.link.requests import OK, Reply
 HOST = "127.0.0.1"
 LINE_BYTES = 100_000  # the longest program has 32,781 bytes
 GREETING_BYTES = 1000
-LOOKER = "ports"  # the verb of a client that only checks which robot is there
+LOOKING_VERB = "ports"  # the verb of a client that only checks which robot is there
 HEARTBEAT_S = 0.2  # between two heartbeats of a waiting client
 DEAD_MAN_S = 1.0  # dead-man timer: a run ends when its client is silent for this long
 

@@ -20,7 +20,7 @@ from zlib import crc32
 
 from tiniscript.base import files
 from tiniscript.base.files import contents
-from tiniscript.link.port_names import same_for_all
+from tiniscript.link.port_names import canonical_port
 
 FILE_BYTES = 4096
 _LOCK_FLAGS = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
@@ -46,7 +46,7 @@ class Registration(NamedTuple):
 def find_registration(port: str) -> Registration | None:
     """Return the registration of the server of a port, or None."""
     registration = _read(_path(port))
-    if registration is None or registration.port != same_for_all(port):
+    if registration is None or registration.port != canonical_port(port):
         return None
     return registration
 
@@ -83,7 +83,7 @@ def _remove(path: Path, is_meant: Callable[[Registration | None], bool]) -> None
     """
     if not is_meant(_read(path)):
         return
-    aside = path.with_name(f".{path.name}.{os.urandom(8).hex()}{files.NEW}")
+    aside = path.with_name(f".{path.name}.{os.urandom(8).hex()}{files.NEW_ENDING}")
     with suppress(OSError):
         path.rename(aside)
         if not is_meant(_read(aside)) and not path.exists():
@@ -236,7 +236,7 @@ def _folder() -> Path:
 
 
 def _path(port: str) -> Path:
-    number = crc32(same_for_all(port).encode("utf-8", "replace"))
+    number = crc32(canonical_port(port).encode("utf-8", "replace"))
     return _folder() / f"{_computer()}-{number:08x}.json"
 
 

@@ -28,8 +28,8 @@ from tiniscript.link.sharing import protocol
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.wifi import BrokerSettings, Network, Tls
 
-CODE_BYTES = 0x7FFF  # the most that an image's header can say
-LATER_BYTES = 0xFF - HEADER_BYTES  # the most that it can say
+MOST_CODE_BYTES = 0x7FFF  # the most that an image's header can say
+MOST_LATER_BYTES = 0xFF - HEADER_BYTES  # the most that it can say
 T = TypeVar("T")
 
 
@@ -72,7 +72,11 @@ def request_maker(
     `speaker` is who presses keys.
     """
     name = protocol.field(message, "do", str)
-    given = _GIVEN[name](message) if name in _GIVEN else _as_message(name, message)
+    given = (
+        _ARGUMENT_READERS[name](message)
+        if name in _ARGUMENT_READERS
+        else _as_message(name, message)
+    )
     if name == "press":
         given += (speaker,)
 
@@ -185,10 +189,10 @@ def _image(message: JsonMessage) -> Image:
     return Image(
         start,
         _bounded_number(message, "devices", 1 << 16),
-        _bytes(message, "code", 0, CODE_BYTES),
+        _bytes(message, "code", 0, MOST_CODE_BYTES),
         _bounded_number(message, "checksum", 1 << 32),
         (major, minor),
-        _bytes(message, "later", 0, LATER_BYTES),
+        _bytes(message, "later", 0, MOST_LATER_BYTES),
         _bounded_number(message, "needs", 1 << 8, 0),  # without it the image is of 2.0
     )
 
@@ -200,7 +204,7 @@ def _upload(message: JsonMessage) -> tuple[object, ...]:
 
 # What requests are given, read from a message, where that is not what the link's message of their
 # name has.
-_GIVEN: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
+_ARGUMENT_READERS: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
     **dict.fromkeys(
         ("hello", "ping", "fetch", "hold_back", "wifi", "forget_wifi", "broker"),
         lambda message: (),

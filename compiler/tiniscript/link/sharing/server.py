@@ -23,10 +23,17 @@ from typing import Any, NamedTuple
 
 from tiniscript.base.version import __version__
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.outcomes import CANCELLED, Event, JoinedEvent, LeftEvent, MissedEvent, Told
+from tiniscript.link.outcomes import (
+    CANCELLED,
+    Event,
+    JoinedEvent,
+    LeftEvent,
+    MissedEvent,
+    TimedEvent,
+)
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.port_connection import PortConnection
-from tiniscript.link.port_names import same_for_all
+from tiniscript.link.port_names import canonical_port
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
@@ -34,18 +41,18 @@ from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.requests import is_detached, request_maker
 
 GREETING_S = 2.0  # timeout for a new client's greeting
-CLIENTS = 64  # at a time, and as many connections without a greeting
-REQUESTS = 8  # of one client, at a time
+MOST_CLIENTS = 64  # at a time, and as many connections without a greeting
+MOST_REQUESTS = 8  # of one client, at a time
 FULL_BYTES = 200_000  # in the send buffer: a client with more misses values
 TOO_FULL_BYTES = 1_000_000  # in the send buffer: a client with more is disconnected
 FULL_S = 0.02  # pause before the next try when the process has too many files open
 PAUSE_S = 0.1  # between two checks while a client has a run or a request
 REST_S = 1.0  # between two checks while none has
-_ENDS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
-_MAY_MISS = ("SHOW", "TEXT")
-_STARTING = ("upload", "live", "start")
+_ENDING_EVENTS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
+_DROPPABLE_EVENTS = ("SHOW", "TEXT")
+_STARTING_REQUESTS = ("upload", "live", "start")
 # that end with what they start
-_DRIVING = ("upload", "start", "set trim", "doctor --selftest", "python")
+_DRIVING_VERBS = ("upload", "start", "set trim", "doctor --selftest", "python")
 
 
 class ConnectedClient:
@@ -84,16 +91,16 @@ class Server:
         self._listening.setblocking(False)
         number = self._listening.getsockname()[1]
         token, answer = os.urandom(16).hex(), os.urandom(16).hex()
-        name = same_for_all(port)
+        name = canonical_port(port)
         self.registration = Registration(name, number, token, answer, verb, baud, os.getpid())
         self._names = [self.registration]
-        address = same_for_all(line.address or port)
+        address = canonical_port(line.address or port)
         if address != name:
             self._names.append(self.registration._replace(port=address, is_alias=True))
         self._bell, self._wire = socket.socketpair()
         self._bell.setblocking(False)
         self._wire.setblocking(False)
-        self._told: deque[Told] = deque()
+        self._told: deque[TimedEvent] = deque()
         self._clients: list[ConnectedClient] = []
         self._speakers = 0
         self._owner: tuple[ConnectedClient, int] | None = None  # of the current run
@@ -121,7 +128,9 @@ class Server:
     @property
     def is_needed(self) -> bool:
         """Whether a client drives the robot, or is about to: one whose command ends with that."""
-        return self.may_have_run or any(client.verb in _DRIVING for client in list(self._clients))
+        return self.may_have_run or any(
+            client.verb in _DRIVING_VERBS for client in list(self._clients)
+        )
 
     @property
     def may_have_run(self) -> bool:
@@ -142,7 +151,7 @@ class Server:
 
     # -- from the thread of the line --------------------------------------------------------------
 
-    def _on_events(self, told: list[Told]) -> None:
+    def _on_events(self, told: list[TimedEvent]) -> None:
         self._told += told
         self._ring()
 
@@ -162,7 +171,7 @@ class Server:
         finally:
             for name in self._names:
                 registry.remove(name)
-            self._part()
+            self._announce_end()
             self._close_all()
 
     def _attend(self) -> None:
@@ -193,10 +202,10 @@ class Server:
             sleep(FULL_S)
             return
         strangers = [client for client in self._clients if not client.verb]
-        if len(self._clients) - len(strangers) >= CLIENTS:
+        if len(self._clients) - len(strangers) >= MOST_CLIENTS:
             peer.close()
             return
-        if len(strangers) >= CLIENTS:
+        if len(strangers) >= MOST_CLIENTS:
             self._drop_oldest_stranger()
         peer.setblocking(False)
         with suppress(OSError):  # the client has left already
@@ -258,7 +267,7 @@ class Server:
         """Begin a client's request."""
         number = protocol.number(message, "id")
         limit_ms = min(max(1, protocol.number(message, "limit_ms")), 60_000)
-        if number in client.requests or len(client.requests) >= REQUESTS:
+        if number in client.requests or len(client.requests) >= MOST_REQUESTS:
             raise BadMessage
         robot = self._line.robot
         if message["do"] == "hello" and robot and self._line.session.is_open:  # already known
@@ -268,7 +277,7 @@ class Server:
             self._speakers += 1
             client.speaker = self._speakers
         make = request_maker(message, limit_ms, client.speaker)
-        if self._is_latched() and message["do"] in _STARTING:
+        if self._is_latched() and message["do"] in _STARTING_REQUESTS:
             self._tell_outcome(client, number, Reply(CANCELLED))
             return
         client.requests[number] = ServedRequest(self._line.begin(make), is_detached(message))
@@ -324,7 +333,7 @@ class Server:
         while self._told:
             time_ms, event = self._told.popleft()
             # a late end may belong to the previous run
-            if event.name in _ENDS and self._owner is not None and not self.has_run:
+            if event.name in _ENDING_EVENTS and self._owner is not None and not self.has_run:
                 self._owner = None
             for client in list(self._clients):
                 if client.verb:
@@ -333,7 +342,7 @@ class Server:
     def _tell_event(self, client: ConnectedClient, time_ms: int, event: Event) -> None:
         if event.name == "PLACE" and not (client.takes_places and len(client.out) <= FULL_BYTES):
             return
-        if len(client.out) > FULL_BYTES and event.name in _MAY_MISS:
+        if len(client.out) > FULL_BYTES and event.name in _DROPPABLE_EVENTS:
             client.missed += 1
             return
         if client.missed:
@@ -375,7 +384,7 @@ class Server:
     def _tell_own_command(
         self, client: ConnectedClient, event: type[JoinedEvent] | type[LeftEvent]
     ) -> None:
-        if client.verb not in ("", protocol.LOOKER):
+        if client.verb not in ("", protocol.LOOKING_VERB):
             self._line.tell(event(client.verb.encode()))
 
     # -- what clients are told --------------------------------------------------------------------
@@ -400,7 +409,7 @@ class Server:
         if client in self._clients:
             self._selector.modify(client.peer, expected, client)
 
-    def _part(self) -> None:
+    def _announce_end(self) -> None:
         """Tell all clients that the connection has ended, and why."""
         gone = self._line.end_reason
         over: JsonMessage = {"over": "ended" if gone is None else "gone", "why": gone or ""}

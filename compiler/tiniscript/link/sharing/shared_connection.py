@@ -185,7 +185,7 @@ def join(port: str, verb: str) -> SharedConnection | None:
 def is_alive(registration: Registration) -> bool:
     """Whether a server is still there."""
     try:
-        client = _connect_to(registration, protocol.LOOKER)
+        client = _connect_to(registration, protocol.LOOKING_VERB)
     except OtherVersion:
         return True
     if client is not None:

@@ -23,13 +23,13 @@ from tiniscript.link.port_names import BLE, canonical, name_in
 from tiniscript.link.transports import WRITE_S
 from tiniscript.link.transports import bluetooth_search as search
 from tiniscript.link.transports.event_loop import EventLoop, shared_loop
-from tiniscript.link.transports.pushed import ENDED, PushedTransport
+from tiniscript.link.transports.pushed import END_REASON, PushedTransport
 
 CONNECT_S = 15.0
 QUEUE_S = 60.0  # and of those that wait for the connections of others
 CLOSE_S = 5.0  # BlueZ takes 2 s
 UART_BITS = 10  # of a byte, with its start and its stop
-SMALLEST = 20  # bytes of a write before more is negotiated
+LEAST_WRITE_BYTES = 20  # bytes of a write before more is negotiated
 
 T = TypeVar("T")
 
@@ -38,7 +38,7 @@ class Module(NamedTuple):
     """A way of sending bytes over Bluetooth LE.
 
     `is_paced`: the module loses bytes that arrive faster than its UART passes them on, and takes
-    no more than SMALLEST in one write, whatever was negotiated.
+    no more than LEAST_WRITE_BYTES in one write, whatever was negotiated.
     """
 
     service: str
@@ -61,7 +61,7 @@ MODULES = (
         is_paced=True,
     ),
 )
-_found: dict[str, BLEDevice] = {}  # by address: devices that a search has found
+_found_devices: dict[str, BLEDevice] = {}  # by address: devices that a search has found
 
 
 def resolve(port: str) -> str:
@@ -72,7 +72,7 @@ def resolve(port: str) -> str:
     loop = shared_loop()
     device = _run(loop, search.find_device(name_in(port)), search.SEARCH_S + search.LEAVE_S * 2)
     address = canonical(device.address)
-    _found[address] = device
+    _found_devices[address] = device
     return BLE + address
 
 
@@ -80,7 +80,7 @@ def list_robots() -> list[search.SeenDevice]:
     """Return the robots in reach. Raises PortError."""
     limit_s = search.LISTED_S + search.LEAVE_S * 2
     seen_devices = _run(shared_loop(), search.robots(), limit_s)
-    _found.update({canonical(item.address): item.device for item in seen_devices})
+    _found_devices.update({canonical(item.address): item.device for item in seen_devices})
     return seen_devices
 
 
@@ -90,10 +90,10 @@ def open_port(port: str, baud: int, limit_s: float) -> BluetoothPort:
     `baud` is the speed of the UART behind an HM-10. Radios take longer than `limit_s`.
     """
     address = name_in(port)
-    if address not in _found:
+    if address not in _found_devices:
         address = name_in(resolve(port))
     bluetooth_port = BluetoothPort(shared_loop(), baud)
-    bluetooth_port.connect(_found.pop(address))
+    bluetooth_port.connect(_found_devices.pop(address))
     return bluetooth_port
 
 
@@ -112,7 +112,7 @@ class BluetoothPort(PushedTransport):
 
     def connect(self, device: BLEDevice) -> None:
         """Raises PortError."""
-        self._client = BleakClient(device, lambda _: self.end(ENDED), timeout=CONNECT_S)
+        self._client = BleakClient(device, lambda _: self.end(END_REASON), timeout=CONNECT_S)
         try:
             _run(self._loop, self._connect(self._client), QUEUE_S)
         except BaseException:
@@ -138,7 +138,7 @@ class BluetoothPort(PushedTransport):
     # -- in the loop ------------------------------------------------------------------------------
 
     async def _connect(self, client: BleakClient) -> None:
-        async with _turn():  # BlueZ fails where two connections are made at once
+        async with _connect_lock():  # BlueZ fails where two connections are made at once
             await asyncio.wait_for(client.connect(), CONNECT_S)
         for module in MODULES:
             service = next(
@@ -167,9 +167,9 @@ class BluetoothPort(PushedTransport):
         time = asyncio.get_running_loop().time
         response = "write-without-response" not in self._writes.properties
         while data:
-            size = SMALLEST
+            size = LEAST_WRITE_BYTES
             if not self._is_paced:
-                size = max(SMALLEST, self._writes.max_write_without_response_size)
+                size = max(LEAST_WRITE_BYTES, self._writes.max_write_without_response_size)
             piece, data = data[:size], data[size:]
             await asyncio.sleep(self._ready_s - time())
             try:
@@ -197,6 +197,6 @@ def _run(loop: EventLoop, work: Coroutine[Any, Any, T], limit_s: float) -> T:
 
 
 @cache
-def _turn() -> asyncio.Lock:
+def _connect_lock() -> asyncio.Lock:
     """Return the lock of all that connect; call it in the loop."""
     return asyncio.Lock()

@@ -31,7 +31,7 @@ LINGER_S = 1.5  # after a name was seen: an HM-10 says its own once in 1.3 s, an
 LISTED_S = 4.0  # for all robots
 LEAVE_S = 3.0  # timeout of the end of a scan
 MAX_NAMES_SHOWN = 8  # names in a sentence
-DEVICES = 1000  # that a scan keeps
+MOST_DEVICES = 1000  # that a scan keeps
 
 _Denied = BleakBluetoothNotAvailableReason
 _FORBIDDEN = (_Denied.DENIED_BY_USER, _Denied.DENIED_BY_SYSTEM, _Denied.DENIED_BY_UNKNOWN)
@@ -96,7 +96,7 @@ class _Scan:
         self._keep(SeenDevice(device, name, is_robot))
 
     def _keep(self, seen_device: SeenDevice) -> None:
-        if seen_device.address in self.seen or len(self.seen) < DEVICES:
+        if seen_device.address in self.seen or len(self.seen) < MOST_DEVICES:
             self.seen[seen_device.address] = seen_device
             self.news.set()
             self.news = asyncio.Event()

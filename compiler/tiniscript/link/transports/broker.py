@@ -36,7 +36,7 @@ LIST_S = 10.0  # until a broker has sent what it retains
 LEAVE_S = 0.5
 PATIENCE_S = 4.0  # a robot frees its place when a client that was killed has been silent for 3 s
 QUIET_S = 0.3  # of silence, and that was all
-ROBOTS = 250  # that a list keeps
+MOST_ROBOTS = 250  # that a list keeps
 MESSAGE_BYTES = 4096  # of one that is taken; a robot sends less
 SKIPPED_BYTES = 1 << 20  # of one that is left out; a larger one ends the connection
 MOST_SKIPPED, TOPIC_CHARACTERS = 20, 80  # topics that are named, and of one
@@ -66,7 +66,7 @@ class Present(NamedTuple):
     is_here: bool
 
 
-_accesses: dict[tuple[str, int], Access] = {}
+_access_by_broker: dict[tuple[str, int], Access] = {}
 _brokers: dict[tuple[str, int], Broker] = {}
 _lock = Lock()
 
@@ -78,7 +78,7 @@ def port_of(host: str, port: int, group: str, robot: str) -> str:
 
 def sign_in(host: str, port: int, access: Access) -> None:
     """Have this process sign in so from now on."""
-    _accesses[host, port] = access
+    _access_by_broker[host, port] = access
 
 
 def resolve(port: str) -> str:
@@ -98,7 +98,7 @@ def connect(host: str, port: int) -> Broker:
     with _lock:
         broker = _brokers.get((host, port))
         if broker is None or broker.gone:
-            broker = Broker(host, port, _accesses.get((host, port), Access()))
+            broker = Broker(host, port, _access_by_broker.get((host, port), Access()))
             _brokers[host, port] = broker
         return broker
 
@@ -318,7 +318,7 @@ class Broker:
         is_robot = re.fullmatch(r"[0-9a-f]{8}", robot) is not None
         if here is None or not is_robot or not 1 <= len(payload) <= 1 + NAME_BYTES:
             return
-        if payload[:1] not in (b"+", b"-") or (len(here) == ROBOTS and robot not in here):
+        if payload[:1] not in (b"+", b"-") or (len(here) == MOST_ROBOTS and robot not in here):
             return
         name = payload[1:].decode("utf-8", "replace")
         here[robot] = Present(robot, name, payload[:1] == b"+")

@@ -23,8 +23,8 @@ SEARCH_S = 5.0  # for one robot
 LISTED_S = 2.0  # for all robots,
 ROBOT_MS = 1000  # for the address of each that has not come with its name,
 ADDRESSES_S = 3.0  # and for all of these
-LONGEST = 63  # bytes of a name
-ROBOTS = 1000  # that a list keeps
+MOST_NAME_BYTES = 63  # bytes of a name
+MOST_ROBOTS = 1000  # that a list keeps
 
 
 class AnnouncedRobot(NamedTuple):
@@ -37,7 +37,7 @@ class AnnouncedRobot(NamedTuple):
 def resolve(port: str) -> str:
     """Return the address, `socket://…`, of the robot that announces a name. Raises PortError."""
     name = name_in(port).removesuffix(".local")
-    if not 0 < len(name.encode()) <= LONGEST:
+    if not 0 < len(name.encode()) <= MOST_NAME_BYTES:
         raise PortError(errors.NOT_ANNOUNCED)
     with _network() as network:
         info = query_service(network, f"{name}.{SERVICE}", int(SEARCH_S * 1000))
@@ -58,7 +58,7 @@ def list_robots() -> list[AnnouncedRobot]:
 
     class Listener:
         def add_service(self, _: Zeroconf, __: str, name: str) -> None:
-            if len(names) < ROBOTS:
+            if len(names) < MOST_ROBOTS:
                 names.add(name)
 
         def update_service(self, *_: object) -> None:

@@ -10,7 +10,7 @@ from threading import Condition
 from tiniscript.link.transports import READ_S
 
 KEPT_BYTES = 65_536  # of somebody who sends more than is read; more is lost
-ENDED = "the connection has ended"
+END_REASON = "the connection has ended"
 
 
 class PushedTransport:
@@ -55,5 +55,5 @@ class PushedTransport:
     def end(self, why: str) -> None:
         """The connection has ended; the first reason counts."""
         with self._news:
-            self._gone = self._gone or why or ENDED
+            self._gone = self._gone or why or END_REASON
             self._news.notify_all()

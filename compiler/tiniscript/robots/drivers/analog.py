@@ -6,7 +6,7 @@ import re
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device
-from tiniscript.base.words import concept_of
+from tiniscript.base.words import lexicon_concept
 from tiniscript.robots.driver import (
     FULL_COUNT,
     MOTOR_BATTERY,
@@ -86,7 +86,7 @@ class Analog(SensorDriver):
 def _divided_voltage(device: Device, full: int, pin_volts: int) -> Shape:
     """Two resistors: the lower one has what a pin takes when the whole has `full` thousandths."""
     upper = f"{10 * (full - pin_volts) / pin_volts:g} kΩ"
-    is_battery = concept_of(re.split("[_0-9]", device.name)[0]) == "BATTERY"
+    is_battery = lexicon_concept(re.split("[_0-9]", device.name)[0]) == "BATTERY"
     name = MOTOR_BATTERY if is_battery else "what_is_measured"
     source = Terminal(name, "pin", to_ground=PULL_DOWN, beyond=upper)
     return Shape("voltage", "", (source,), notes=("mind_voltage",))

@@ -6,7 +6,7 @@ from tiniscript.base import languages
 
 
 def has_text(key: str) -> bool:
-    return languages.find_text("wiring", key, languages.SOURCE) is not None
+    return languages.find_text("wiring", key, languages.SOURCE_LANGUAGE) is not None
 
 
 def text(key: str, language: str, default: str = "") -> str:

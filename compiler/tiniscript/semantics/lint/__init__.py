@@ -110,7 +110,7 @@ def _inner_context(statement: ir.Statement, around: Around, is_last: bool) -> Ar
     inside = around._replace(
         loop=None,
         is_last=around.is_last and isinstance(statement, ir.If) and is_last,
-        asked=around.asked | ir.referenced("SENSOR", [statement] if asks else []),
+        asked=around.asked | ir.referenced_numbers("SENSOR", [statement] if asks else []),
     )
     if not isinstance(statement, (ir.Loop, ir.While)):
         return inside

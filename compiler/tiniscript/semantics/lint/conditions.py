@@ -19,7 +19,7 @@ from tiniscript.semantics.comparisons import (
     Comparison,
     answer_of,
     answer_of_both,
-    comes_true,
+    can_come_true,
     comparison,
     is_between,
     looks_ahead,
@@ -28,13 +28,16 @@ from tiniscript.semantics.lint.look import Around, Look
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import SIGN_OF
 
-SHORT = 1000  # ms: a loop looks again after so long
-_CHANGING = frozenset(("SENSOR", "TIME", "RANDOM"))
+SHORT_MS = 1000  # ms: a loop looks again after so long
+_CHANGING_OPS = frozenset(("SENSOR", "TIME", "RANDOM"))
 # By the way that the robot goes, what is true where the robot stands, and what comes true.
-_TURNED = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
-_WAYS = {"LT": "below", "LE": "below", "GT": "above", "GE": "above"}
+_REVERSED_COMPARATORS = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
+_SIDE_BY_COMPARATOR = {"LT": "below", "LE": "below", "GT": "above", "GE": "above"}
 _MOST_ARMS = 50  # of an IF whose conditions are compared
-_REACHED = {"F": "LE", "B": "GE"}  # what is sure to come true, by the way that the robot goes
+_COMPARATOR_REACHED = {
+    "F": "LE",
+    "B": "GE",
+}  # what is sure to come true, by the way that the robot goes
 
 
 def _is_endless(loop: ir.Loop | ir.While) -> bool:
@@ -65,7 +68,7 @@ def check_show(show: ir.Show, around: Around, look: Look) -> None:
 def report_asked_once(look: Look) -> None:
     """A program that reads no remote control loads nothing for it."""
     remote = {*range(len(look.kit.sensors), len(look.kit.readings))}
-    if remote & ir.referenced("SENSOR", look.statements):
+    if remote & ir.referenced_numbers("SENSOR", look.statements):
         from tiniscript.semantics.lint import once
 
         once.report_asked_once(look, remote)
@@ -83,9 +86,9 @@ class _Conditions:
     def check_until(self, move: ir.Move, condition: ir.Expression, around: Around) -> None:
         self._report_known_of_both(condition, move.span)
         variables = _variables(condition)
-        if variables and not any(term.op in _CHANGING for term in condition):
+        if variables and not any(term.op in _CHANGING_OPS for term in condition):
             time = known_value(move.time)
-            if not (around.is_repeated and time is not None and time < SHORT):
+            if not (around.is_repeated and time is not None and time < SHORT_MS):
                 self._report_frozen_until(move, condition, variables)
             return
         compared = self._comparison(condition)
@@ -94,16 +97,16 @@ class _Conditions:
             return
         device, op, number = compared
         is_ahead = looks_ahead(device)
-        is_turned = op in _TURNED.get(move.direction, {}) and is_ahead
+        is_turned = op in _REVERSED_COMPARATORS.get(move.direction, {}) and is_ahead
         if is_turned and not around.asked & _sensors(condition):
-            turned = compared._replace(op=_TURNED[move.direction][op])
+            turned = compared._replace(op=_REVERSED_COMPARATORS[move.direction][op])
             other = "" if answer_of(turned) else self._with_condition(move, str(turned))
             is_forward = move.direction == "F"
             number_is, repair = ("number", "fix") if is_forward else ("far", "away")
             values = {"sensor": device.name, number_is: as_text(number), repair: other}
             self._look.report(codes.TURNED_ROUND, move.span, **values)
         else:
-            reached = "GE" if device is TIME else _REACHED.get(move.direction, "")
+            reached = "GE" if device is TIME else _COMPARATOR_REACHED.get(move.direction, "")
             text = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
             is_sure = bool(reached) and (is_ahead or device is TIME)
             fix = self._with_condition(move, text) if is_sure else ""
@@ -151,7 +154,7 @@ class _Conditions:
     def _report_frozen_while(self, loop: ir.While) -> None:
         condition = loop.condition
         variables = _variables(condition)
-        if not variables or any(term.op in _CHANGING for term in condition):
+        if not variables or any(term.op in _CHANGING_OPS for term in condition):
             return
         if (
             len(condition) == 1
@@ -178,7 +181,7 @@ class _Conditions:
         """`D = DISTANCE; LOOP(FOREVER); IF(D < 20) …`: it moves, and looks at what was before."""
         variables = _variables(arm.condition)
         held = self._look.variables.held_in(outermost, variables)
-        if not held or any(term.op in _CHANGING for term in arm.condition):
+        if not held or any(term.op in _CHANGING_OPS for term in arm.condition):
             return
         name = self._program.variables[variables[0]]
         word = "IF" if self._source[arm.span][:1].upper() == "I" else "ELSEIF"
@@ -226,7 +229,7 @@ class _Conditions:
         shown = {
             term for show in ir.walk(loop.body) if isinstance(show, ir.Show) for term in show.value
         }
-        others = [term for term in shown if term.op in _CHANGING or term.op == "VARIABLE"]
+        others = [term for term in shown if term.op in _CHANGING_OPS or term.op == "VARIABLE"]
         is_before = sets[0].span.end <= loop.span.start
         if not (
             is_before and is_only_shown and others == [term] and show in _round_statements(loop)
@@ -243,9 +246,9 @@ class _Conditions:
         widest: dict[tuple[str, str], Comparison] = {}  # by sensor and the way of the sign
         for k, arm in enumerate(statement.arms[:_MOST_ARMS]):
             compared = self._comparison(arm.condition)
-            if compared is None or compared.op not in _WAYS:
+            if compared is None or compared.op not in _SIDE_BY_COMPARATOR:
                 continue
-            key = (compared.device.name, _WAYS[compared.op])
+            key = (compared.device.name, _SIDE_BY_COMPARATOR[compared.op])
             before = widest.get(key)
             if before is None or not _is_within(compared, before):
                 widest[key] = compared
@@ -307,7 +310,7 @@ class _Conditions:
             else term
             for term in condition
         )
-        comes = comes_true(asking, direction, self._kit)
+        comes = can_come_true(asking, direction, self._kit)
         text = self._look.condition(span, word)
         if not comes and (comes is not None or direction):
             return ""
@@ -343,4 +346,4 @@ def _is_within(narrow: Comparison, wide: Comparison) -> bool:
     """Whether one comparison is true only where the other one is; their signs go the same way."""
     if narrow.number == wide.number:
         return narrow.op == wide.op or wide.op in ("LE", "GE")
-    return (narrow.number < wide.number) == (_WAYS[wide.op] == "below")
+    return (narrow.number < wide.number) == (_SIDE_BY_COMPARATOR[wide.op] == "below")

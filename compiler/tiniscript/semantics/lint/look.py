@@ -12,7 +12,7 @@ from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.syntax.lexer import Scan
 
-LONGEST = 120  # characters of a condition that a message can hold
+MOST_CHARACTERS = 120  # characters of a condition that a message can hold
 
 
 class Around(NamedTuple):
@@ -62,7 +62,7 @@ class Look:
             return ""
         begin = places[-1] if word == "UNTIL" else places[0]
         depth = 1
-        for k in range(begin, min(len(text), begin + LONGEST)):
+        for k in range(begin, min(len(text), begin + MOST_CHARACTERS)):
             depth += (text[k] == "(") - (text[k] == ")")
             if not depth:
                 condition = text[begin:k].strip()

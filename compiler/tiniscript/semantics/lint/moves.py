@@ -11,18 +11,18 @@ from tiniscript.base.fixed_point import as_text
 from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
-from tiniscript.semantics.comparisons import asks_if_near, comes_true, is_distance, looks_ahead
+from tiniscript.semantics.comparisons import asks_if_near, can_come_true, is_distance, looks_ahead
 from tiniscript.semantics.lint.look import Around, Look
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
-LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
-LONG_STEP = 1000  # ms: in a WHILE it is looked at again after so long
-_PASSED_OVER = (ir.Read, ir.Assign, ir.Show, ir.Beep)  # they leave the robot where it is
-_GREATER = ("GT", "GE")
-_TAKE_NO_TIME = (ir.Read, ir.Assign, ir.Show, ir.Set)
-_TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
-_POWERS = range(20_000, 100_001)  # and a power
+LONG_MOVE_MS = 500  # ms: a robot goes a hand's breadth in this time
+LONG_STEP_MS = 1000  # ms: in a WHILE it is looked at again after so long
+_STANDING_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Beep)  # they leave the robot where it is
+_GREATER_COMPARATORS = ("GT", "GE")
+_INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set)
+_LIKELY_TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
+_LIKELY_POWERS = range(20_000, 100_001)  # and a power
 
 
 def report_late_conditions(body: ir.Body, around: Around, look: Look) -> None:
@@ -52,7 +52,7 @@ class _LateConditions:
         """
         late = set()
         for k, statement in enumerate(body):
-            if not isinstance(statement, ir.Move) or not self._is_blind(statement, LONG_MOVE):
+            if not isinstance(statement, ir.Move) or not self._is_blind(statement, LONG_MOVE_MS):
                 continue
             after = range(k + 1, len(body))
             place = next((at for at in after if not isinstance(body[at], ir.Read)), k)
@@ -61,7 +61,7 @@ class _LateConditions:
                 continue
             condition = branch.arms[0].condition
             sensor = self._distance_in(condition)
-            comes = comes_true(condition, statement.direction, self._kit)
+            comes = can_come_true(condition, statement.direction, self._kit)
             if sensor is not None and comes:
                 asked = self._look.condition(branch.arms[0].span, "IF")
                 self._report_late_check(statement, sensor, asked)
@@ -70,15 +70,15 @@ class _LateConditions:
 
     def _in_while(self, loop: ir.While) -> None:
         """`WHILE(DISTANCE > 20); F(5, 60); END_WHILE`: it looks every 5 s."""
-        body = [item for item in loop.body if not isinstance(item, _PASSED_OVER)]
+        body = [item for item in loop.body if not isinstance(item, _STANDING_STATEMENTS)]
         condition = loop.condition
-        if len(body) != 1 or len(condition) != 3 or condition[2].op not in _GREATER:
+        if len(body) != 1 or len(condition) != 3 or condition[2].op not in _GREATER_COMPARATORS:
             return
         (move,) = body
         sensor = self._distance_in(condition[:1])
         if sensor is None or condition[1].op != "NUMBER" or not isinstance(move, ir.Move):
             return
-        if move.direction == "F" and self._is_blind(move, LONG_STEP):
+        if move.direction == "F" and self._is_blind(move, LONG_STEP_MS):
             sign = OPPOSITES[SIGN_OF[condition[2].op]]
             device, number = self._kit.readings[sensor], condition[1].value
             if looks_ahead(device) and device.low < number <= device.high:
@@ -114,7 +114,7 @@ class _LateConditions:
             if (
                 isinstance(move, ir.Move)
                 and move.direction in "FB"
-                and self._is_blind(move, LONG_MOVE)
+                and self._is_blind(move, LONG_MOVE_MS)
             ):
                 if move.direction == "B" and asks_if_near(condition, self._kit):
                     if place == "move":
@@ -141,7 +141,7 @@ class _LateConditions:
         """Return the words for an S before or after a move, with a repair where one is sure."""
         found, written = self._source[stop.span], self._source[move.span]
         condition = branch.arms[0].condition
-        comes = comes_true(condition, move.direction, self._kit)
+        comes = can_come_true(condition, move.direction, self._kit)
         if move.direction == "B" and self._distance_in(condition) is not None:
             comes = False  # what is behind the robot is not seen
         asked = self._look.condition(branch.arms[0].span, "IF") if comes else ""
@@ -188,7 +188,7 @@ class _LateConditions:
 
 def _nearest(body: ir.Body, places: range) -> ir.Statement | None:
     """Return the first statement there that may move the robot."""
-    return next((body[at] for at in places if not isinstance(body[at], _PASSED_OVER)), None)
+    return next((body[at] for at in places if not isinstance(body[at], _STANDING_STATEMENTS)), None)
 
 
 def _time(move: ir.Move) -> int | None:
@@ -226,7 +226,7 @@ def report_unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
         if not isinstance(motors, ir.Motors) or _is_still(motors):
             continue
         rest = (body[at] for at in range(k + 1, len(body)))
-        after = next((item for item in rest if not isinstance(item, _TAKE_NO_TIME)), None)
+        after = next((item for item in rest if not isinstance(item, _INSTANT_STATEMENTS)), None)
         if isinstance(after, ir.If) and all(map(_is_instant, (after, *rest))):
             after = None
         if isinstance(after, ir.Motors) and after[:2] == motors[:2]:
@@ -239,7 +239,7 @@ def report_unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
         elif after is not None or not around.is_last:
             continue
         left, right = known_value(motors.left) or 0, known_value(motors.right) or 0
-        if left in _TIMES and right in _POWERS:
+        if left in _LIKELY_TIMES and right in _LIKELY_POWERS:
             values["time"] = as_text(left)
             values["move"] = f"F({as_text(left)}, {as_text(right)})"
         look.report(codes.UNSEEN_MOTORS, motors.span, **values)
@@ -248,7 +248,7 @@ def report_unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
 def _is_instant(statement: ir.Statement) -> bool:
     """Also an IF that is over at once, whatever the answer is."""
     if not isinstance(statement, ir.If):
-        return isinstance(statement, _TAKE_NO_TIME)
+        return isinstance(statement, _INSTANT_STATEMENTS)
     bodies = (statement.otherwise, *(arm.body for arm in statement.arms))
     return all(isinstance(item, ir.Stop) or _is_instant(item) for body in bodies for item in body)
 

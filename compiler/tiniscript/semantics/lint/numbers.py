@@ -27,19 +27,21 @@ LONG_DRIVE = 30 * SECOND  # no classroom is so long: centimetres or degrees were
 LONGEST_DRIVE = 60 * SECOND  # … also where the number is no round one
 LONG_WAIT = 100 * SECOND
 USUAL_SPEED = 30 * SECOND  # cm in a second, of a robot whose kit does not say it
-FAR = 300 * SECOND * 100 * SECOND * SECOND  # 3 m, as a product of speed, power and time
+FAR_DISTANCE = 300 * SECOND * 100 * SECOND * SECOND  # 3 m, as a product of speed, power and time
 VERY_LONG_TIME = 500 * SECOND  # milliseconds were meant, as `delay(1000)` of an Arduino has them
 LONG_BEEP = 100 * SECOND
 LOW_HERTZ = 100_000  # thousandths: a power was meant
 ANGLES = (360 * SECOND, 720 * SECOND)
-_PART = 45 * SECOND  # turns of more than one round have such parts
+TURN_PART = 45 * SECOND  # turns of more than one round have such parts
 _LENGTHS = ("cm", "mm", "m")
-_ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing after its 0
-_ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60)`
+_LEADING_ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing after its 0
+_LEADING_ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60)`
 # `R(90`, with brackets in a calculation, and what is after it: the power, and UNTIL.
-_FIRST = re.compile(r"\w+\s*\((\s*(?:[^(),/]|/(?!/)|\((?:[^()]|\([^()]*\))*\))*?)(\s*[,)].*)", re.S)
-_UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its condition
-_OF_ROUND = 4  # tokens after its word, up to the second value
+_FIRST_VALUE = re.compile(
+    r"\w+\s*\((\s*(?:[^(),/]|/(?!/)|\((?:[^()]|\([^()]*\))*\))*?)(\s*[,)].*)", re.S
+)
+_UNTIL_CLAUSE = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its condition
+_TOKENS_TO_SECOND_VALUE = 4  # tokens after its word, up to the second value
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
@@ -73,7 +75,7 @@ def _check_time(move: Move, look: Look) -> list[Diagnostic]:
     """
     time, power, kit = known_value(move.time), known_value(move.power), look.kit
     text, is_ended = look.source[move.span], move.until is not None
-    zero = None if is_ended else _ZERO.match(text) or _ZERO_OF_TURN.match(text)
+    zero = None if is_ended else _LEADING_ZERO.match(text) or _LEADING_ZERO_OF_TURN.match(text)
     if time is None:
         return _check_power(move) if is_ended else _report_way_as_time(move, kit, text)
     if time <= 0 and not is_ended:
@@ -88,12 +90,14 @@ def _check_time(move: Move, look: Look) -> list[Diagnostic]:
         return [Diagnostic(codes.ZERO_BEFORE, at, values, move.span), *_check_power(move)]
     if _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
-        until = _UNTIL.search(text) if is_ended else None
+        until = _UNTIL_CLAUSE.search(text) if is_ended else None
         fix = f"{move.direction}({percent}, {seconds}){until[0] if until else ''}"
         values = {"time": seconds, "power": percent, "fix": fix}
         return [Diagnostic(codes.SWAPPED, move.span, values)]
     may_last = is_ended and not (move.direction in ("L", "R") and kit.turn)
-    return ([] if may_last else _long(move, time, power, kit, text)) or _check_power(move)
+    return ([] if may_last else _warn_of_long_time(move, time, power, kit, text)) or _check_power(
+        move
+    )
 
 
 def _check_way(move: Move, kit: Kit) -> list[Diagnostic]:
@@ -134,7 +138,11 @@ def _report_way_as_time(move: Move, kit: Kit, text: str) -> list[Diagnostic]:
 def _check_power(move: Move) -> list[Diagnostic]:
     """Return the warning about a power that moves no robot, or that is too much."""
     time, power = known_value(move.time), known_value(move.power)
-    diagnostics = [] if move.power is None else _cut(move.power, POWER, move.span, move.direction)
+    diagnostics = (
+        []
+        if move.power is None
+        else _warn_of_cut_value(move.power, POWER, move.span, move.direction)
+    )
     if (
         power is not None
         and 0 <= power < LITTLE_POWER
@@ -150,7 +158,9 @@ def _check_power(move: Move) -> list[Diagnostic]:
     return diagnostics
 
 
-def _long(move: Move, time: int, power: int | None, kit: Kit, text: str) -> list[Diagnostic]:
+def _warn_of_long_time(
+    move: Move, time: int, power: int | None, kit: Kit, text: str
+) -> list[Diagnostic]:
     """`R(90, 50)`, `F(90, 60)`, `W(1000)`: degrees, centimetres and milliseconds were meant."""
     word = move.direction
     shown = as_text(80_000 if power is None else power)
@@ -160,12 +170,12 @@ def _long(move: Move, time: int, power: int | None, kit: Kit, text: str) -> list
     is_very_long = time >= VERY_LONG_TIME
     usage = f"{word}( , {shown})"
     length = as_text(time)
-    parts = _FIRST.fullmatch(text)
+    parts = _FIRST_VALUE.fullmatch(text)
     first, rest = parts.groups() if parts else ("", f", {shown})")
     way = first and f"{word}({first} {UNIT_OF.get(word, '')}{rest}"  # not after a note
     speed = kit.speed or USUAL_SPEED
-    is_far = is_round and time >= LONG_TIME and speed * (power or 0) * time >= FAR
-    if turns and _is_turn(time, kit, is_long) and not (is_very_long and time % _PART):
+    is_far = is_round and time >= LONG_TIME and speed * (power or 0) * time >= FAR_DISTANCE
+    if turns and _is_turn(time, kit, is_long) and not (is_very_long and time % TURN_PART):
         values = {"degrees": length, "word": word, "turn": usage}
         values |= {"way": way} if kit.turn else {}
     elif drives and (is_long or is_far) and not is_very_long:
@@ -194,7 +204,7 @@ def _is_milliseconds(time: int) -> bool:
 def check_beep(beep: Beep, around: Around, look: Look) -> None:
     """Warn of a sound that lasts longer than anybody can bear."""
     time, hertz = known_value(beep.time), known_value(beep.hertz)
-    look.found += _cut(beep.hertz, HERTZ, beep.span, "BEEP")
+    look.found += _warn_of_cut_value(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:
         look.report(codes.ZERO_TIME_MOVE, beep.span, word="BEEP")
     if time is None or hertz is None or time < LONG_BEEP:
@@ -216,10 +226,10 @@ def check_beep(beep: Beep, around: Around, look: Look) -> None:
 def report_swapped_rounds(look: Look) -> None:
     """`ROUND(1, DISTANCE)`: a whole number is rounded, to as many decimals as something else."""
     tokens = [token for token in look.scan.tokens if token.kind is not NEWLINE]
-    for k, token in enumerate(tokens[:-_OF_ROUND]):
+    for k, token in enumerate(tokens[:-_TOKENS_TO_SECOND_VALUE]):
         if token.text != "ROUND":
             continue
-        number, comma, start = tokens[k + 2 : k + 2 + _OF_ROUND - 1]
+        number, comma, start = tokens[k + 2 : k + 2 + _TOKENS_TO_SECOND_VALUE - 1]
         is_whole = number.kind is NUMBER and float(number.text).is_integer()
         if not is_whole or comma.kind != ",":
             continue
@@ -264,7 +274,9 @@ def _is_swapped(time: int, power: int | None) -> bool:
     return power is not None and LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER
 
 
-def _cut(expression: Expression, argument: Argument, span: Span, word: str) -> list[Diagnostic]:
+def _warn_of_cut_value(
+    expression: Expression, argument: Argument, span: Span, word: str
+) -> list[Diagnostic]:
     """`BEEP(0.2, 440-660)`: the robot takes the lowest or the highest value instead."""
     value = known_value(expression)
     if value is None or argument.low <= value <= argument.high:

@@ -16,8 +16,8 @@ from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.semantics import ir
 from tiniscript.semantics.lint.look import Look
 
-_LASTING = (ir.Move, ir.Beep, ir.Loop, ir.While, ir.Call)
-_SEEN = (ir.Move, ir.Beep, ir.Motors)
+_LASTING_STATEMENTS = (ir.Move, ir.Beep, ir.Loop, ir.While, ir.Call)
+_VISIBLE_STATEMENTS = (ir.Move, ir.Beep, ir.Motors)
 
 
 def report_asked_once(look: Look, remote: AbstractSet[int]) -> None:
@@ -30,10 +30,10 @@ def report_asked_once(look: Look, remote: AbstractSet[int]) -> None:
             if read is not None:
                 look.found.append(_diagnostic(*read, statement, body, is_early, look))
                 return
-            done = ir.with_calls((statement,), program.procedures)
-            if not isinstance(statement, ir.If) and remote & ir.referenced("SENSOR", done):
+            done = ir.walk_with_calls((statement,), program.procedures)
+            if not isinstance(statement, ir.If) and remote & ir.referenced_numbers("SENSOR", done):
                 break  # it has been waited for
-            is_early = is_early and not isinstance(statement, _LASTING)
+            is_early = is_early and not isinstance(statement, _LASTING_STATEMENTS)
 
 
 def _statements_done_once(body: ir.Body) -> Iterator[ir.Statement]:
@@ -73,7 +73,8 @@ def _loop_repair(span: Span, body: ir.Body, look: Look) -> Repair | None:
     """Put a loop around what is read once and all that follows, where the rest takes time."""
     rest = [each for each in body if each.span.end > span.start]
     if not any(
-        isinstance(item, _SEEN) for item in ir.with_calls((*rest,), look.program.procedures)
+        isinstance(item, _VISIBLE_STATEMENTS)
+        for item in ir.walk_with_calls((*rest,), look.program.procedures)
     ):
         return None
     first, end = rest[0], rest[-1].span.end

@@ -17,15 +17,15 @@ from tiniscript.semantics import ir
 from tiniscript.semantics.lint.look import Look
 from tiniscript.semantics.optimizer import known_value
 
-_HEAD = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
-_TAKES_NO_TIME = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call)
+_WHEN_HEADER = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
+_INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call)
 
 
 def report_kept_motors(look: Look) -> None:
     """Warn of each task that waits for a higher TASK, or never drives again."""
     program = look.program
     motors = _Motors(program)
-    all_of = partial(ir.with_calls, procedures=program.procedures)
+    all_of = partial(ir.walk_with_calls, procedures=program.procedures)
     higher = [task.body for task in program.tasks if task.look is not None]
     tasks = [task for task in program.tasks if task.look is None]
     lower = [*(task.body for task in tasks), program.body]
@@ -69,9 +69,9 @@ class _Motors:
             or self._wants_motors_in_loop(rest, True) is True
         )
 
-    def _wants_motors_after(self, body: ir.Body, wants: bool) -> bool | None:
+    def _wants_motors_after(self, body: ir.Body, is_wanted: bool) -> bool | None:
         """Return whether the motors are wanted after a body, None where it may let them go."""
-        result: bool | None = wants
+        result: bool | None = is_wanted
         for call in body:
             if result is None or isinstance(call, ir.Break):
                 return None
@@ -90,12 +90,12 @@ class _Motors:
                 result = self._wants_motors_in_loop(call.body, result)
         return result
 
-    def _wants_motors_in_loop(self, body: ir.Body, wants: bool) -> bool | None:
-        once = self._wants_motors_after(body, wants)
+    def _wants_motors_in_loop(self, body: ir.Body, is_wanted: bool) -> bool | None:
+        once = self._wants_motors_after(body, is_wanted)
         if once is None or self._wants_motors_after(body, once) is None:
             return None
         takes_time = once or any(map(_takes_time, body))  # else a turn of it waits for 1 ms
-        return wants and once if takes_time else None
+        return is_wanted and once if takes_time else None
 
 
 def report_brief_tasks(look: Look) -> None:
@@ -104,15 +104,15 @@ def report_brief_tasks(look: Look) -> None:
     lower = [program.body, *(task.body for task in program.tasks if task.look is None)]
     driving = [
         body[-1] for body in lower
-        if any(map(_is_move, ir.with_calls(_endless_part(body), program.procedures)))
+        if any(map(_is_move, ir.walk_with_calls(_endless_part(body), program.procedures)))
     ]  # fmt: skip
     for task in program.tasks:
-        done = [*ir.with_calls(task.body, program.procedures)]
+        done = [*ir.walk_with_calls(task.body, program.procedures)]
         if task.look is None:
             if task.body and _is_pause(task.body[-1]) and not any(map(_repeats, done)):
                 look.found.append(_single_run_diagnostic(task, look.source))
         elif driving and known_value(task.look.condition) is None:
-            is_brief = all(isinstance(item, _TAKES_NO_TIME) for item in done)
+            is_brief = all(isinstance(item, _INSTANT_STATEMENTS) for item in done)
             if is_brief and any(isinstance(item, ir.Stop) for item in done):
                 _report_resumed_move(task, driving[0], look)
 
@@ -160,7 +160,7 @@ def report_lone_task(look: Look) -> None:
 
 
 def _report_resumed_move(task: ir.Task, driving: ir.Statement, look: Look) -> None:
-    head = re.match(_HEAD, look.source[task.span])
+    head = re.match(_WHEN_HEADER, look.source[task.span])
     values = {"line": str(look.source.position(driving.span.start)[0])}
     if head is not None:
         ended = f"IF{head[1]};BREAK;ENDIF" if isinstance(driving, ir.Loop) else f"UNTIL{head[1]}"

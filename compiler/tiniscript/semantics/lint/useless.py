@@ -11,18 +11,18 @@ from collections.abc import Sequence
 from itertools import pairwise, takewhile
 
 from tiniscript.base.source import Source, Span
-from tiniscript.base.words import BLOCK_ENDS, WORDS, said_of
+from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.lint.look import Around, Look
 from tiniscript.semantics.named_values import use_of
 from tiniscript.semantics.optimizer import known_value
-from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.cursor import INSTRUCTION_ENDS
 from tiniscript.syntax.lexer import NEWLINE, Token
 
-_LASTING = (ir.Move, ir.Beep, ir.Motors)
+_LASTING_STATEMENTS = (ir.Move, ir.Beep, ir.Motors)
 _NOTE_AFTER = r"[ \t;]{0,99}//"
-MANY = 12  # instructions that an example has
+MOST_EXAMPLE_INSTRUCTIONS = 12  # instructions that an example has
 _CALL = (
     r"(?:[FBLR]\(\s*(?:-?[0-9.]+(?:\s*(?:CM|DEG))?|FOREVER)\s*,\s*-?[0-9.]+\s*\)"
     r"|(?:M|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*(?:[0-9.]+|FOREVER)\s*\))"
@@ -32,8 +32,8 @@ _CALL = (
 _CALLS = rf"(?i)/+\s*(?:{_CALL})(?:[;\s]*(?:{_CALL}|STOP|S))*[;\s]*"
 _CALL_IN_IT = rf"(?i)(?:{_CALL})|STOP|S"
 # What may stand between such calls.
-_BESIDE = r"(?i)(?:LOOP|IF|ELSEIF|WHILE|WHEN|SHOW)\s*\([^();]+\)|ELSE|TASK|END_?[A-Z]+"
-LONGEST = 200  # characters of a note that is looked at
+_HEADER_OR_END = r"(?i)(?:LOOP|IF|ELSEIF|WHILE|WHEN|SHOW)\s*\([^();]+\)|ELSE|TASK|END_?[A-Z]+"
+MOST_NOTE_CHARACTERS = 200  # characters of a note that is looked at
 
 
 # -- what is never done ----------------------------------------------------------------------
@@ -62,8 +62,8 @@ def report_instructions_in_notes(look: Look) -> None:
     and after a header or `SI|` a note tells what comes.
     """
     source, tokens = look.source, look.scan.tokens
-    short = [comment for comment in look.scan.comments if len(comment.text) <= LONGEST]
-    if all(token.kind in AT_END for token in tokens):
+    short = [comment for comment in look.scan.comments if len(comment.text) <= MOST_NOTE_CHARACTERS]
+    if all(token.kind in INSTRUCTION_ENDS for token in tokens):
         _report_all_notes(short, look)
         return
     rows = [
@@ -101,7 +101,7 @@ def swallowed_instructions(note: str) -> list[str]:
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
     first, *others = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
-    matches = [it for it in others if re.fullmatch(rf"{_CALL_IN_IT}|{_BESIDE[4:]}", it)]
+    matches = [it for it in others if re.fullmatch(rf"{_CALL_IN_IT}|{_HEADER_OR_END[4:]}", it)]
     is_row = all(item in matches or not set("()") & set(item) for item in (first, *others))
     is_row = is_row and any(re.fullmatch(_CALL, it, re.IGNORECASE) for it in matches)
     return matches if is_row and first else []
@@ -132,7 +132,10 @@ def report_busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> No
         look.program.tasks  # there each turn of a loop takes time
         or not _is_forever(loop)
         or ir.breaks_out(loop.body)
-        or any(isinstance(call, _LASTING) for call in ir.with_calls(loop.body, procedures))
+        or any(
+            isinstance(call, _LASTING_STATEMENTS)
+            for call in ir.walk_with_calls(loop.body, procedures)
+        )
     ):
         return
     word = "LOOP(FOREVER)" if isinstance(loop, ir.Loop) else "WHILE"
@@ -171,7 +174,7 @@ def report_empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
         shown, end = " ".join(source[span].split()), BLOCK_ENDS[word]
         values = {"head": shown, "end": end}
         for name, rows in (("example", after), ("before", before)):
-            if 0 < len(rows) <= MANY:
+            if 0 < len(rows) <= MOST_EXAMPLE_INSTRUCTIONS:
                 values[name] = "; ".join((shown, *rows, end))
         look.report(codes.EMPTY_BLOCK, span, **values)
 
@@ -207,13 +210,13 @@ def _leading_instructions(statements: Sequence[ir.Statement], source: Source) ->
 
 def report_unused_variables(look: Look) -> None:
     program = look.program
-    used = ir.referenced("VARIABLE", look.statements)
+    used = ir.referenced_numbers("VARIABLE", look.statements)
     owners = {k: procedure for procedure in program.procedures for k in procedure.values}
     for statement in look.statements:
         if isinstance(statement, ir.Assign) and statement.variable not in used:
             used.add(statement.variable)  # said once
             name = program.variables[statement.variable]
-            device = name if said_of(name, "device") else ""
+            device = name if lexicon_meaning(name, "device") else ""
             values = {"name": name, "device": device, "example": use_of(name)}
             if statement.variable in owners:
                 values["own"] = owners[statement.variable].name
@@ -222,7 +225,7 @@ def report_unused_variables(look: Look) -> None:
 
 def report_unused_readings(look: Look) -> None:
     """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
-    asked = ir.referenced("SENSOR", look.statements)
+    asked = ir.referenced_numbers("SENSOR", look.statements)
     for statement in look.statements:
         if isinstance(statement, ir.Read) and statement.sensor not in asked:
             asked.add(statement.sensor)  # said once
