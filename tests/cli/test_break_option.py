@@ -96,6 +96,15 @@ def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
     ]
 
 
+def test_an_instruction_that_is_joined_to_the_one_before_halts_there(pty_robot: PtyRobot) -> None:
+    """The compiler takes a reading once: the statement has both."""
+    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    joined = "SI|DISTANCE\nIF(DISTANCE < 10)\nSTOP\nENDIF\nSHOW(2)\n"
+    for line in (1, 2):
+        done = on(pty_robot, "upload", "-e", joined, "--no-save", "--break", str(line)).gives(0)
+        assert done.out.splitlines()[1:2] == ["Halted before line 2: IF(DISTANCE < 10)"]
+
+
 @pytest.mark.parametrize("keys", ["s", "S", " ", "\n"])
 def test_a_key_steps_one_instruction_of_the_text(
     keys: str, pty_robot: PtyRobot, program: Path
