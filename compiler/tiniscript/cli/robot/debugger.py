@@ -14,7 +14,7 @@ from tiniscript.cli.images import Ready
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.terminal.keys import Keys, is_in_front
+from tiniscript.cli.terminal.keys import Keys, is_in_front, letters_of
 from tiniscript.cli.texts import text
 from tiniscript.library.source_map import Map, MapLocation
 from tiniscript.link.connection import Requester
@@ -106,7 +106,7 @@ class Debugger:
     def look(self) -> None:
         """Do what the first key says that was pressed at this halt; while the program runs, none
         does anything."""
-        pressed = self.keys.read_pressed() if self.has_keys else ""
+        pressed = letters_of(self.keys.read_pressed()) if self.has_keys else ""
         key = next((key for key in pressed if key in STEP + GO), "")
         if key and self.is_halted:
             self._resume(RESUME_STEP if key in STEP else RESUME_GO)
