@@ -40,8 +40,9 @@ OWN_MS = 1500  # of a program that are looked at
 MOST_HALTS = 60
 HALT_MS = 60  # from a halt until it is known, at most
 SEEN_MS, LASTING_MS = 0.5, 20  # a setting that nobody overlooks, and one that is surely seen
-OFF_MS = 10  # that all of a setting may be off, and so much more for each halt:
+OFF_MS = 10  # that all of a setting may be off, and so much more for each halt, and
 OFF_HALT_MS = 1.5
+OFF_SHOW_MS = 25  # for each SHOW, which waits until there is room for it on the wire
 STRANGE = ("TIME", "RANDOM")  # clocks and seeds are those of the chip
 Setting = tuple[int, int]
 
@@ -146,7 +147,8 @@ def compare(image: Image, uno: Uno) -> bool:
         theirs, mine = lasted(wanted), lasted(seen)
         for setting in theirs.keys() | mine.keys():
             off_ms = abs(theirs.get(setting, 0) - mine.get(setting, 0))
-            assert off_ms <= OFF_MS + OFF_HALT_MS * seen.halts, setting
+            most_ms = OFF_MS + OFF_HALT_MS * seen.halts + OFF_SHOW_MS * len(seen.shows)
+            assert off_ms <= most_ms, setting
         assert is_within(driven(wanted, LASTING_MS), driven(seen, SEEN_MS))
     return seen.is_over
 
