@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,8 @@ from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 from tiniscript.cli.robot import debugger
-from tiniscript.cli.terminal.keys import Keys
+from tiniscript.cli.robot.debugger import GO, STEP
+from tiniscript.cli.terminal.keys import Keys, letters_of
 from tiniscript.link.messages import RESUME_STEP
 
 PROGRAM = """SI|N = 1
@@ -94,6 +96,15 @@ def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
         "  Line 2: another task, using the motors",
         "  Line 3: another task, waiting for the motors",
     ]
+
+
+def test_an_instruction_that_is_joined_to_the_one_before_halts_there(pty_robot: PtyRobot) -> None:
+    """The compiler takes a reading once: the statement has both."""
+    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    joined = "SI|DISTANCE\nIF(DISTANCE < 10)\nSTOP\nENDIF\nSHOW(2)\n"
+    for line in (1, 2):
+        done = on(pty_robot, "upload", "-e", joined, "--no-save", "--break", str(line)).gives(0)
+        assert done.out.splitlines()[1:2] == ["Halted before line 2: IF(DISTANCE < 10)"]
 
 
 @pytest.mark.parametrize("keys", ["s", "S", " ", "\n"])
@@ -188,6 +199,19 @@ def test_a_robot_that_cannot_halt_gets_nothing(
     monkeypatch.setattr(debugger, "BREAKPOINTS", 0)
     on(pty_robot, "upload", program, "--break", "4").gives(3, "breakpoint")
     assert on(pty_robot, "start").code == 3, "it has no program"
+
+
+# Arrows, also with Ctrl; F1 to F5, on a console, too; Delete; Alt with a letter.
+SEQUENCES = ["\x1b[A", "\x1bOA", "\x1b[1;5C", *(f"\x1bO{last}" for last in "PQRS"), "\x1b[15~",
+             *(f"\x1b[[{last}" for last in "ABCDE"), "\x1b[3~", "\x1bs", "\x1bg"]  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(50))
+def test_no_key_of_several_characters_steps_or_goes_on(seed: int) -> None:
+    """F4 ends with an S. What is typed between such keys counts."""
+    rng = random.Random(seed)
+    pressed = [rng.choice([*SEQUENCES, *(STEP + GO)]) for _ in range(8)]
+    assert letters_of("".join(pressed)) == "".join(key for key in pressed if len(key) == 1)
 
 
 def test_a_key_that_is_pressed_while_the_program_runs_does_nothing(

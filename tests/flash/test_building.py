@@ -102,6 +102,55 @@ def test_sources_robot_and_board_make_the_digest(clone: Path, own: Path) -> None
     assert len(digests) == 3 + 2 * len(sources.files) > 100
 
 
+def test_a_firmware_with_breakpoints_is_another_one_where_it_leaves_something_out(
+    clone: Path,
+) -> None:
+    """For each robot on each board: where it is made, refused, or there anyway."""
+    sources = building.sources()
+    assert sources is not None
+    for name in robots.names():
+        for robot in (robots.load(name), *firmware_build.on_boards(name, "en")):
+            board, has_discs = robot.board.chip, robot.board.discs is not None
+            if board in building.ENVIRONMENT_WITH_BREAKPOINTS and not has_discs:
+                assert sources.digest(robot, True) != sources.digest(robot)
+                assert ready.title_of(robot, True) != ready.title_of(robot)
+                firmware_build.require_breakpoints(robot)
+                continue
+            with pytest.raises(CommandError) as refused:
+                firmware_build.require_breakpoints(robot)
+            there_anyway = board not in building.ENVIRONMENT_WITH_BREAKPOINTS
+            key = "flash_has_breakpoints" if there_anyway else "flash_no_breakpoints"
+            assert refused.value.key == key
+
+
+@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
+def test_a_firmware_with_breakpoints_is_kept_beside_the_other_one(clone: Path) -> None:
+    """What it leaves out is said before, also where it is ready; it is not taken for the other."""
+    needed()
+    variables, why = prepared()
+    need(why)
+    for _ in range(2):
+        done = tsc(clone, "--build", "--breakpoints", "--chip", "uno", **variables)
+        assert done.code == 0, done.err
+        assert "no longer reads typed lines of text" in done.err
+        assert done.out.startswith("tinibot on uno: ready, ")
+        variables = {}  # PlatformIO could build nothing now
+    assert [each.title for each in ready.files(ready.cache())] == ["tinibot_breakpoints"]
+    assert "tinibot on uno: will be built the first time" in tsc(clone, "--list").out
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (("--chip", "mega"), "the firmware for the mega always has breakpoints"),
+    (("--robot", "tinibot32"), "the firmware for the esp32dev always has breakpoints"),
+    (("--robot", "tinibot2", "--chip", "uno"), "discs on its wheels"),
+])  # fmt: skip
+def test_breakpoints_that_leave_nothing_out_or_have_no_room_are_refused(
+    clone: Path, words: tuple[str, ...], said: str
+) -> None:
+    done = tsc(clone, "--build", "--breakpoints", *words)
+    assert (done.code, done.out) == (2, "") and said in done.err
+
+
 def test_the_header_that_somebody_has_made_is_not_the_robot(
     clone: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -22,9 +22,11 @@ from tools.builds.platformio_offline import config_of
 PROJECT = ROOT / "vm_arduino"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
 NEW_NANO = "nano_new"
-SMALLER = tuple(
-    name for name, _ in building.SMALLER_FIRMWARE.values()
-)  # not what a shipped robot gets
+# Not what a shipped robot gets.
+SMALLER = (
+    *(name for name, _ in building.SMALLER_FIRMWARE.values()),
+    *building.ENVIRONMENT_WITH_BREAKPOINTS.values(),
+)
 PLATFORM = "atmelavr"
 
 

@@ -18,7 +18,7 @@ from tests.support.owners import Keys
 from tiniscript.base.kit import NUMBER, Kit
 from tiniscript.bytecode.image import Image
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.messages import KEY_OWNER
+from tiniscript.link.messages import KEY_OWNER, RESUME_STEP
 from tiniscript.link.session import Session
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.text_levels import NO_TEXT, level_of
@@ -29,6 +29,7 @@ HEAP_START_SYMBOL = "_end"  # the symbol after all variables
 RAM_START = 0x800000  # where avr-nm begins to count it
 BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
 CALLS_AT_ONCE = 8  # at once
+STEPS = 40
 # What is typed, and what the robot says: 16 values that wait, brackets, blocks, long answers.
 TYPED = (
     "HELP\n",
@@ -48,17 +49,18 @@ SEEN_BITS = 9.5625  # from the start bit of a byte until the chip has it
 DIVIDES_BY_ZERO = "X = 0; X = 5 / X"
 
 
-def measure(firmware: Path, robot: Robot, board: str) -> Stack:
+def measure(firmware: Path, robot: Robot, board: str, has_breakpoints: bool = False) -> Stack:
     """Run a firmware through everything that goes deep. Raises RuntimeError where it does not.
 
-    `board` is that of the firmware: it may be another one than that of the robot's profile.
+    `board` is that of the firmware: it may be another one than that of the robot's profile. With
+    breakpoints it reads no text.
     """
     baud = robot.board.baud
     with Uno(
         firmware, board=BOARDS[board], baud=baud, tells_sleep=False, watches_stack=True
     ) as uno:
         surround(uno, robot)
-        wear_out(connect(uno, robot, keys=Keys()), robot)
+        wear_out(connect(uno, robot, keys=Keys()), robot, has_breakpoints)
         return uno.stack(heap_start(firmware))
 
 
@@ -90,7 +92,7 @@ def pin(robot: Robot, number: int) -> str:
     return f"D{number}" if number < digital else f"A{number - digital}"
 
 
-def wear_out(wired: Wired, robot: Robot) -> None:
+def wear_out(wired: Wired, robot: Robot, has_breakpoints: bool) -> None:
     uno, session, kit = wired.uno, wired.session, robot.kit
     button = pin(robot, robot.board.start_button)
     require_ok(wired, session.hello())
@@ -115,7 +117,9 @@ def wear_out(wired: Wired, robot: Robot) -> None:
     require_ok(wired, session.upload(longest_program(kit, robot.board.program_bytes), runs=False))
     wired.run(2500)  # it is saved
     claim(wired, button)
-    if level_of(robot.board.chip, robot.board.discs is not None) is NO_TEXT:
+    if has_breakpoints:
+        step_deep(wired)
+    elif level_of(robot.board.chip, robot.board.discs is not None) is NO_TEXT:
         drive_a_way(wired, robot)
     else:
         type_deep(uno, kit)
@@ -136,6 +140,19 @@ def claim(wired: Wired, button: str) -> None:
     require_ok(wired, wired.session.identify())
     require_ok(wired, wired.session.trim())
     require_ok(wired, wired.session.disown(KEY_OWNER))
+
+
+def step_deep(wired: Wired) -> None:
+    """Step through the longest program, which is there; at each halt ask for all that it tells."""
+    session = wired.session
+    require_ok(wired, session.break_at([0]))
+    require_ok(wired, session.start())
+    for _ in range(STEPS):
+        wired.run(60)
+        require_ok(wired, session.read_variables())
+        require_ok(wired, session.read_tasks())
+        require_ok(wired, session.resume(RESUME_STEP))
+    require_ok(wired, session.break_at([]))
 
 
 def type_deep(uno: Uno, kit: Kit) -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from collections.abc import Sequence
+
 from tiniscript.bytecode.disassembly import rows
 
 
@@ -20,3 +23,9 @@ def statement_starts(code: bytes) -> list[int]:
         if row.op.control_role == "join":
             joined = max(joined, after + row.operands[-1])
     return result
+
+
+def statement_of(starts: Sequence[int], offset: int) -> int:
+    """Return where the statement begins that an offset is in. An instruction of the text may begin
+    in the middle of one: the compiler joins it to the one before."""
+    return starts[max(0, bisect_right(starts, offset) - 1)]

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from tiniscript import robots
 from tiniscript.base import files
+from tiniscript.base.languages import SOURCE_LANGUAGE
 from tiniscript.cli import fetching
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.fetching import Part
@@ -42,31 +43,48 @@ def on_boards(name: str | None, language: str, boards: Sequence[str] = AVR_BOARD
     return result
 
 
-def firmware(robot: Robot, options: Namespace, language: str) -> Ready:
+def firmware(
+    robot: Robot, options: Namespace, language: str, has_breakpoints: bool = False
+) -> Ready:
     """Return the firmware of a robot on its board. Raises CommandError where it cannot be built."""
+    if has_breakpoints:
+        robot = robot._replace(
+            board=robot.board._replace(language=SOURCE_LANGUAGE)
+        )  # it answers no text
     sources = building.sources()
-    result = _ready(robot, sources)
+    result = _ready(robot, sources, has_breakpoints)
     if result is not None:
         return result
     if sources is None:
         raise CommandError(2, "flash_no_sources")
     with _show_build(robot, options, language) as look:
-        data = building.build(sources, robot, look)
-        return ready.keep(ready.title_of(robot), robot.board.chip, sources.digest(robot), data)
+        data = building.build(sources, robot, look, has_breakpoints)
+        title = ready.title_of(robot, has_breakpoints)
+        return ready.keep(title, robot.board.chip, sources.digest(robot, has_breakpoints), data)
 
 
-def _ready(robot: Robot, sources: Sources | None) -> Ready | None:
+def require_breakpoints(robot: Robot) -> None:
+    """Raise CommandError where nothing is to be left out for breakpoints, or that is not enough."""
+    if not building.can_have_breakpoints(robot):
+        has_room = robot.board.chip not in building.ENVIRONMENT_WITH_BREAKPOINTS
+        key = "flash_has_breakpoints" if has_room else "flash_no_breakpoints"
+        raise CommandError(2, key, robot=robot.name, board=robot.board.chip)
+
+
+def _ready(robot: Robot, sources: Sources | None, has_breakpoints: bool = False) -> Ready | None:
     """Return the file for a robot.
 
     Without sources the shipped file cannot be out of date; one that answers in another language is
     better than none.
     """
     if sources is not None:
-        return ready.find(ready.title_of(robot), robot.board.chip, sources.digest(robot))
+        digest = sources.digest(robot, has_breakpoints)
+        return ready.find(ready.title_of(robot, has_breakpoints), robot.board.chip, digest)
     if robot.name not in robots.names():
         return None
     files = {(file.title, file.board): file for file in ready.files()}
-    for title in (ready.title_of(robot), robot.name):
+    own = ready.title_of(robot, has_breakpoints)
+    for title in (own,) if has_breakpoints else (own, robot.name):
         if (title, robot.board.chip) in files:
             return files[title, robot.board.chip]
     return None

@@ -42,6 +42,8 @@ SMALLER_FIRMWARE = {
 }
 # For a robot with discs on its wheels, which have the place of the reader of text.
 ENVIRONMENT_WITH_DISCS = {"uno": "uno_tinibot2", "nano": "nano_tinibot2"}
+# Breakpoints are there, too: a Mega and an ESP32 have them always.
+ENVIRONMENT_WITH_BREAKPOINTS = {"uno": "uno_breakpoints", "nano": "nano_breakpoints"}
 PLATFORMIO_MB = 4  # what pip fetches, measured
 # What PlatformIO fetches for a board with these chips: its platform, and the megabytes of compiler,
 # core and build tools, by estimate from what public indexes say of their archives for Linux.
@@ -88,9 +90,12 @@ class Sources(NamedTuple):
 
     files: Mapping[str, bytes]
 
-    def digest(self, robot: Robot) -> str:
-        """Return a digest that is unique to these sources, this robot and its board."""
+    def digest(self, robot: Robot, has_breakpoints: bool = False) -> str:
+        """Return a digest that is unique to these sources, this robot and its board, and whether it
+        is built with breakpoints."""
         key = hashlib.sha256(f"{robot.board.chip}\n{header(robot)}".encode())
+        if has_breakpoints:
+            key.update(b"breakpoints\n")
         for name, data in self.files.items():
             key.update(f"{name}\n{len(data)}\n".encode() + data)
         return key.hexdigest()[:16]
@@ -145,7 +150,9 @@ def _core() -> Path:
 class _Project:
     """A folder with the sources of a firmware and the header of its robot."""
 
-    def __init__(self, made_from: Sources, robot: Robot, folder: Path) -> None:
+    def __init__(
+        self, made_from: Sources, robot: Robot, folder: Path, has_breakpoints: bool = False
+    ) -> None:
         command = platformio()
         if command is None:
             raise CannotBuild(CannotBuild.NO_PLATFORMIO)
@@ -153,6 +160,8 @@ class _Project:
         self.command = [*command, "run", "-d", str(folder), "-e"]
         chip = robot.board.chip
         self.environment = ENVIRONMENT_WITH_DISCS.get(chip, chip) if robot.board.discs else chip
+        if has_breakpoints:
+            self.environment = ENVIRONMENT_WITH_BREAKPOINTS[chip]
         self.files = sum(name.endswith((".cpp", ".S")) for name in made_from.files) + CORE_FILES
         for name, data in {**made_from.files, HEADER_FILE: header(robot).encode()}.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -185,13 +194,22 @@ class _Project:
             raise CannotBuild(why, children.reason(log) or f"exit code {code}", log)
 
 
-def build(made_from: Sources, robot: Robot, look: Callable[[StepProgress], None]) -> bytes:
+def can_have_breakpoints(robot: Robot) -> bool:
+    """Whether a robot's board has room for breakpoints in the place of the reader of text; discs on
+    its wheels have that place already."""
+    return robot.board.chip in ENVIRONMENT_WITH_BREAKPOINTS and not robot.board.discs
+
+
+def build(
+    made_from: Sources, robot: Robot, look: Callable[[StepProgress], None],
+    has_breakpoints: bool = False,
+) -> bytes:  # fmt: skip
     """Return the firmware of a robot for its board, an Intel HEX file. `look` is called often.
 
     Raises CannotBuild, and OSError where there is no room to build.
     """
     with _folder() as folder:
-        project = _Project(made_from, robot, folder)
+        project = _Project(made_from, robot, folder, has_breakpoints)
         try:
             project.build(look, is_hex=True)
         except CannotBuild as why:

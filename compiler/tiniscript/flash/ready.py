@@ -16,6 +16,7 @@ from tiniscript.robots.profile import Robot, language_number
 FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE = "NOTICE.txt"
 MOST_FILES = 30  # files in the cache; the oldest go first
+BREAKPOINTS = "breakpoints"  # in a title
 NAME_CHARACTERS = 24  # of a title, in a file's name
 IMAGE_OFFSETS = {"esp32dev": 0x1000, "esp32c3": 0}  # where an image begins in the flash of each
 MAGIC = b"\xe9"  # its first byte
@@ -42,11 +43,14 @@ def cache() -> Path:
     return cache_folder() / "firmware"
 
 
-def title_of(robot: Robot) -> str:
+def title_of(robot: Robot, has_breakpoints: bool = False) -> str:
     """Return a robot's name, and the language of its answers where that is not English.
 
-    A firmware without answers in a language is the English one.
+    A firmware without answers in a language is the English one; one with breakpoints, which has no
+    answers, has a title of its own.
     """
+    if has_breakpoints:
+        return f"{robot.name}_{BREAKPOINTS}"
     language = robot.board.language
     return f"{robot.name}_{language}" if language_number(language) else robot.name
 

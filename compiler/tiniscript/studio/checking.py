@@ -13,6 +13,7 @@ from typing import NamedTuple
 from tiniscript import robots
 from tiniscript.base.kit import REMOTE, Kit
 from tiniscript.base.source import Edit, Source
+from tiniscript.bytecode.statements import statement_of, statement_starts
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import MOST_OFFERS, edits_of, edits_offered
@@ -50,7 +51,8 @@ class Variable(NamedTuple):
 
 class Checked(NamedTuple):
     """`image` is empty where the program has mistakes. `places` say for each instruction from
-    which offset on which range of the text it comes from, `shows` which of them are SHOWs with a
+    which offset on which range of the text it comes from, `halts` where a real robot halts before
+    each of them, `shows` which of them are SHOWs with a
     name, by offset; `variables` are in the order of their
     numbers; `start` is SI, SB or PING, or nothing where there are mistakes; `robot` is the one that
     it was compiled for, which the text names where `names_robot`; `remote` are the words of a
@@ -60,6 +62,7 @@ class Checked(NamedTuple):
     code_bytes: int
     findings: tuple[Finding, ...]
     places: tuple[source_map.MapLocation, ...]
+    halts: tuple[int, ...] = ()
     shows: tuple[tuple[int, Show], ...] = ()
     variables: tuple[Variable, ...] = ()
     start: str = ""
@@ -76,11 +79,13 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     findings = _findings(compiled, language)
     names_robot = shipped_name_in(data) is not None
     if not compiled.is_right or compiled.program is None:
-        return Checked(b"", 0, findings, (), (), (), "", profile.name, names_robot)
+        return Checked(b"", 0, findings, (), robot=profile.name, names_robot=names_robot)
     variables = tuple(map(Variable, compiled.program.variables, compiled.yes_no))
     places = source_map.map_of_compiled(compiled)
-    return Checked(compiled.image, len(compiled.code), findings, places.places,
-        _show_places(places),
+    starts = statement_starts(compiled.code)
+    halts = tuple(statement_of(starts, place.offset) for place in places.places)
+    return Checked(compiled.image, len(compiled.code), findings, places.places, halts,
+                   _show_places(places),
                    variables, compiled.program.start, profile.name, names_robot,
                    _remote(compiled, profile.kit))  # fmt: skip
 

@@ -14,7 +14,7 @@ from tiniscript.base.languages import languages, text
 from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
 from tiniscript.library import opening
-from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
+from tiniscript.link.messages import MOST_BREAKPOINTS, NAME_BYTES, STOP_BYTES
 from tiniscript.link.remote import REPEAT_MS
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
@@ -50,6 +50,7 @@ def description() -> dict[str, Any]:
             "long_quiet_ms": round(opening.LONG_QUIET_S * 1000),
             "confirm_ms": round(opening.CONFIRM_S * 1000),
             "name_bytes": NAME_BYTES,
+            "most_breakpoints": MOST_BREAKPOINTS,
             "keys_every_ms": REPEAT_MS,
         },
         "class": {

@@ -11,10 +11,11 @@ Knows no port, no browser and no clock.
 from __future__ import annotations
 
 from collections.abc import Callable
+from struct import iter_unpack
 from typing import Any, NamedTuple, TypeVar
 
 from tiniscript import robots
-from tiniscript.base.fixed_point import value_text
+from tiniscript.base.fixed_point import ONE, value_text
 from tiniscript.base.source import printable
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.library.known_kits import shipped_name_of_kit
@@ -31,16 +32,27 @@ from tiniscript.link.connection import (
     stranger,
 )
 from tiniscript.link.messages import (
+    BREAKPOINTS,
     MOST_BALANCE,
+    MOST_BREAKPOINTS,
     MOST_LEAST,
     MOST_PAD,
     NAME_BYTES,
     REMOTE_KEYS,
+    RESUME_GO,
+    RESUME_STEP,
     STATE_RUNNING,
+    TASK_STATES,
 )
 from tiniscript.link.names import cause_name, fault_name, saved_name
 from tiniscript.link.outcomes import Event
-from tiniscript.link.payloads import HelloReply, ReceiptReply, TrimReply
+from tiniscript.link.payloads import (
+    HelloReply,
+    ReadTasksReply,
+    ReadVariablesReply,
+    ReceiptReply,
+    TrimReply,
+)
 from tiniscript.link.remote import Pressed, has_remote
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
@@ -55,6 +67,7 @@ MOST_WAITING = 8  # requests at a time
 TEXT_CHARACTERS = 200
 MOST_EVENTS = 200  # at a time
 MOST_COUNT = 2**31
+MOST_PLACE = 0xFFFF  # an offset in a program's code
 
 
 class BadRequest(Exception):
@@ -202,6 +215,13 @@ class RobotLink:
             }
         if isinstance(values, TrimReply):
             return {"ok": True, "trim": trim_from_reply(values).as_data()}
+        if isinstance(values, ReadVariablesReply):
+            variables = [value / ONE for (value,) in iter_unpack("<i", values.values)]
+            return {"ok": True, "variables": variables}
+        if isinstance(values, ReadTasksReply):
+            tasks = [[TASK_STATES[state][0], at]
+                     for state, at, _ in iter_unpack("<BHI", values.tasks)]  # fmt: skip
+            return {"ok": True, "tasks": tasks}
         robot = self._connection.robot
         if isinstance(values, HelloReply) and robot is not None:
             return {"ok": True, "robot": about(robot)}
@@ -235,6 +255,9 @@ class RobotLink:
             found["cause"] = cause_name(event.cause)
         elif event.name == "PLACE":
             found |= {"at": event.at, "program": f"{event.program:08x}"}
+        elif event.name == "HALTED":
+            found |= {"at": event.at, "task": event.task,
+                      "is_program": self._known_run(event.run) == self._program_run}  # fmt: skip
         elif event.name == "MISSED":
             found["count"] = event.count
         elif event.name == "TEXT":
@@ -259,6 +282,7 @@ def about(robot: DeviceInfo) -> Json:
         "room": robot.room,
         "is_running": robot.values.state == STATE_RUNNING,
         "has_remote": has_remote(robot),
+        "has_breakpoints": bool(robot.values.features & BREAKPOINTS),
     }
 
 
@@ -311,6 +335,27 @@ def _keys(request: Json) -> _Make:
     return lambda session: session.press(*held)
 
 
+def _break(request: Json) -> _Make:
+    places = request.get("places")
+    if (
+        not isinstance(places, list)
+        or len(places) > MOST_BREAKPOINTS
+        or not all(type(place) is int and 0 <= place <= MOST_PLACE for place in places)
+    ):
+        raise BadRequest
+    return lambda session: session.break_at(places)
+
+
+def _resume(request: Json) -> _Make:
+    how = RESUME_STEP if request.get("is_step") is True else RESUME_GO
+    return lambda session: session.resume(how)
+
+
+def _variables(request: Json) -> _Make:
+    first = whole_number(request, "first", 0, 255)
+    return lambda session: session.read_variables(first)
+
+
 _MAKERS: dict[str, Callable[[Json], _Make]] = {
     "hello": lambda request: lambda session: session.hello(),
     "upload": _upload,
@@ -321,6 +366,10 @@ _MAKERS: dict[str, Callable[[Json], _Make]] = {
     "name": _name,
     "trim": _trim,
     "keys": _keys,
+    "break": _break,
+    "resume": _resume,
+    "variables": _variables,
+    "tasks": lambda request: lambda session: session.read_tasks(),
     "claim": lambda request: lambda session: session.claim(0),
     "disown": lambda request: lambda session: session.disown(0),
 }

@@ -40,6 +40,7 @@ def _check(fields: Answer, data: bytes) -> Answer:
             for finding in result.findings
         ],
         "places": result.places,
+        "halts": result.halts,
         "shows": [[offset, *show] for offset, show in result.shows],
         "variables": [variable._asdict() for variable in result.variables],
         "start": result.start,

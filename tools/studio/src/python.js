@@ -32,6 +32,7 @@ import { watched } from './page/progress.js';
  * @property {number} bytes of code
  * @property {Finding[]} findings
  * @property {[number, number, number, number, number][]} places offset, line, column and the end
+ * @property {number[]} halts where a real robot halts before each of these places
  * @property {[number, string, number, number, boolean, boolean][]} shows of the places that are a SHOW with a name: offset, expression, line, column; whether another SHOW has the same expression, and whether on this line
  * @property {{name: string, is_yes_no: boolean}[]} variables
  * @property {string} start SI, SB or PING; empty where there are mistakes

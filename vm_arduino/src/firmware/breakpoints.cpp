@@ -9,10 +9,7 @@ namespace tiniscript {
 namespace {
 
 bool may_be_next(const Statement& statement, uint16_t at) {
-  for (const uint16_t next : statement.next) {
-    if (next == at) return true;
-  }
-  return false;
+  return at == statement.end || at == statement.target;
 }
 
 bool contains(const Statement& statement, uint16_t at) {
@@ -22,9 +19,9 @@ bool contains(const Statement& statement, uint16_t at) {
 }  // namespace
 
 bool Breakpoints::set(const uint8_t* code, uint16_t length, const uint8_t* places, uint8_t count) {
-  Statement statement;
+  FoundStatement found;
   for (uint8_t k = 0; k < count; k++) {
-    if (!find_statement(code, length, get16(places + 2 * k), &statement)) return false;
+    if (!find_statement(code, length, get16(places + 2 * k), &found)) return false;
   }
   for (uint8_t k = 0; k < count; k++) places_[k] = get16(places + 2 * k);
   count_ = count;
@@ -34,10 +31,9 @@ bool Breakpoints::set(const uint8_t* code, uint16_t length, const uint8_t* place
 void Breakpoints::begin(uint8_t* code, uint16_t length) {
   end();
   code_ = code;
-  length_ = length;
-  Statement statement;
+  FoundStatement found;
   for (uint8_t k = 0; k < count_; k++) {
-    if (!find_statement(code, length, places_[k], &statement)) return forget_places();
+    if (!find_statement(code, length, places_[k], &found)) return forget_places();
   }
 }
 
@@ -54,27 +50,39 @@ bool Breakpoints::is_place(uint16_t at) const {
   return false;
 }
 
-void Breakpoints::put(uint16_t place) {
-  if (place >= length_ || place == passed_ || code_[place] == kTrap) return;
-  traps_[in_++] = {place, code_[place]};
-  code_[place] = kTrap;
+// Puts a trap in, or takes it out. Where there is one already, another one keeps what belongs there.
+void Breakpoints::exchange_at(uint16_t place, uint16_t length, uint8_t* byte) {
+  if (!are_in_) {
+    *byte = kTrap;
+    if (place >= length || place == passed_) return;
+    *byte = code_[place];
+    code_[place] = kTrap;
+  } else if (*byte != kTrap) {
+    code_[place] = *byte;
+  }
 }
 
-void Breakpoints::put_in() {
-  for (uint8_t k = 0; k < count_; k++) put(places_[k]);
-  if (is_stepping_) put(step_end_);
-  if (!is_in_some_) return;
-  for (const Statement& statement : in_statement_) {
-    if (statement.begin == kNoPlace) continue;
-    for (const uint16_t next : statement.next) put(next);
+// The same places come in both directions: nothing of them changes while the traps are in.
+void Breakpoints::exchange(uint16_t length) {
+  uint8_t* byte = bytes_;
+  for (uint8_t k = 0; k < count_; k++) exchange_at(places_[k], length, byte++);
+  if (is_stepping_) exchange_at(step_end_, length, byte++);
+  if (is_in_some_) {
+    for (const Statement& statement : in_statement_) {
+      if (statement.begin == kNoPlace) continue;
+      exchange_at(statement.end, length, byte++);
+      exchange_at(statement.target, length, byte++);
+    }
   }
+  are_in_ = !are_in_;
 }
 
 // The task whose turn it is is in the statement before which it halts.
 void Breakpoints::enter(const Machine& machine) {
-  Statement& statement = in_statement_[machine.turn()];
-  find_statement(code_, length_, machine.at(), &statement);
-  if (statement.returns) statement.next[0] = machine.return_place();
+  FoundStatement found;
+  find_statement(code_, machine.length(), machine.at(), &found);
+  if (found.returns) found.statement.target = machine.return_place();
+  in_statement_[machine.turn()] = found.statement;
   is_in_some_ = true;
 }
 
@@ -92,17 +100,14 @@ void Breakpoints::note_left(const Machine& machine) {
     }
     its.begin = kNoPlace;
     if (!is_stepping_ || task != stepper_) continue;
-    Statement next;
-    const bool is_in_check = find_statement(code_, length_, at, &next) && next.is_in_check;
-    step_end_ = is_in_check ? next.end : at;
+    FoundStatement next;
+    const bool is_in_check = find_statement(code_, machine.length(), at, &next) && next.is_in_check;
+    step_end_ = is_in_check ? next.statement.end : at;
   }
 }
 
 bool Breakpoints::take_out(Machine* machine, Status status, bool may_halt) {
-  while (in_ != 0) {
-    const Trap& trap = traps_[--in_];
-    code_[trap.place] = trap.byte;
-  }
+  if (are_in_) exchange(machine->length());
   passed_ = kNoPlace;
   if (status != Status::kHalted) {
     note_left(*machine);

@@ -34,9 +34,9 @@ class Breakpoints {
   bool are_on() const { return count_ != 0 || is_stepping_ || passed_ != kNoPlace || is_in_some_; }
 
   // Whether traps are in the code.
-  bool are_in() const { return in_ != 0; }
+  bool are_in() const { return are_in_; }
 
-  void put_in();
+  void put_in(const Machine& machine) { exchange(machine.length()); }
 
   // Takes them out after the tick. Returns whether the program halts; it does only where it may.
   // Else a machine that has halted goes on.
@@ -51,29 +51,26 @@ class Breakpoints {
  private:
   static constexpr uint8_t kAllTasks = kTasks + 1;
 
-  struct Trap {
-    uint16_t place;
-    uint8_t byte;
-  };
-
-  void put(uint16_t place);
+  void exchange(uint16_t length);
+  void exchange_at(uint16_t place, uint16_t length, uint8_t* byte);
   bool is_place(uint16_t at) const;
   void enter(const Machine& machine);
   void note_left(const Machine& machine);
 
   uint8_t* code_;
-  uint16_t length_;
-  uint8_t count_;
   uint16_t places_[kMostPlaces];
-  bool is_halted_;
-  bool is_stepping_;
+  uint8_t count_;
+  bool is_halted_ : 1;
+  bool is_stepping_ : 1;
+  bool is_in_some_ : 1;  // a task is in a statement
+  bool are_in_ : 1;
   uint8_t stepper_;    // the task that steps
   uint16_t step_end_;  // where that ends, if the task is in no statement
   uint16_t passed_;    // where there is no trap in the next tick
-  bool is_in_some_;    // a task is in a statement
   Statement in_statement_[kAllTasks];  // where each task has halted; its begin may be kNoPlace
-  uint8_t in_;         // how many traps are in
-  Trap traps_[kMostPlaces + kMostNext * kAllTasks + 1];
+  // What belongs where the traps are: of each place, of the step's end, and of both ways on from each
+  // statement. It is kTrap where there is none.
+  uint8_t bytes_[kMostPlaces + 1 + 2 * kAllTasks];
 };
 
 }  // namespace tiniscript

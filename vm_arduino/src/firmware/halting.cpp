@@ -21,9 +21,11 @@ Breakpoints breakpoints;
 Machine* machine;         // of the run
 uint32_t places_program;  // the checksum of the program that has them
 uint32_t held_ms;         // for how long the run has been halted
-uint32_t halted_ms;       // when that was counted last
-bool goes_on;             // from a halt, as soon as a motor may start,
-bool is_step;             // and as a step
+uint16_t halted_ms;       // when that was counted last
+struct {
+  bool goes_on : 1;  // from a halt, as soon as a motor may start,
+  bool is_step : 1;  // and as a step
+} resuming;
 
 uint8_t* code_of(const uint8_t* image) {
   return const_cast<uint8_t*>(image) + image[kHeaderLengthAt];
@@ -35,10 +37,11 @@ uint32_t time_ms() { return now_ms - held_ms; }
 // Whether the machine runs now: time stands for one that is halted.
 bool runs_on() {
   if (!breakpoints.is_halted()) return true;
-  held_ms += now_ms - halted_ms;
-  halted_ms = now_ms;
-  if (!goes_on) return false;
-  goes_on = false;
+  const uint16_t now = static_cast<uint16_t>(now_ms);
+  held_ms += static_cast<uint16_t>(now - halted_ms);
+  halted_ms = now;
+  if (!resuming.goes_on) return false;
+  resuming.goes_on = false;
   return true;
 }
 
@@ -48,7 +51,7 @@ bool runs_on() {
 void begin_halting(Machine* of_run, const uint8_t* image, uint16_t length) {
   machine = of_run;
   held_ms = 0;
-  goes_on = false;
+  resuming.goes_on = false;
   if (breakpoints.has_places()) link.write_checksum();
   if (breakpoints.has_places() && get32(image + kChecksumAt) != places_program) {
     breakpoints.forget_places();
@@ -61,18 +64,18 @@ void end_halting() { breakpoints.end(); }
 bool begin_tick(uint32_t* machine_ms) {
   if (!runs_on()) return false;
   if (breakpoints.is_halted()) {
-    breakpoints.go_on(*machine, is_step);
+    breakpoints.go_on(*machine, resuming.is_step);
     machine->resume();
     machine->set_motors_again();
   }
-  if (breakpoints.are_on()) breakpoints.put_in();
+  if (breakpoints.are_on()) breakpoints.put_in(*machine);
   *machine_ms = time_ms();
   return true;
 }
 
 void end_tick(Status status) {
   if (!breakpoints.are_on() || !breakpoints.take_out(machine, status, link.may_halt())) return;
-  halted_ms = now_ms;
+  halted_ms = static_cast<uint16_t>(now_ms);
   robot_motors(0, 0);
   link.halted();
 }
@@ -98,8 +101,8 @@ bool port_is_halted() { return is_running() && breakpoints.is_halted(); }
 uint8_t port_halted_task() { return machine->turn(); }
 
 void port_resume(ResumeHow how) {
-  goes_on = port_is_halted();
-  is_step = how == ResumeHow::kStep;
+  resuming.goes_on = port_is_halted();
+  resuming.is_step = how == ResumeHow::kStep;
 }
 
 const int32_t* port_variables() { return machine->task().variables; }

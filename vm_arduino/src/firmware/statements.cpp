@@ -39,17 +39,16 @@ uint16_t target_of(const uint8_t* code, uint16_t after, const DecodeForm& form) 
 
 }  // namespace
 
-bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, Statement* found) {
-  *found = {place, length, {length, kNoPlace, kNoPlace}, false, false};
+bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, FoundStatement* found) {
+  *found = {{place, length, kNoPlace}, false, false};
   bool is_inside = false;      // from `place` on
   bool is_check = false;       // of an UNTIL or a WHEN
   uint8_t depth = 0;           // values on the stack
   uint16_t joined = 0;         // where the last AND_THEN or OR_ELSE ends that is open
-  uint8_t count = 1;           // of `next`
   for (uint16_t at = 0; at < length;) {
     const bool is_begin = depth == 0 && at >= joined;
     if (is_inside && is_begin && !is_check) {
-      found->end = found->next[0] = at;
+      found->statement.end = at;
       return true;
     }
     if (at == place) {
@@ -71,7 +70,7 @@ bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, Statem
       is_check = false;
     }
     if (!is_inside) continue;
-    if (jumps(role) && count < kMostNext) found->next[count++] = target_of(code, at, form);
+    if (jumps(role)) found->statement.target = target_of(code, at, form);
     if (role == ControlRole::kReturn) found->returns = true;
   }
   return is_inside;

@@ -11,17 +11,21 @@
 namespace tiniscript {
 
 constexpr uint16_t kNoPlace = 0xffff;
-constexpr uint8_t kMostNext = 3;
 
+// It goes on at its end, or where it jumps to: no statement has two jumps.
 struct Statement {
   uint16_t begin;
-  uint16_t end;  // where the next one begins that is no check, or the code's length
-  uint16_t next[kMostNext];  // where it goes on: at its end, or where it jumps to; or kNoPlace
-  bool returns;      // or after the call that has led here
+  uint16_t end;     // where the next one begins that is no check, or the code's length
+  uint16_t target;  // or kNoPlace
+};
+
+struct FoundStatement {
+  Statement statement;
+  bool returns;      // it goes on after the call that has led here
   bool is_in_check;  // it is part of one
 };
 
 // Finds the statement that begins at a place. False: none begins there.
-bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, Statement* found);
+bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, FoundStatement* found);
 
 }  // namespace tiniscript

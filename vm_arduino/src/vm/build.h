@@ -10,8 +10,8 @@
 // of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, nor has a
 // Nano, whose bootloader leaves 30,720 bytes.
 //
-// An ATmega328P has discs, which measure a way, in the place of the reader of text
-// (`tiniscript_with_discs`).
+// An ATmega328P has discs, which measure a way (`tiniscript_with_discs`), or breakpoints
+// (`tiniscript_with_breakpoints`) in the place of the reader of text.
 
 #pragma once
 
@@ -23,6 +23,8 @@
 #define tiniscript_has_tasks
 #elif defined(tiniscript_with_discs)
 #error "a robot with discs has tasks"
+#elif defined(tiniscript_with_breakpoints)
+#error "a robot with breakpoints has tasks"
 #endif
 
 #if !defined(__AVR_ATmega328P__) || defined(tiniscript_with_discs) || \
@@ -30,7 +32,8 @@
 #define tiniscript_has_discs
 #endif
 
-#if defined(__AVR_ATmega328P__) && defined(tiniscript_with_discs)
+#if defined(__AVR_ATmega328P__) && \
+    (defined(tiniscript_with_discs) || defined(tiniscript_with_breakpoints))
 #define tiniscript_without_text
 #endif
 
@@ -52,9 +55,11 @@
 #define tiniscript_reads_keys
 #endif
 
-// Places where a program halts, so that a computer follows it step by step: an ATmega328P has no room;
-// tiniscript_without_breakpoints is for tests.
-#if !defined(__AVR_ATmega328P__) && !defined(tiniscript_without_breakpoints)
+// Places where a program halts, so that a computer follows it step by step: an ATmega328P has room for
+// them only without the reader of text (`tiniscript_with_breakpoints`); tiniscript_without_breakpoints is
+// for tests.
+#if (!defined(__AVR_ATmega328P__) || defined(tiniscript_with_breakpoints)) && \
+    !defined(tiniscript_without_breakpoints)
 #define tiniscript_has_breakpoints
 #endif
 

@@ -53,6 +53,8 @@ class Machine : public Scheduler {
 
   // For breakpoints: `halt.cpp`, where kHasBreakpoints.
 
+  uint16_t length() const { return length_; }
+
   // After kHalted: goes on with the instruction there, in whose place the kTrap no longer is. An
   // instruction of the text begins there, so the stack is empty.
   void resume();

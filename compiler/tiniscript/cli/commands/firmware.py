@@ -36,16 +36,18 @@ def run(options: Namespace, language: str) -> int:
     if options.chip is None and inputs.robot(options, language).board.chip in ESP32S:
         return _esp32(options, language)
     robot, bootloaders = _selected_robot(options, language)
+    if options.breakpoints:
+        firmware_build.require_breakpoints(robot)
+        say_aside("flash_breakpoints", language)
     if options.build:
-        print(
-            firmware_build.row(robot, firmware_build.firmware(robot, options, language), language)
-        )
+        firmware = firmware_build.firmware(robot, options, language, options.breakpoints)
+        print(firmware_build.row(robot, firmware, language))
         return 0
     command = avrdude.find_avrdude()
     if command is None:
         raise CommandError(2, "flash_no_avrdude", how=INSTALLS.get(sys.platform, INSTALLS["linux"]))
     port = _port(options)
-    firmware = firmware_build.firmware(robot, options, language)
+    firmware = firmware_build.firmware(robot, options, language, options.breakpoints)
     _write(command, bootloaders, port, firmware, language)
     size = f"{firmware.bytes:,}"
     values = {"robot": robot.name, "board": firmware.board, "bytes": size}
@@ -57,6 +59,8 @@ def run(options: Namespace, language: str) -> int:
 def _esp32(options: Namespace, language: str) -> int:
     """Build and write the firmware of a robot with an ESP32, by PlatformIO alone."""
     robot = inputs.robot(options, language).with_language(language)
+    if options.breakpoints:
+        firmware_build.require_breakpoints(robot)
     values = {"robot": robot.name, "board": robot.board.chip}
     if options.build:
         firmware_build.upload(robot, None, options, language)

@@ -8,13 +8,13 @@ from functools import partial
 from struct import iter_unpack
 
 from tiniscript.base.fixed_point import value_of, value_text
-from tiniscript.bytecode.statements import statement_starts
+from tiniscript.bytecode.statements import statement_of, statement_starts
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.images import Ready
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.terminal.keys import Keys, is_in_front
+from tiniscript.cli.terminal.keys import Keys, is_in_front, letters_of
 from tiniscript.cli.texts import text
 from tiniscript.library.source_map import Map, MapLocation
 from tiniscript.link.connection import Requester
@@ -43,7 +43,7 @@ def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, .
     matches = []
     for line in lines:
         places = [
-            _first_statement(place, statements)
+            statement_of(statements, place.offset)
             for place in ready.places.places
             if place.line >= line
         ]
@@ -51,10 +51,6 @@ def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, .
             raise CommandError(1, "break_nowhere", line=str(line))
         matches.append(min(places))
     return tuple(sorted(set(matches)))
-
-
-def _first_statement(place: MapLocation, statements: Sequence[int]) -> int:
-    return next((at for at in statements if at >= place.offset), statements[-1])
 
 
 def require_breakpoints(connection: Connection) -> None:
@@ -91,8 +87,8 @@ class Debugger:
         """Take an event; return whether it is told."""
         if event.name != "HALTED":
             return False
-        place = self.map.at(event.at)
-        is_inside = place is not None and _first_statement(place, self.statements) != event.at
+        place = self._place(event.at)
+        is_inside = place is not None and statement_of(self.statements, place.offset) != event.at
         if self.is_stepping and is_inside:  # of one instruction of the text
             self._resume(RESUME_STEP)
             return True
@@ -102,10 +98,15 @@ class Debugger:
             self._resume(RESUME_GO)
         return True
 
+    def _place(self, at: int) -> MapLocation | None:
+        """Return the last instruction of the text that begins before the next statement does."""
+        following = next((start for start in self.statements if start > at), at + 1)
+        return self.map.at(following - 1)
+
     def look(self) -> None:
         """Do what the first key says that was pressed at this halt; while the program runs, none
         does anything."""
-        pressed = self.keys.read_pressed() if self.has_keys else ""
+        pressed = letters_of(self.keys.read_pressed()) if self.has_keys else ""
         key = next((key for key in pressed if key in STEP + GO), "")
         if key and self.is_halted:
             self._resume(RESUME_STEP if key in STEP else RESUME_GO)

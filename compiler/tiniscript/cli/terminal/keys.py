@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 import os
+import re
 import select
 import sys
 
 INTERRUPT = "\x03"
+# A key of several characters, as F4 and the arrows are: nobody has typed its last one.
+_SEQUENCE = re.compile(r"\x1b(?:\[\[.|\[[0-?]*[ -/]*[@-~]|O.|[^\[O])?", re.DOTALL)
+_SEQUENCE_OF_WINDOWS = re.compile(r"[\0\xe0].", re.DOTALL)
+
+
+def letters_of(pressed: str) -> str:
+    """Return what was typed without the keys of several characters."""
+    pattern = _SEQUENCE_OF_WINDOWS if sys.platform == "win32" else _SEQUENCE
+    return pattern.sub("", pressed)
 
 
 class Keys:

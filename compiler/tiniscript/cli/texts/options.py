@@ -197,6 +197,7 @@ OPTIONS: tuple[Option, ...] = (
     # the firmware
     Option("--port", "firmware", PORT, P),
     Option("--chip", "firmware", CHIP, "CHIP"),
+    Option("--breakpoints", "firmware"),
     Option("--build", "firmware"),
     Option("--list", "firmware"),
     # what a verb does

@@ -48,6 +48,7 @@ export const pageState = {
   breakpoints: new Observable(/** @type {Breakpoint[]} */ ([])),
   /** What runs on the virtual robot, a range for each task; where it is held somebody wants to see it. */
   virtualRun: new Observable({ ranges: /** @type {Range[]} */ ([]), isHeld: false }),
-  robotRun: new Observable(/** @type {Range | null} */ (null)), // on a real one
+  /** What runs on a real one; where it is halted somebody wants to see it. */
+  robotRun: new Observable({ range: /** @type {Range | null} */ (null), isHeld: false }),
   fault: new Observable({ range: /** @type {Range | null} */ (null), said: '' }), // of a run
 };

@@ -5,6 +5,7 @@ import { element } from '../page/elements.js';
 import { faultSaid } from '../page/faults.js';
 import { bytesOf, whenChosen } from '../page/files.js';
 import { chosenDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
+import { Debugging } from './debugging.js';
 import { DirectRobot } from './direct.js';
 import { hasHost, hostPorts, HostRobot, isPupil, isTeacher } from './host.js';
 import { Flashing } from './flashing.js';
@@ -61,12 +62,20 @@ export class RobotPanel {
   #running;
   #speech = new Speech();
   #stopping = new Stopping(this.#speech);
+  #debugging;
   #list = element('link_port', HTMLSelectElement);
   #line = element('link_line', HTMLInputElement);
 
   /** @param {Page} page */
   constructor(page) {
     this.#page = page;
+    this.#debugging = new Debugging({
+      ask: (request, done, isQuiet) => this.#ask(request, done, isQuiet),
+      uploadPaused: () => this.#upload(true, true),
+      say: (key, values) => this.#speech.say(key, values),
+      place: page.place,
+      recorder: page.recorder,
+    });
     for (const [id, act] of /** @type {[string, () => void][]} */ ([
       ['link_look', () => this.#look()],
       ['link_connect', () => this.#choices[this.#list.selectedIndex]?.connect()],
@@ -76,7 +85,7 @@ export class RobotPanel {
       ['link_identify', () => this.#ask({ do: 'identify' }, () => this.#speech.say('say_identify', { name: this.#name }))],
       ['link_upload', () => this.#upload(true)],
       ['link_send', () => this.#upload(false)],
-      ['link_start', () => this.#ask({ do: 'start' }, () => this.#speech.say('say_started'))],
+      ['link_start', () => this.#debugging.startAgain()],
       ['link_rename', () => this.#rename()],
       ['trim_set', () => this.#trim()],
       ['trim_try', () => this.#live('F(2, 60)')],
@@ -135,6 +144,7 @@ export class RobotPanel {
   /** @param {string} [confirmed] a text, once it is */
   #stop(confirmed = '') {
     if (!this.#way) return;
+    this.#debugging.stop();
     this.#way.stop();
     this.#stopping.begin(confirmed);
   }
@@ -214,7 +224,7 @@ export class RobotPanel {
     /** @type {Transport | null} */
     let way = null;
     const heard = {
-      event: (/** @type {RobotEvent} */ event) => (this.#page.recorder.onEvent(event), this.#page.place.onEvent(event), this.#onEvent(event)),
+      event: (/** @type {RobotEvent} */ event) => (this.#page.recorder.onEvent(event), this.#page.place.onEvent(event), this.#onEvent(event), this.#debugging.onEvent(event)),
       over: (/** @type {Failed} */ why) => {
         if (this.#way && this.#way === way) this.#end(why);
       },
@@ -237,6 +247,7 @@ export class RobotPanel {
   /** @param {About} about */
   #begin(about) {
     this.#speech.clear();
+    this.#debugging.meet(about);
     const isOther = about.robot !== null && about.robot !== pageState.robotName.value;
     if (about.robot !== null && isOther) pageState.robotName.set(about.robot);
     if (about.owner === 'other') this.#speech.say('say_owned', { name: this.#name });
@@ -254,6 +265,7 @@ export class RobotPanel {
     this.#running = undefined;
     this.#page.recorder.end('LOST');
     this.#page.place.end();
+    this.#debugging.meet(null);
     const unconfirmed = this.#stopping.end();
     this.#speech.fail(why, unconfirmed);
     this.#show();
@@ -263,26 +275,29 @@ export class RobotPanel {
 
   /**
    * @param {Record<string, unknown>} request
-   * @param {(answer: Answer) => void} done
+   * @param {(answer: Answer) => void} [done]
+   * @param {boolean} [isQuiet] about how it fails
+   * @returns {Promise<Answer | null>} null if it failed
    */
-  async #ask(request, done) {
-    if (!this.#way || !this.#about) return;
-    const isSaid = request['do'] === 'upload' || request['do'] === 'claim'; // what it waits for
+  async #ask(request, done = () => {}, isQuiet = false) {
+    if (!this.#way || !this.#about) return null;
+    const isSaid = isQuiet || request['do'] === 'upload' || request['do'] === 'claim'; // what it waits for
     const word = isSaid ? 0 : setTimeout(() => this.#speech.say('say_waits'), WORD_MS);
     try {
       const answer = await this.#way.ask(request);
       clearTimeout(word);
       if (answer.ok) done(answer);
-      else this.#speech.fail(new Failed(answer.failure ?? 'bug', refusal(answer)));
+      else if (!isQuiet) this.#speech.fail(new Failed(answer.failure ?? 'bug', refusal(answer)));
+      return answer.ok ? answer : null;
     } catch {
-      // it is over, and that was said
+      return null; // it is over, and that was said
     } finally {
       clearTimeout(word);
     }
   }
 
-  /** @param {boolean} runs */
-  #upload(runs) {
+  /** @param {boolean} runs @param {boolean} isPaused before its first instruction */
+  #upload(runs, isPaused = false) {
     const program = pageState.checked.value;
     if (!program?.image) {
       this.#page.python.again(currentLanguage());
@@ -293,12 +308,14 @@ export class RobotPanel {
     this.#speech.begin('say_sending');
     this.#know(program);
     this.#page.recorder.sends(program);
-    this.#ask({ do: 'upload', image: program.image, robot: pageState.robotName.value, runs }, (answer) => {
+    const start = this.#debugging.sends(program, isPaused);
+    this.#ask({ do: 'upload', image: program.image, robot: pageState.robotName.value, runs: runs && !start }, (answer) => {
       const { program: sum = '', saved = 'MEMORY' } = answer;
       this.#sent = { program: sum, places: program.places, of: program };
       this.#offer();
       if (runs && program.start === 'SB') this.#page.recorder.wait(sum);
       this.#speech.say('say_receipt', { program: sum, bytes: program.bytes }, `saved_${saved}`);
+      start?.(runs && program.start === 'SI');
     });
   }
 

@@ -18,6 +18,8 @@ export class Recorder {
   #run = null;
   /** When what is recorded began; null until the first event of a run by the robot's button. @type {number | null} */
   #began = null;
+  /** Since when the program is halted. @type {number | null} */
+  #halted = null;
   #isOver = true;
   #play = element('record_play', HTMLButtonElement);
 
@@ -38,8 +40,20 @@ export class Recorder {
     this.#record(program, null);
   }
 
+  /** The program is halted: its time stands still. */
+  halt() {
+    this.#halted ??= performance.now();
+  }
+
+  /** It goes on. */
+  goOn() {
+    if (this.#began !== null && this.#halted !== null) this.#began += performance.now() - this.#halted;
+    this.#halted = null;
+  }
+
   /** The recording is over, if there is one. @param {string} event the last one */
   end(event) {
+    this.goOn();
     if (this.#isOver) return;
     const ms = Math.min(this.#ms, MOST_MS);
     this.#run?.put([ms, event]);

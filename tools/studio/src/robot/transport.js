@@ -9,6 +9,7 @@
  * @property {number} room
  * @property {boolean} is_running
  * @property {boolean} has_remote its programs can read a remote control
+ * @property {boolean} has_breakpoints its programs can halt
  */
 
 /**
@@ -21,6 +22,8 @@
  * @property {string} [saved]
  * @property {Trim} [trim]
  * @property {About} [robot]
+ * @property {number[]} [variables] from the first one on that was asked for
+ * @property {[string, number][]} [tasks] state and place of each, the main one last
  */
 
 /**
@@ -43,6 +46,7 @@
  * @property {number} [at]
  * @property {string} [program]
  * @property {boolean} [is_program] one that this page has started, and no line
+ * @property {number} [task] that is halted, by its number among the tasks
  * @property {string} [cause]
  * @property {number} [count]
  * @property {string} [text]

@@ -4,10 +4,9 @@ import { Arena } from './arena.js';
 import { element, hide, say } from '../page/elements.js';
 import { faultSaid } from '../page/faults.js';
 import { download } from '../page/files.js';
-import { offsetsOf, rangeAt } from '../writing/parts.js';
+import { rangeAt, Stops } from '../writing/parts.js';
 import { nameOfShow, showAt } from '../writing/shows.js';
 import { dialPicture, offer, pictured } from '../page/pictures.js';
-import { made } from '../page/made.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
@@ -20,6 +19,7 @@ import { isSecond } from '../page/twice.js';
 import { devicesOf, nameOf, onBlock } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
 import { WorldChoice } from '../world/choice.js';
+import { showRows, written } from '../page/rows.js';
 import { starsShown, Where } from './where.js';
 import { WorldDrawing } from '../world/drawing.js';
 
@@ -37,7 +37,6 @@ import { WorldDrawing } from '../world/drawing.js';
 
 const SHOWN = 200; // lines of the trace
 const READ_MS = 100; // nobody reads what changes more often; where the program is and what is measured take turns
-const SHORT = 12; // characters of a name whose value stands beside another one
 const SPEEDS = [0.1, 0.5, 1, 4, 20]; // times as quick as the robot
 const PLAYED_MS = 6000; // at most for a run of a lesson, or a recorded one
 const NEAR_MS = 60; // of a moment: nothing else of it is kept
@@ -75,8 +74,7 @@ export class SimulatorPanel {
   #isReadingNext = false; // what is measured, not where the program is
   /** @type {Checked['places']} */
   #places = [];
-  /** Offsets at which the program that runs stops, for each breakpoint. @type {Map<object, number[]>} */
-  #stops = new Map();
+  #stops = new Stops();
   /** @type {Checked['variables']} */
   #variables = [];
   #run = element('run', HTMLButtonElement);
@@ -381,20 +379,13 @@ export class SimulatorPanel {
 
   /** The program is to stop elsewhere. */
   #breakpointsChanged() {
-    const before = this.#offsets.join();
+    const before = this.#stops.offsets.join();
     this.#findStops();
-    if (this.#offsets.join() !== before) this.#simulator.setBreakpoints(this.#offsets);
+    if (this.#stops.offsets.join() !== before) this.#simulator.setBreakpoints(this.#stops.offsets);
   }
 
-  /** After a change of the text those remain whose breakpoints are still there. */
   #findStops() {
-    this.#stops = new Map(pageState.breakpoints.value.map((each) => [
-      each.point, this.#places.length ? offsetsOf(this.#places, [each]) : this.#stops.get(each.point) ?? [],
-    ]));
-  }
-
-  get #offsets() {
-    return [...new Set([...this.#stops.values()].flat())];
+    this.#stops.find(pageState.breakpoints.value, this.#places);
   }
 
   /**
@@ -436,7 +427,7 @@ export class SimulatorPanel {
     const run = this.#newest = this.#runOf(program, world, played);
     run.isJudged = judged !== null;
     this.#timeLine.begin(run);
-    const stops = judged || played ? [] : this.#offsets;
+    const stops = judged || played ? [] : this.#stops.offsets;
     await this.#simulator.begin(program, pageState.robotName.value, world, stops, isPaused, least, played !== null);
   }
 
@@ -644,18 +635,7 @@ export class SimulatorPanel {
       ...this.#variablesSeen.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
       ...(this.#timeLine.seen ? this.#seenShows : this.#shown),
     ];
-    const place = element('values', HTMLElement);
-    while (place.children.length > rows.length) place.lastElementChild?.remove();
-    rows.forEach(([name = '', value = '', part = ''], k) => {
-      const row = /** @type {HTMLElement} */ (place.children[k] ?? place.appendChild(made('div', '', made('dt'), made('dd'))));
-      row.classList.toggle('wide', name.length > SHORT || part !== '');
-      if (part) row.style.setProperty('--part', part);
-      else row.removeAttribute('style');
-      [name, value].forEach((said, at) => {
-        const cell = row.children[at];
-        if (cell) say(cell, said);
-      });
-    });
+    showRows(element('values', HTMLElement), rows);
   }
 }
 
@@ -686,16 +666,6 @@ function partOf({ arguments: [range] }, value) {
 function measured({ unit, arguments: [range] }, value) {
   if (hasText(`block/${value}`)) return onBlock(value); // TRUE or FALSE
   return unit || !range ? `${value} ${unit}` : text('of', { value, most: range.high });
-}
-
-/**
- * A variable as SHOW says it.
- * @param {number | undefined} value
- * @param {boolean} isYesNo
- */
-function written(value, isYesNo) {
-  if (value === undefined) return '–';
-  return isYesNo ? (value ? 'TRUE' : 'FALSE') : String(value);
 }
 
 /** @param {string | undefined} said a value as SHOW says it, or nothing */

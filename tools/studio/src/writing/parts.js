@@ -47,3 +47,24 @@ export function offsetsOf(places, breakpoints) {
   }
   return places.filter(([, line, column]) => wanted.has(`${line}:${column}`)).map(([offset]) => offset);
 }
+
+/** Where a program that runs stops, for each breakpoint of the page. */
+export class Stops {
+  /** @type {Map<object, number[]>} */
+  #of = new Map();
+
+  /**
+   * After a change of the text those remain whose breakpoints are still there.
+   * @param {(Place & {point: object})[]} breakpoints
+   * @param {Places} places of the text; none: it is another one than what runs
+   */
+  find(breakpoints, places) {
+    this.#of = new Map(breakpoints.map((each) => [
+      each.point, places.length ? offsetsOf(places, [each]) : this.#of.get(each.point) ?? [],
+    ]));
+  }
+
+  get offsets() {
+    return [...new Set([...this.#of.values()].flat())];
+  }
+}

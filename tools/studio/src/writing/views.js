@@ -148,12 +148,13 @@ export class Views {
     if (!this.#isStale()) this.#blocks?.showBreakpoints(pageState.breakpoints.value);
   }
 
-  /** Where both robots run, the real one is seen, but where the virtual one is held. */
+  /** Where both robots run, the real one is seen, but where the virtual one alone is held. */
   #mark() {
     const { ranges, isHeld } = pageState.virtualRun.value;
     const there = pageState.robotRun.value;
-    this.#running = isHeld || !there ? ranges : [there];
-    this.#page.editor.showRunning(this.#running, isHeld);
+    const isThere = there.range && (there.isHeld || !isHeld);
+    this.#running = isThere && there.range ? [there.range] : ranges;
+    this.#page.editor.showRunning(this.#running, isThere ? there.isHeld : isHeld);
     if (!this.#isStale()) this.#blocks?.showRunning(this.#running);
   }
 

@@ -1,0 +1,220 @@
+"""Programs that are stepped through on a simulated chip do what `tsc run` says, but for the halts.
+
+`python -m tests.firmware.test_breakpoints_chip 1000` runs many on a simulated Uno; another number
+says with which seed it begins, and `mega` on which board.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from itertools import groupby
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.firmware.test_uno_robot import KIT, MOTORS, computer, switched_on
+from tests.firmware.test_uno_trace import power
+from tests.machines import MACHINES, Senses
+from tests.oracle import programs
+from tests.oracle.words import PAPER_KIT
+from tests.support.images import image_of
+from tiniscript import robots
+from tiniscript.base.fixed_point import value_text
+from tiniscript.bytecode.image import Image, pack
+from tiniscript.bytecode.statements import statement_starts
+from tiniscript.flash.building import ENVIRONMENT_WITH_BREAKPOINTS
+from tiniscript.link.messages import BREAKPOINTS, OWNERS, RESUME_STEP, TEXT_LEVEL
+from tiniscript.link.payloads import HaltedEvent
+from tiniscript.link.requests import OK
+from tools.bench import firmware_size, firmware_stack
+from tools.uno import CYCLES_PER_MS, Uno, missing
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing())
+
+BOARDS = {"uno": "uno_breakpoints", "mega": "mega"}  # with the environment of its firmware
+OWN_MS = 1500  # of a program that are looked at
+MOST_HALTS = 60
+HALT_MS = 60  # from a halt until it is known, at most
+SEEN_MS, LASTING_MS = 0.5, 20  # a setting that nobody overlooks, and one that is surely seen
+OFF_MS = 10  # that all of a setting may be off, and so much more for each halt, and
+OFF_HALT_MS = 1.5
+OFF_SHOW_MS = 25  # for each SHOW, which waits until there is room for it on the wire
+STRANGE = ("TIME", "RANDOM")  # clocks and seeds are those of the chip
+Setting = tuple[int, int]
+
+
+class Seen(NamedTuple):
+    shows: list[str]
+    settings: list[tuple[float, Setting]]  # how long each lasts, but for those of halts
+    is_over: bool
+    end_ms: float = 0
+    halts: int = 0
+
+
+def written(rng: random.Random) -> Image | None:
+    """Return a random program that reads nothing that is not the same on the chip."""
+    text = programs.program(rng, PAPER_KIT._replace(sensors=()))
+    if any(word in text.upper() for word in STRANGE):
+        return None
+    image = image_of(text, KIT)
+    return image if image.start == "SI" and statement_starts(image.code) else None
+
+
+def expected(image: Image) -> Seen:
+    """Return what `tsc run` says."""
+    data = pack(image.start, image.devices, image.code, needs=image.needs)
+    trace = MACHINES["python"](data, KIT, Senses(max_ms=OWN_MS + HALT_MS * (MOST_HALTS + 2)))
+    rows = [line.split(maxsplit=2) for line in trace.splitlines()]
+    end_ms = float(rows[-1][0])
+    times = [(float(row[0]), row[2]) for row in rows if row[1] == "MOTORS"]
+    ends = [at for at, _ in times[1:]] + [end_ms]
+    settings = [
+        (end - at, (int(powers.split()[0]), int(powers.split()[1])))
+        for (at, powers), end in zip(times, ends, strict=False)
+    ]
+    shows = [row[2] for row in rows if row[1] == "SHOW"]
+    return Seen(shows, settings, rows[-1][1] in ("DONE", "FAULT"), end_ms)
+
+
+def stepped(image: Image, uno: Uno) -> Seen:
+    """Step through a program on a chip; return the same."""
+    wired = computer(uno)
+    session = wired.session
+    assert wired.until(session.upload(image, runs=False, saves=False)) == OK
+    starts = statement_starts(image.code)
+    assert wired.until(session.break_at(starts[:1])) == OK
+    assert wired.until(session.start()) == OK
+    since, shows, halts = uno.cycle, list[str](), 0
+    own_ms, is_over = 0, False
+    while own_ms < OWN_MS + HALT_MS * (halts + 2) and halts < MOST_HALTS and not is_over:
+        wired.run(1)
+        own_ms += 1
+        for event in session.events():
+            if event.name == "SHOW":
+                shows.append(value_text(event.value, bool(event.is_yes_no)))
+            elif isinstance(event, HaltedEvent):
+                assert event.at in starts
+                halts += 1
+                wired.done(session.resume(RESUME_STEP))
+            is_over = is_over or event.name in ("DONE", "FAULT")
+    assert halts, "it halts before its first statement"
+    changes = [change.cycle for name in MOTORS for change in uno.pins.history(name)]
+    cycles = sorted({cycle for cycle in changes if cycle > since})
+    ends = [*cycles[1:], uno.cycle]
+    settings = [
+        ((end - at) / CYCLES_PER_MS, (power(uno, "left", at), power(uno, "right", at)))
+        for at, end in zip(cycles, ends, strict=False)
+    ]
+    session.stop(wired.now_ms)
+    wired.run(200)
+    return Seen(shows, settings, is_over, own_ms, halts)
+
+
+def driven(seen: Seen, least_ms: float) -> list[Setting]:
+    """Return the settings that last, each once in a row, without those that stand."""
+    lasting = [setting for ms, setting in seen.settings if ms >= least_ms and setting != (0, 0)]
+    return [setting for setting, _ in groupby(lasting)]
+
+
+def lasted(seen: Seen) -> dict[Setting, float]:
+    """Return for how long each setting was there in all."""
+    result: dict[Setting, float] = {}
+    for ms, setting in seen.settings:
+        if setting != (0, 0) and ms >= SEEN_MS:
+            result[setting] = result.get(setting, 0) + ms
+    return result
+
+
+def is_within(some: list[Setting], more: list[Setting]) -> bool:
+    """Whether `some` come in `more`, in their order."""
+    rest = iter(more)
+    return all(setting in rest for setting in some)
+
+
+def compare(image: Image, uno: Uno) -> bool:
+    """Compare a program; return whether it has come to its end."""
+    wanted, seen = expected(image), stepped(image, uno)
+    shown = min(len(wanted.shows), len(seen.shows))
+    assert seen.shows[:shown] == wanted.shows[:shown]
+    assert is_within(driven(seen, SEEN_MS), driven(wanted, 0))
+    assert seen.is_over or wanted.end_ms > OWN_MS or seen.halts == MOST_HALTS
+    if seen.is_over:
+        assert seen.shows == wanted.shows and wanted.is_over
+        theirs, mine = lasted(wanted), lasted(seen)
+        for setting in theirs.keys() | mine.keys():
+            off_ms = abs(theirs.get(setting, 0) - mine.get(setting, 0))
+            most_ms = OFF_MS + OFF_HALT_MS * seen.halts + OFF_SHOW_MS * len(seen.shows)
+            assert off_ms <= most_ms, setting
+        assert is_within(driven(wanted, LASTING_MS), driven(seen, SEEN_MS))
+    return seen.is_over
+
+
+def images(first: int) -> Iterator[tuple[int, Image]]:
+    seed = first
+    while True:
+        image = written(random.Random(seed))
+        if image is not None:
+            yield seed, image
+        seed += 1
+
+
+@pytest.fixture(scope="module", params=[*BOARDS])
+def chip(
+    request: pytest.FixtureRequest, sketches: Callable[[str], Path],
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[Uno]:  # fmt: skip
+    board: str = request.param
+    memory = tmp_path_factory.mktemp("eeprom") / board
+    with switched_on(sketches(BOARDS[board]), memory, board) as uno:
+        yield uno
+
+
+@pytest.mark.parametrize("first", [0, 100, 200])
+def test_a_program_that_is_stepped_gives_its_trace(chip: Uno, first: int) -> None:
+    programs_of = images(first)
+    for _ in range(2):
+        seed, image = next(programs_of)
+        print(f"seed {seed}")  # what fails says which
+        compare(image, chip)
+
+
+def test_a_robot_that_halts_says_so_and_reads_no_text_on_an_uno(chip: Uno) -> None:
+    wired = computer(chip)
+    assert wired.until(wired.session.hello()) == OK
+    assert wired.session.robot is not None
+    features = wired.session.robot.values.features
+    assert features & (BREAKPOINTS | OWNERS) == BREAKPOINTS | OWNERS
+    assert bool(features & TEXT_LEVEL) is (chip.board == "mega")
+
+
+@pytest.mark.parametrize(("board", "environment"), [*ENVIRONMENT_WITH_BREAKPOINTS.items()])
+def test_what_halts_leaves_the_stack_its_room(
+    board: str, environment: str, sketches: Callable[[str], Path]
+) -> None:
+    stack = firmware_stack.measure(sketches(environment), robots.load("tinibot"), board, True)
+    assert stack.least_free >= firmware_stack.LEAST_FREE
+
+
+if __name__ == "__main__":
+    total = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    begin = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+    which = sys.argv[3] if len(sys.argv) > 3 else "uno"
+    elf = firmware_size.measure(BOARDS[which]).firmware
+    ran = over = 0
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        switched_on(elf, Path(folder) / "eeprom", which) as robot,
+    ):
+        for number, program in images(begin):
+            try:
+                over += compare(program, robot)
+            except AssertionError as wrong:
+                raise SystemExit(f"seed {number}: {wrong}") from None
+            ran += 1
+            if ran == total:
+                break
+    print(f"{ran} programs, {over} to their end, stepped on a simulated {which}: as tsc run says")

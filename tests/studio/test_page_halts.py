@@ -1,0 +1,295 @@
+"""Breakpoints, steps and values of a real robot in the page: as on the virtual one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio import test_page_debugging as debugging
+from tests.studio.test_page_link import (
+    connect,
+    first,
+    first_robot,
+    page,
+    robot,
+    said,
+)
+from tests.studio.test_page_robot import running
+from tests.support.pty_robot import PtyRobot
+from tests.support.studio import UPLOADS, checked, hears, write
+from tiniscript.studio import robot_link
+from tiniscript.studio.checking import check
+from tiniscript.studio.simulation import Marks, Simulation
+from tiniscript.virtual import worlds
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page, Route
+
+__all__ = ["first", "first_robot", "page", "robot"]  # fixtures
+MERGED = "LOOP(2);\nDISTANCE;\nIF(DISTANCE < 10);\nSTOP;\nENDIF;\nW(0.05);\nEND_LOOP"
+# A program, and the lines of its breakpoints.
+PROGRAMS = {
+    "loop": (debugging.COUNT, (5,)),
+    "first and last": ("N = 2;\nFAR = 3 > N;\nF(0.05, 60);\nSHOW(FAR);\nN = N / 4", (1, 5)),
+    "DEF": ("DEF TWICE(A);\nSHOW(A + A);\nEND_DEF;\nX = 4;\nTWICE(X);\nTWICE(X / 8)", (2, 5)),
+    "UNTIL": ("K = 0;\nLOOP(3);\nK = K + 1;\nF(0.2, 80) UNTIL(K > 2);\nEND_LOOP;\nSHOW(K)", (4, 6)),
+    "joined": (MERGED, (3, 6)),
+    "many": ("".join(f"V{k} = {k} / 8;\n" for k in range(30)) + "SHOW(V3);\nW(0.05)", (32,)),
+}
+
+
+@pytest.fixture(autouse=True)
+def at_rest(page: Page, robot: PtyRobot) -> Iterator[None]:
+    robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    page.click("#view_text")
+    yield
+    page.click("#stop")
+    write(page, "W(0)")
+
+
+def put(page: Page, text: str, lines: tuple[int, ...]) -> None:
+    write(page, text)
+    for line in lines:
+        debugging.press_margin(page, line)
+
+
+def is_halted(page: Page) -> bool:
+    """Wait for the next halt, and what is told of it; return False where the program has ended."""
+    halt = page.locator("html[data-halt=read]")
+    halt.or_(page.locator("html[data-halt=none]")).wait_for(state="attached")
+    return halt.count() == 1
+
+
+def seen(page: Page, variables: int) -> tuple[str, list[str]]:
+    """Return what is marked, and the values of the variables."""
+    values = page.locator("#link_values:not(.past) dd").all_inner_texts()
+    return running(page), values[:variables]
+
+
+def walk(page: Page, begin: str, button: str, text: str) -> list[tuple[str, list[str]]]:
+    """Go from halt to halt, to the end; return what is seen at each. Again, where a busy computer
+    kept the page silent until its robot was stopped."""
+    variables = len(check(text.encode(), "tinibot", "en").variables)
+    for _ in range(UPLOADS):
+        found = []
+        page.click(begin)
+        page.locator("html[data-halt=read]").wait_for(state="attached")
+        while is_halted(page):
+            found.append(seen(page, variables))
+            page.click(button)
+        said(page, re.compile(r"Done\.|[Ss]topped"))
+        if "Done." in page.locator("#link_said").inner_text():
+            return found
+    raise AssertionError(f"stopped {UPLOADS} times")
+
+
+def virtual(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, list[str]]]:
+    """Return the same of the virtual robot."""
+    program = check(text.encode(), "tinibot", "en")
+    rows = text.split("\n")
+    first = [next(place for place in program.places if place.line == line) for line in lines]
+    wanted = {place[1:3] for place in first}
+    breaks = tuple(place.offset for place in program.places if place[1:3] in wanted)
+    parts = tuple(place.offset for place in program.places)
+    marks = Marks(parts, breaks, len(program.variables), is_held=steps)
+    it = Simulation("tinibot", worlds.load("obstacles"), program.image, marks)
+    found = []
+    while it.robot.is_running:
+        if it.held_at is None:
+            it.go(1)
+            continue
+        state = it.state()
+        place = max(place for place in program.places if place.offset <= state["at"])
+        is_block = place.end_line > place.line
+        line = rows[place.line - 1]
+        part = line[place.column - 1 : None if is_block else place.end_column - 1]
+        values = [
+            ("TRUE" if value else "FALSE") if variable.is_yes_no else f"{value:g}"
+            for variable, value in zip(program.variables, state["variables"], strict=True)
+        ]
+        found.append((part, values))
+        if steps:
+            it.step(60_000)
+        else:
+            it.go_on()
+            it.go(1)
+    return found
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_it_halts_where_the_virtual_robot_does_and_has_its_values(page: Page, name: str) -> None:
+    text, lines = PROGRAMS[name]
+    put(page, text, lines)
+    wanted = virtual(text, lines, steps=False)
+    assert walk(page, "#link_upload", "#link_go_on", text) == wanted
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_step_goes_to_the_next_part_of_the_program(page: Page, name: str) -> None:
+    """From the first one on. Two parts that the compiler has joined are one step."""
+    text, _ = PROGRAMS[name]
+    put(page, text, ())
+    wanted = [row for row in virtual(text, (), steps=True) if row[0] != "DISTANCE"]
+    assert walk(page, "#link_step", "#link_step", text) == wanted
+
+
+def halts(page: Page, line: int) -> None:
+    said(page, f"Stopped before line {line}.")
+    page.locator("html[data-halt=read]").wait_for(state="attached")
+
+
+def test_it_tells_where_the_other_tasks_are(page: Page) -> None:
+    tasks = "TASK;\nW(0.5);\nEND_TASK;\nTASK;\nF(0.5, 50);\nEND_TASK;\n"
+    put(page, tasks + "TASK;\nW(0.05);\nB(1, 60);\nEND_TASK;\nW(0.1);\nN = 3;\nS", (13,))
+    page.click("#link_upload")
+    halts(page, 13)
+    assert page.locator("#link_values div").all_inner_texts() == [
+        "N\n3",
+        "task in line 2\nwaiting",
+        "task in line 5\nusing the motors",
+        "task in line 9\nwaiting for the motors",
+    ]
+
+
+LOOP = "SHOW(1);\nLOOP(FOREVER);\nF(0.05, 80);\nSHOW(2);\nEND_LOOP"
+
+
+def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: PtyRobot) -> None:
+    """And stays while its text changes; a program that waits, or runs again, has it, too."""
+    put(page, LOOP, ())
+    page.click("#link_upload")
+    robot.until(lambda: robot.moves, "it drives")
+    debugging.press_margin(page, 4)
+    halts(page, 4)
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+Home")
+    page.keyboard.insert_text("W(0);\n")
+    checked(page)
+    page.click("#link_go_on")
+    halts(page, 4)  # of the text that it has
+    debugging.press_margin(page, 5)
+    page.click("#link_go_on")
+    robot.until(lambda: robot.moves, "it drives")
+    page.wait_for_timeout(500)
+    assert page.locator("html[data-halt=running]").count()
+    page.click("#stop")
+    said(page, "Stopped: ")
+    debugging.press_margin(page, 5)
+    page.click("#link_send")
+    said(page, "The robot has it")
+    page.click("#link_start")
+    halts(page, 5)
+
+
+def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
+    put(page, "W(0.1);\nSHOW(1);\nSHOW(2)", (3,))
+    page.click("#link_upload")
+    halts(page, 3)
+    page.click("#link_go_on")
+    said(page, "Done.")
+    page.fill("#link_line", "SHOW(6 * 7)")
+    page.keyboard.press("Enter")
+    page.locator("#link_shown").filter(has_text="42").wait_for()
+    said(page, "Done.")
+    page.click("#link_start")
+    halts(page, 3)
+
+
+def test_a_robot_has_the_first_four(page: Page) -> None:
+    put(page, "SHOW(1);\nSHOW(2);\nSHOW(3);\nSHOW(4);\nSHOW(5)", (1, 2, 3, 4, 5))
+    page.click("#link_upload")
+    told = page.locator("#link_breakpoints")
+    assert "at the first 4" in told.inner_text()
+    for line in (1, 2, 3, 4):
+        halts(page, line)
+        page.click("#link_go_on")
+    said(page, "Done.")
+    debugging.press_margin(page, 1)
+    told.wait_for(state="hidden")
+
+
+def test_a_robot_that_cannot_halt_says_so_and_runs(
+    page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = page.locator("#link_breakpoints")
+    with monkeypatch.context() as patch:
+        patch.setattr(robot_link, "BREAKPOINTS", 0)
+        connect_again(page, robot)
+        write(page, "SHOW(1);\nSHOW(2)")
+        assert told.is_hidden()
+        debugging.press_margin(page, 2)
+        assert "This robot cannot stop at breakpoints." in told.inner_text()
+        page.click("#link_upload")
+        said(page, "Done.")
+        page.click("#link_step")
+        said(page, "This robot cannot stop at breakpoints.")
+    connect_again(page, robot)
+    assert told.is_hidden()
+
+
+def connect_again(page: Page, robot: PtyRobot) -> None:
+    page.click("#link_leave")
+    page.locator("html[data-robot=none]").wait_for(state="attached")
+    connect(page, robot)
+
+
+@pytest.mark.parametrize("how", ["stop", "Escape", "button", "restart"])
+def test_what_is_halted_ends_as_what_runs_does(page: Page, robot: PtyRobot, how: str) -> None:
+    put(page, LOOP, (4,))
+    page.click("#link_upload")
+    halts(page, 4)
+    if how == "stop":
+        page.click("#stop")
+    elif how == "Escape":
+        page.keyboard.press("Escape")
+    elif how == "button":
+        robot.push()
+    else:
+        robot.switch_off_and_on()
+    said(page, re.compile("Stopped: |was stopped with its button|The robot restarted"))
+    page.locator("html[data-halt=none]").wait_for(state="attached")
+    assert page.locator("#link_values").is_hidden() and running(page) == ""
+    assert page.locator("#link_go_on").is_disabled() and page.locator("#link_step").is_enabled()
+
+
+@pytest.mark.parametrize("what", ["upload", "break"])
+def test_a_program_that_is_stopped_on_its_way_never_starts(
+    page: Page, robot: PtyRobot, what: str
+) -> None:
+    """Its places come between the program and its start."""
+    put(page, LOOP, (4,))
+    before = len(robot.did)
+    pressed: list[bool] = []
+
+    def press(route: Route) -> None:
+        asked = [each["do"] for each in (route.request.post_data_json or {}).get("asked", [])]
+        response = route.fetch()
+        if what in asked and not pressed:
+            pressed.append(True)
+            page.evaluate("document.getElementById('stop').click()")
+        route.fulfill(response=response)
+
+    page.route("**/robots", press)
+    page.click("#link_upload")
+    hears(page, lambda: pressed, "it is on its way")
+    said(page, re.compile("Stopped: |stopped"))
+    page.wait_for_timeout(1000)
+    page.unroute_all(behavior="wait")
+    assert "MOTORS 80 80" not in robot.did[before:]
+
+
+def test_a_recording_of_a_halted_program_is_as_long_as_one_that_was_not(page: Page) -> None:
+    put(page, "SHOW(1);\nW(0.3);\nSHOW(2);\nW(0.3);\nSHOW(3)", (3,))
+    page.click("#link_upload")
+    halts(page, 3)
+    page.wait_for_timeout(2500)
+    page.click("#link_go_on")
+    said(page, "Done.")
+    page.click("#runs_open" if page.locator("#runs_open").is_visible() else "#side_virtual")
+    page.click("#runs_open")
+    rows = page.locator("#runs_list li").all_inner_texts()
+    page.click("#runs_close")
+    assert rows and float(re.findall(r"([\d.]+) s", rows[0])[0]) < 2, rows
