@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.pupils.corpus import check
+from tiniscript.base.words import WORDS
 from tiniscript.diagnostics import codes
 
 # Where in a program it stands; an instruction of TASKs is interrupted by others.
@@ -55,3 +56,12 @@ def test_an_s_further_on_ends_its_motors(around: str, move: str, motors: str) ->
 def test_nothing_else_does(around: str, behind: str) -> None:
     rest = around.replace("{};", "{}\n")  # a note ends with its line
     assert told(rest.format(f"F(FOREVER, 60){behind}")) == {}
+
+
+@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("word", [*WORDS, "espera"])
+def test_no_word_with_forever_is_taken_for_a_move(around: str, word: str) -> None:
+    """Whatever its number of values: FOREVER alone, first, last or between others."""
+    for values in ("FOREVER", "FOREVER, 60", "60, FOREVER", "FOREVER, 60, 60", ""):
+        check(around.format(f"{word}({values});W(3);S"))
+    check(f"{word} hasta que presione el boton")
