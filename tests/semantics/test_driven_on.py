@@ -55,3 +55,10 @@ def test_an_s_further_on_ends_its_motors(around: str, move: str, motors: str) ->
 def test_nothing_else_does(around: str, behind: str) -> None:
     rest = around.replace("{};", "{}\n")  # a note ends with its line
     assert told(rest.format(f"F(FOREVER, 60){behind}")) == {}
+
+
+@pytest.mark.parametrize("around", AROUND)
+def test_a_wait_without_an_end_has_no_motors(around: str) -> None:
+    """It has no power, either."""
+    assert told(around.format("W(FOREVER)")) == {}
+    assert told(around.format("W(FOREVER);S")) == {}

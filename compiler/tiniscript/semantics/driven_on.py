@@ -19,8 +19,10 @@ Body = Sequence[ast.Instruction]
 def driven_on(source: Source, program: ast.Program, move: ast.Command) -> dict[str, str]:
     """Return `whole`, the move that ends there, or what is `running`, its motors; `used` is either
     in the text. Empty if no S ends it."""
-    power = source[move.arguments[1].span] if move.arguments else ""
-    if not power.isdecimal() or move.word not in _MOTORS:
+    if move.word not in _MOTORS or not move.arguments:
+        return {}  # `W(FOREVER)` has no power
+    power = source[move.arguments[1].span]
+    if not power.isdecimal():
         return {}
     after = _after(program.body, move)
     first, second = (*after[:2], None, None)[:2]
