@@ -49,6 +49,16 @@ def test_the_power_is_the_one_of_the_program(place: str) -> None:
     assert "sample" not in told.values
 
 
-@pytest.mark.parametrize("text", ["FD 30", "REPEAT 4 [FD 2 RT 1]", "FD 2 RT 1", "FD 50 50"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "FD 30",
+        "REPEAT 4 [FD 2 RT 1]",
+        "REPEAT 4 [FD 30 RT 1]",
+        "FD 30 RT 1",
+        "FD 2 RT 1",
+        "FD 50 50",
+    ],
+)
 def test_what_may_be_seconds_or_a_power_is_no_logo(text: str) -> None:
     assert not any("CM" in each.values.get("fix", "") for each in check(text))
