@@ -41,6 +41,8 @@ from tools.translation_files import Translation, heading, tell
 
 PSEUDO = "qps"  # by custom: no language has this code
 ROBOT_SIGNS = 40
+# Kinds of a lexicon that English has no word of: what its commands are short for is English.
+NOT_IN_ENGLISH = ("short", "initial", "turtle")
 ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 
 
@@ -127,7 +129,7 @@ def check_robot(own: Catalogue) -> Iterator[Problem]:
 
 def check_lexicon(language: str) -> Iterator[str]:
     """Rows of a lexicon without a meaning that the English one has, or with other than capitals."""
-    known = {row.split()[0] for row in _rows(SOURCE_LANGUAGE)} | {"short"} | {*WORDS}
+    known = {row.split()[0] for row in _rows(SOURCE_LANGUAGE)} | {*NOT_IN_ENGLISH} | {*WORDS}
     for row in _rows(language):
         meaning, bar, words = row.partition("|")
         if not bar or not known.issuperset(meaning.split()[:1]) or plain(words) != words:

@@ -137,7 +137,7 @@ def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Ts
     )
     assert done.err.startswith(
         "sub/c.ts: 1 error corregido.\n"
-        "Lo que queda lo corriges tú, porque puede querer decir varias cosas:\n"
+        "El resto, tsc no lo puede corregir con seguridad. Corrígelo tú:\n"
     )
     assert "la palabra es R" in done.err
     done = tsc("check", "--fix", "sub/c.ts")

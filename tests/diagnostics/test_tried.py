@@ -10,7 +10,7 @@ from tiniscript import check, robots
 from tiniscript.base.source import Source
 from tiniscript.diagnostics.fixing import repair_program
 from tiniscript.diagnostics.rendering import Message, message
-from tiniscript.library.compiling import compile_source
+from tiniscript.library.compiling import check_text, compile_source
 from tiniscript.library.named_robot import robot_of
 
 TINIBOT = robots.load(robots.DEFAULT)
@@ -145,3 +145,21 @@ def test_what_spanish_pupils_say_for_when_is_shown() -> None:
 )
 def test_an_unknown_word_is_one_mistake(program: str, lines: list[int]) -> None:
     assert [each.line for each in messages_of(program)] == lines
+
+
+@each_row(
+    "program, repaired",
+    [
+        ("SI|IF(DISTANCE < 9)\nS\nENDIF\nELSE\nW(1)\nENDIF",
+         "SI|IF(DISTANCE < 9)\nS\nELSE\nW(1)\nENDIF"),
+        ("SI|SET X TO 60; F(2, X)", "SI|X = 60; F(2, X)"),
+        ("SI| SET X TO 60; F(2, X)", "SI| X = 60; F(2, X)"),
+        ("W(1)\n  let X = 60\nF(2, X)", "W(1)\n  X = 60\nF(2, X)"),
+        ("W(1); let X = 60 // note\nF(2, X)", "W(1); X = 60 // note\nF(2, X)"),
+        ("import robot\nF(2, 80)", "F(2, 80)"),
+    ],
+)  # fmt: skip
+def test_what_is_taken_out_leaves_no_line_and_no_blank(program: str, repaired: str) -> None:
+    assert (
+        repair_program(program, lambda to: check_text(to, TINIBOT.kit).diagnostics).text == repaired
+    )

@@ -242,7 +242,7 @@ def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
         ("toca 3 pitidos", {"fix": "LOOP(3);BEEP(1, 440);W(1);END_LOOP"}),
         ("ande e pare quando DISTANCE < 37", {"fix": "F(FOREVER, 80) UNTIL(DISTANCE < 37)"}),
         ("DISTANCE < 37 ? S", {"fix": "IF(DISTANCE < 37);S;ENDIF"}),
-        ("SPEED = 80;TIME = 2;F(TIME, SPEED)", {"right": "MY_TIME", "times": "2"}),
+        ("SPEED = 80;TIME = 2;F(TIME, SPEED)", {"right": "TIME_1", "times": "2"}),
         ("repetir 37\n  mover 10 pasos\n  si toca borde rebotar\nfin", {"usage": "LOOP(37)"}),
         ("servo.write(90)", {"right": None}),
         ("robot.turnLeft(90, 37)", {"usage": "L(90 DEG, 37)"}),

@@ -69,7 +69,7 @@ def test_a_move_of_another_unit_and_a_robot_without_one_get_a_number_of_their_ow
     (diagnostic,) = check_text("SI|DISTANCE = 30;F(DISTANCE, 60)", kit).diagnostics
     said = message(diagnostic, Source("SI|DISTANCE = 30;F(DISTANCE, 60)"), "en")
     assert said.fix.startswith("F takes a time here, not CM")
-    assert fix_of("SI|LIGHT_L = 300;F(LIGHT_L, 60)") == "MY_LIGHT_L = 300"
+    assert fix_of("SI|LIGHT_L = 300;F(LIGHT_L, 60)") == "LIGHT_L_1 = 300"
 
 
 # -- BREAK outside a loop ---------------------------------------------------------------------
@@ -97,6 +97,25 @@ def test_the_rest_after_a_break_goes_into_the_other_branch(
     joined = after.replace("\n", ";").replace("; ", ";")
     assert joined == around.format(";".join(right)).replace("; ", ";")
     assert not mistakes(after)
+
+
+@pytest.mark.parametrize("head", HEADS)
+@pytest.mark.parametrize("inside", [[], ["S"], ["B(1, 60)", "W(1) // wait"]])
+@pytest.mark.parametrize("rest", [["BEEP(1, 440)"], ["F(1, 60)", "S // and stand"]])
+@pytest.mark.parametrize("around", ["SI|{}", "SI|F(2, 60)\n{}", "DEF A\n{}\nEND_DEF\nA"])
+def test_the_notes_of_a_break_and_around_it_stay(
+    head: str, inside: list[str], rest: list[str], around: str
+) -> None:
+    text = around.format("\n".join([head, *inside, "BREAK // it ends", "ENDIF // if", *rest]))
+    diagnostic = next(it for it in check(text) if it.code.number == "TS115")
+    assert diagnostic.repair is not None
+    after = apply_edits(text, diagnostic.repair.edits)
+    last = " // it ends" if inside else "S // it ends"
+    lines = [head, *inside, last, "ELSE // if", *rest, "ENDIF"]
+    assert after == around.format("\n".join(lines))
+    assert not mistakes(after)
+    plain = [line.partition(" //")[0] for line in (*(inside or ["S"]), "ELSE", *rest)]
+    assert diagnostic.values["fix"] == ";".join([head, *plain, "ENDIF"])
 
 
 def test_a_break_in_the_else_leaves_out_the_other_way_round() -> None:
@@ -183,3 +202,20 @@ def test_another_number_of_the_body_is_not_named() -> None:
     for head in ("4", "40, 60"):
         fix = fix_of(f"SI|DEF SIDE({head});F(40 CM, 60);END_DEF;SIDE(40)")
         assert "F(SIZE" not in fix and "SIDE(30)" in fix
+
+
+# -- initials of another language -------------------------------------------------------------
+
+
+@pytest.mark.parametrize("place", ["SI|{}", "W(1);{}", "{};S", "IF(DISTANCE < 9);{};ENDIF"])
+@pytest.mark.parametrize("other", ["D(1, 50)", "I(1, 50)", "d(2, 30)"])
+def test_a_beside_another_initial_is_forward(place: str, other: str) -> None:
+    for first, second in (("A(2, 70)", other), (other, "a(2, 70)")):
+        text = place.format(f"{first};{second}")
+        near = {it.values["found"]: it.values.get("near") for it in check(text)}
+        assert near["A"] == "F", text
+
+
+@pytest.mark.parametrize("text", ["A(2, 70)", "A(2, 70);F(1, 50);D(1, 50)", "A(2, 70);L(1, 50)"])
+def test_an_initial_alone_or_beside_an_f_is_no_word(text: str) -> None:
+    assert all(it.values.get("near") != "F" for it in check(text))

@@ -212,4 +212,4 @@ def foreign_word_hints(word: str) -> dict[str, str]:
 
 def other_name(word: str) -> str:
     """Return a name that a variable or a DEF may have in place of a word of the language."""
-    return word + "_1" if len(word) == 1 else "MY_" + word
+    return word + "_1"

@@ -29,7 +29,7 @@ from tiniscript.cli.texts.verbs import (
     command_words,
     verb_text,
 )
-from tiniscript.cli.texts.verbs import verb_sentence as said_of
+from tiniscript.cli.texts.verbs import verb_sentence
 
 
 def refuse(name: str, words: list[str], language: str) -> NoReturn:
@@ -73,7 +73,9 @@ def is_help(name: str) -> bool:
 
 def _names_in_languages(verb: str) -> str:
     """Return what the same is called elsewhere, in each language."""
-    return " ".join(_without_accents(said_of(verb, "words", language)) for language in languages())
+    return " ".join(
+        _without_accents(verb_sentence(verb, "words", language)) for language in languages()
+    )
 
 
 def refuse_program(name: str) -> None:
@@ -127,7 +129,9 @@ def _weights(verb: str) -> dict[str, int]:
     options = [option for option in options_of(verb) if option.verbs not in ("*", "tsc")]
 
     def stems_of(what: str) -> set[str]:
-        return {stem for language in languages() for stem in _stems(said_of(verb, what, language))}
+        return {
+            stem for language in languages() for stem in _stems(verb_sentence(verb, what, language))
+        }
 
     helps = (option.help(language) for option in options for language in languages())
     flags = (option.flags for option in options)

@@ -71,13 +71,33 @@ def repair_program(text: str, check: Check) -> Fixed:
     count = 0
     steps = _steps(diagnostics)
     while left > 0 and (repairs := next(steps, None)):
-        edits = [edit for repair in repairs for edit in repair]
+        edits = [_tidied(edit, text) for repair in repairs for edit in repair]
         changed = apply_edits(text, edits)
         after = check(changed)
         left -= 1
         if is_better(after, diagnostics, edits):
             text, diagnostics, count, steps = changed, after, count + len(repairs), _steps(after)
     return Fixed(text, count, diagnostics)
+
+
+def _tidied(edit: Edit, text: str) -> Edit:
+    """Return an edit that leaves no blank line, and no blanks before an instruction or at an end.
+
+    What is taken out takes with it the blanks that stood around it, or its line.
+    """
+    start, end = edit.span
+    if edit.text or start == end:
+        return edit
+    begin = text.rfind("\n", 0, start) + 1
+    stop = text.find("\n", end)
+    stop = len(text) if stop < 0 else stop
+    before, after = text[begin:start], text[end:stop]
+    if not (before + after).strip():
+        is_only = stop == len(text) and not begin
+        return Edit(Span(begin, stop if is_only else min(stop + 1, len(text))), "")
+    if not before.strip() or before[-1] in "|; ":
+        end += len(after) - len(after.lstrip(" \t"))
+    return Edit(Span(start, end), "")
 
 
 def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:

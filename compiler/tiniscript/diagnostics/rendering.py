@@ -53,9 +53,12 @@ class Message(NamedTuple):
     fix: str
 
 
-# What else belongs to what is to be tried: what is written then where it is used, what may be meant
-# as well, what it leaves out, and what of it nobody said.
-_SECONDARY_GAPS = ("carried", "rival", "lost", "sample")
+# What else belongs to what is to be tried, which is copied as it stands: what is written then where
+# it is used, what may be meant as well, and that it may be a note. What is said of it belongs to
+# the message: what it leaves out, and what of it nobody wrote.
+_SECONDARY_GAPS = ("carried", "rival", "note", "last_note")
+_COPIED = frozenset(("fix", "right", "whole", "made", "note", "after", "begun"))
+_SAID_OF_IT = ("lost", "sample", "samples")
 
 
 def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
@@ -70,7 +73,14 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     fix = _format_text(f"{number}/try", diagnostic.values, lang)
     for gap in _SECONDARY_GAPS:
         if diagnostic.values.get(gap):
-            fix = _format_text(f"label/{gap}", {**diagnostic.values, "fix": fix}, lang)
+            values = {**diagnostic.values, "made": diagnostic.values.get("fix", ""), "fix": fix}
+            fix = _format_text(f"label/{gap}", values, lang)
+    message = _format_text(f"{number}/message", diagnostic.values, lang)
+    for gap in _SAID_OF_IT:
+        if diagnostic.values.get(gap):
+            said = message if message[-1:] in (".", "?", "!") else message + "."
+            values = {**diagnostic.values, "said": said}
+            message = _format_text(f"label/{gap}", values, lang)
     return Message(
         number,
         "mistake" if diagnostic.is_mistake else "warning",
@@ -78,7 +88,7 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
         column,
         end_line,
         end_column,
-        _format_text(f"{number}/message", diagnostic.values, lang),
+        message,
         fix,
     )
 
@@ -179,7 +189,9 @@ def _format_text(key: str, values: Mapping[str, str], lang: str) -> str:
     chosen = _first_filled_text(key, values, lang)
 
     def gap(match: re.Match[str]) -> str:
-        longest = FIX_CHARACTERS if match[2] in ("fix", "right", "whole") else VALUE_CHARACTERS
+        longest = FIX_CHARACTERS if match[2] in _COPIED else VALUE_CHARACTERS
+        if match[2] == "said":
+            return values["said"]  # a message, which is short as it is
         return _value_text(values.get(match[2], ""), match[1] == "@", lang, longest)
 
     return _GAP.sub(gap, chosen)

@@ -6,13 +6,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.recovery.meanings import Names, lexemes, texts
+from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.meanings import Lexeme, Names, lexemes, texts
+from tiniscript.recovery.rewrites import negated
+from tiniscript.recovery.writing import without_note
 
+_BEHIND_ELSE = re.compile(r"(?i)\bELSE(?!_?IF)(?![ \t]+IF)[ \t]*([^\W\d][^;\n]*|\([^;\n]*\))")
+_OF_ELSE = (codes.NO_BRACKETS_HERE, codes.MISSING_OPEN)
 _INSIDE = re.compile(r"[ \t]*\(((?:[^()\n;]|\([^()\n;]*\))+)\)")
+_HEAD = re.compile(r"(?i)(?<!\w)(IF|ELSEIF|END_?IF)\b[ \t]*(?:\(((?:[^()\n;]|\([^()\n;]*\))+)\))?")
 _ASKED = re.compile(r"[<>=]")
 _ASKS = {
     **{word: f"IF({{what}});{word};ENDIF" for word in ("S", "STOP", "BREAK")},
@@ -41,3 +48,45 @@ def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> 
     if asks and is_offered:
         return diagnostic._replace(values={**values, "fix": asks.format(what=what)})
     return diagnostic if is_offered else diagnostic._replace(values={**values, "lost": what})
+
+
+def answered(diagnostic: Diagnostic, text: str) -> Diagnostic:
+    """Return a mistake of a question behind ELSE with ELSE alone first, where that says the same.
+
+    That is where it is no when the question before it is yes: `IF(DISTANCE < 20)`, and
+    `ELSE(DISTANCE > 20)`. ELSEIF with the question comes second.
+    """
+    start = diagnostic.span.start
+    match = next((it for it in _BEHIND_ELSE.finditer(text) if it.start() <= start < it.end()), None)
+    if match is None or diagnostic.code not in _OF_ELSE:
+        return diagnostic
+    before, asked = _asked_before(text[: match.start()]), without_note(match[1])[0].strip(" ;:\t")
+    if not before or _roughly(negated(lexemes(before))) != _roughly(lexemes(asked)):
+        return diagnostic
+    end = match.start(1) + match[1].index(asked) + len(asked)
+    repair = Repair((Edit(Span(match.start(), end), "ELSE"),), False)
+    inside = asked[1:-1] if asked.startswith("(") else asked
+    values = {"fix": "ELSE", "rival": f"ELSEIF({inside.strip()})", "lost": ""}
+    return diagnostic._replace(values={**diagnostic.values, **values}, repair=repair)
+
+
+def _asked_before(text: str) -> str:
+    """Return what the innermost IF that is open asks last."""
+    asked: list[str] = []
+    for line in text.split("\n"):
+        body = without_note(line)[0]
+        for match in _HEAD.finditer(body):
+            word = match[1].upper()
+            if word == "IF":
+                asked.append(match[2] or "")
+            elif asked and word == "ELSEIF":
+                asked[-1] = ""  # it is asked only where another answer is no
+            elif asked and word.startswith("END"):
+                asked.pop()
+    return asked[-1] if asked else ""
+
+
+def _roughly(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
+    """Return a question in which the number itself may be on either side: `>` for `>=`."""
+    signs = {">=": ">", "<=": "<", "=>": ">", "=<": "<"}
+    return tuple(signs.get(it, it) for it in texts(tokens) if it not in ("(", ")"))

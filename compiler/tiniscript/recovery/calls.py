@@ -11,10 +11,19 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import POWER, UNIT_OF, WAYS, WORDS, Word, expand_short
+from tiniscript.base.words import (
+    POWER,
+    UNIT_OF,
+    WAYS,
+    WORDS,
+    Word,
+    expand_short,
+    lexicon_concept,
+    lexicon_meaning,
+)
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.meanings import LONG_S, MOST_POWER
+from tiniscript.recovery.meanings import CALLED, LONG_S, MOST_POWER, heard_as, plain
 from tiniscript.recovery.writing import without_note
 
 _VALUE = r"[^(),;{}\n]*(?:\([^()\n]*\)[^(),;{}\n]*)*"
@@ -23,6 +32,8 @@ _COMMA = re.compile(r",(?![^()]*\))")  # outside of inner brackets
 _THOUSANDS = re.compile(r"([1-9]\d{0,2})((?:,\d{3})+)")
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 _ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
+_PERCENT = re.compile(r"[ \t]*%$")
+_TIMED = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
 _SHORT = 3  # letters: a phone may have added some to one
 _UNIT = rf"(?P<unit>{'|'.join(WAYS)})"
 _UNIT_BEFORE = re.compile(rf"(?i){_UNIT}[ \t]+(?P<value>[\w.]+)")
@@ -109,18 +120,34 @@ def _thousands(call: _Call) -> Diagnostic | None:
 
 
 def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
-    """`M(50, 80, 3)`: how long the motors run is said by a W after them."""
+    """`M(50, 80, 3)`, `M(3, 50, 80)`: how long the motors run is said by a W after them."""
     if call.word.text != "M" or len(call.values) != len(call.word.arguments) + 1:
         return None
-    *powers, time = call.values
-    is_time = bool(_NUMBER.fullmatch(time)) and 0 < float(time) < LONG_S
-    are_powers = all(not _NUMBER.fullmatch(it) or abs(float(it)) <= MOST_POWER for it in powers)
-    if not is_time or not are_powers:
+    values = [_PERCENT.sub("", value) for value in call.values]
+    parted = [(values[-1], values[:-1]), (values[0], values[1:])]
+    found = [(_seconds(time), powers) for time, powers in parted if _are_powers(powers)]
+    seconds, powers = next((each for each in found if each[0]), ("", []))
+    if not seconds:
         return None
-    fix = f"{call.with_values(powers)};W({time})"
-    fix += "" if text[call.span.end :].strip() else ";S"
-    values = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
-    return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **values)
+    fix = f"{call.with_values(powers)};W({seconds})"
+    fix += "" if text[call.span.end :].strip(" ;\t\r\n") else ";S"
+    said = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
+    return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **said)
+
+
+def _seconds(value: str) -> str:
+    """Return the number of a value that says a time, "" for another one."""
+    match = _TIMED.fullmatch(value)
+    unit = lexicon_meaning(plain(match[2]), "unit") if match and match[2] else ("s", "1000")
+    is_time = match is not None and unit == ("s", "1000") and 0 < float(match[1]) < LONG_S
+    return match[1] if match and is_time else ""
+
+
+def _are_powers(values: Sequence[str]) -> bool:
+    return all(
+        abs(float(it)) <= MOST_POWER if _NUMBER.fullmatch(it) else it.upper() not in WORDS
+        for it in values
+    )
 
 
 # -- what is shown of a call that nothing reads ---------------------------------------------------
@@ -150,8 +177,10 @@ def likely_word(word: str, text: str) -> str:
     if not values or len(numbers) != len(values):
         return ""
     is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
-    short = expand_short(word)
-    if is_tone:
+    short, heard = expand_short(word), "" if lexicon_concept(word) else heard_as(word) or ""
+    if heard in CALLED:
+        result = heard
+    elif is_tone:
         result = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
     elif len(short) == 1:
         result = short[0]

@@ -15,7 +15,7 @@ from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, Span, apply_edits
+from tiniscript.base.source import Edit, Source, Span, apply_edits
 from tiniscript.base.words import (
     ALIASES,
     BLOCK_ENDS,
@@ -48,7 +48,7 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.recovery.notes import note_edits
 from tiniscript.recovery.rewrites import one_word
-from tiniscript.recovery.writing import PLAIN_SIGNS, without_note
+from tiniscript.recovery.writing import PLAIN_SIGNS, instruction_at, without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SUMS
 
@@ -97,6 +97,10 @@ _NAMING = (
 )
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _END = lexemes(";")[0]
+_NUMBERED = ("number", "power", "often", "note")
+_NUMBER = re.compile(r"(?<![\w.])\d[\d.]*")
+_CALL = re.compile(r"\b([A-Z]+)\(([^()]*)\)")
+_NEAR = f"{NEAR_CM} cm"
 _ASKS_NEAR = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
 
 
@@ -261,26 +265,50 @@ def _unmentioned_losses(diagnostic: Diagnostic, lost: Sequence[str], text: str) 
 
 
 def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
-    """Return diagnostics that have a `sample` where they compare a distance that nobody wrote.
+    """Return diagnostics that say of each number of what they offer that nobody wrote: an example.
 
-    That is only what a pupil called near: `DISTANCE < 15` for "near a wall". Where the text has
-    that number, or where the message shows an example anyway, nothing changes; and of no other
-    value does this say anything.
+    That is a distance that a pupil called near, `DISTANCE < 10` for "near a wall", and the time,
+    the power or the pitch that a call lacks. Where the text has that number, or where the message
+    shows an example anyway, nothing changes.
     """
-    guesses = [
-        diagnostic
-        for diagnostic in diagnostics
-        if _ASKS_NEAR.search(diagnostic.values.get("fix", ""))
-    ]
-    if not guesses or any(it.value == float(NEAR_CM) for it in _words_of_right(text, kit).amounts):
-        return [*diagnostics]
-    sample = {"sample": f"{NEAR_CM} cm"}
-    return [
-        diagnostic._replace(values={**diagnostic.values, **sample})
-        if diagnostic in guesses and not diagnostic.values.get("example")
-        else diagnostic
-        for diagnostic in diagnostics
-    ]
+    written: set[float] | None = None
+    result = []
+    for diagnostic in diagnostics:
+        fix = diagnostic.values.get("fix", "")
+        samples = [] if diagnostic.values.get("example") else _samples(fix)
+        if samples and len(_NUMBER.findall(fix)) <= _count_numbers(diagnostic, text):
+            samples = [it for it in samples if it[1] == _NEAR]  # one each, in words or nearly so
+        if samples and written is None:
+            written = {it.value for it in _words_of_right(text, kit).amounts}
+        said = ", ".join(item for number, item in samples if number not in (written or ()))
+        gap = "samples" if ", " in said else "sample"
+        values = {**diagnostic.values, gap: said} if said else diagnostic.values
+        result.append(diagnostic._replace(values=values))
+    return result
+
+
+def _count_numbers(diagnostic: Diagnostic, text: str) -> int:
+    """Return how many numbers stand in the place of a mistake, in digits, words or nearly so."""
+    place = diagnostic.place or diagnostic.span
+    if ";" not in diagnostic.values.get("fix", ""):
+        place = instruction_at(diagnostic.span, Source(text))
+    return sum(
+        any(map(str.isdigit, token.text)) or bool(lexicon_meaning(token.text, *_NUMBERED))
+        for token in lexemes(text[slice(*place)])
+    )
+
+
+def _samples(fix: str) -> list[tuple[float, str]]:
+    """Return the numbers of what is offered that may be examples, and each with its unit."""
+    found = [_NEAR] if _ASKS_NEAR.search(fix) else []
+    for match in _CALL.finditer(fix):
+        arguments = WORDS[match[1]].arguments if match[1] in _DRIVES else ()
+        found += [
+            f"{argument.sample} {argument.unit}"
+            for argument, value in zip(arguments, match[2].split(","), strict=False)
+            if value.strip() == argument.sample
+        ]
+    return [(float(item.split()[0]), item) for item in dict.fromkeys(found)]
 
 
 def _with_losses(diagnostic: Diagnostic, lost: Sequence[str]) -> Diagnostic:
@@ -430,7 +458,8 @@ class _Said:
         )
         is_again |= after.text == "." and self._next_lexeme(k + 1).kind is WORD  # `random.randint`
         is_again |= word in MOVES and after.kind is WORD and word == self._word(after)
-        is_needless = (word == "TRUE" and "=" in around and is_in_brackets) or (
+        is_equal = any(text in ("=", "==") or lexicon_meaning(text, "is") for text in around)
+        is_needless = (word == "TRUE" and is_equal and is_in_brackets) or (
             word == "TIME" and not around & _SENSES.keys()
         )
         self.meant.update(self._possible_words(token))

@@ -19,11 +19,21 @@ from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import search, slips
 from tiniscript.recovery.ends import added_end, header_of, possible_places, shown
 from tiniscript.recovery.lines import BRACES, Step
-from tiniscript.recovery.meanings import ENDED, Lexeme, lexemes, meant_by, texts
+from tiniscript.recovery.meanings import (
+    ENDED,
+    Lexeme,
+    lexemes,
+    lexicon_meaning,
+    meant_by,
+    plain,
+    texts,
+)
 from tiniscript.recovery.search import Candidate
 from tiniscript.recovery.slips import OF_BLOCKS, Change, Slip, alike, instructions
-from tiniscript.recovery.writing import in_one_line, laid_out, tokens_of, without_note
+from tiniscript.recovery.writing import in_one_line, laid_out, spoken_signs, tokens_of, without_note
+from tiniscript.syntax.lexer import NUMBER, WORD
 
+_FEW = 3  # names of signs that a message shows
 _DEDUPED = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
 # Codes of what belongs to the beginning of its block, where something is wrong with that, too.
 _OF_BLOCK = (codes.NEVER_ENDS, codes.END_ALONE, codes.END_SPLIT, codes.BRACES,
@@ -44,7 +54,8 @@ class Slipped(NamedTuple):
     """A slip, and what only its line, or the text around it, can say of it.
 
     `right` are names that get their letters, or a note; `needless` is a brace, `early` an end, both
-    too many. An end of another block stands for `fix`, the end of the `word` on line `line`.
+    too many. `spoken` are the names of signs, `digits` and `tones` the words of numbers. An end of
+    another block stands for `fix`, the end of the `word` on line `line`.
     """
 
     slip: Slip
@@ -54,6 +65,9 @@ class Slipped(NamedTuple):
     word: str = ""
     line: str = ""
     fix: str = ""
+    spoken: str = ""
+    digits: str = ""
+    tones: str = ""
 
     def values(self, code: Code) -> dict[str, str]:
         said = {name: str(its) for name, its in self._asdict().items() if name != "slip" and its}
@@ -300,7 +314,13 @@ class _Explainer:
 
     def new(self, k: int, part: Change, code: Code, step: Step | None) -> Explanation:
         is_end = code is codes.NEVER_ENDS
-        about = self.unended(k, part) if is_end else self.slipped(k, part, code, step)
+        if spoken := spoken_signs(self.program[slice(*part.place)]) if part.after else ():
+            code = codes.OTHER_SIGN
+            about: Slipped | Unended = Slipped(
+                slips.slip_of(part, code, step), spoken=", ".join(spoken[:_FEW])
+            )
+        else:
+            about = self.unended(k, part) if is_end else self.slipped(k, part, code, step)
         self.out.append(Explanation(code, part.place, part.place, about, [part.edit], k, (k, 1)))
         return self.out[-1]
 
@@ -315,6 +335,9 @@ class _Explainer:
             arm = behind[1].upper() if behind else ""
             is_early = bool({arm, meant_by(arm)} & {*_ARMS})
             return Slipped(slip, early=slips.found_in(slip) if is_early else "")
+        if code is codes.OTHER_CALL and (words := _words_of_numbers(part)):
+            is_tone = all(lexicon_meaning(plain(word), "note") for word in words)
+            return Slipped(slip, **{"tones" if is_tone else "digits": ", ".join(words)})
         if code in _DEDUPED:  # LIGHT_L and LIGHT_R
             same = (it for it in self.changes[k].steps if it.code is code)
             pairs = ((texts(it.before), texts(it.after)) for it in same)
@@ -389,6 +412,16 @@ class _Explainer:
 
 def _first_line(change: search.Change) -> str:
     return laid_out(tokens_of(change.text.split("\n")[0]))
+
+
+def _words_of_numbers(part: Change) -> list[str]:
+    """Return the words that a change writes in digits, nothing where it changes more."""
+    if len(part.before) != len(part.after):
+        return []
+    pairs = zip(part.before, part.after, strict=True)
+    changed = [(was, now) for was, now in pairs if was.text != now.text]
+    are_words = all(was.kind is WORD and now.kind is NUMBER for was, now in changed)
+    return list(dict.fromkeys(was.source or "" for was, _ in changed)) if are_words else []
 
 
 def _is_closed(tokens: Sequence[Lexeme]) -> bool:

@@ -173,14 +173,22 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
     if found := _sensor_with_side(parts):
         return (Meaning(found, KNOWN),)
-    alike, near = _speller().find_sound_alike(word), _speller().find_near_miss(word)
+    near = _speller().find_near_miss(word)
     guesses = (
-        (lexicon_concept(alike or ""), KNOWN),
+        (heard_as(word), KNOWN),
         (lexicon_concept(near or ""), MISSPELT),
         (_in_two_words(word), KNOWN),
         (nearest(word, WORDS), NEAR),
     )
     return next(((Meaning(each, cost),) for each, cost in guesses if each), ())
+
+
+def heard_as(word: str) -> str | None:
+    """Return the word of the language that a word sounds like, which may itself mean another thing.
+
+    Nobody calls a weight: `WEIGHT(1)` is what somebody hears who is told to write WAIT.
+    """
+    return lexicon_concept(_speller().find_sound_alike(word) or "")
 
 
 def _sensor_with_side(parts: Sequence[str]) -> str:
@@ -236,6 +244,7 @@ class _OfLine(NamedTuple):
     compared: set[str]  # words beside a sign that compares them with a number
     counted: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
     left: int  # headers that lack an end
+    given: set[tuple[str, str]]  # units of what is no time, and the numbers that calls give: % 50
 
 
 @lru_cache(REMEMBERED)
@@ -243,8 +252,7 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
     begun, counted, left = _block_counts(line)
     of_line = _OfLine(
         set(), set(), set(), set(), {}, set(), begun, _standalone_words(line),
-        _compared_words(line), counted,
-        left,
+        _compared_words(line), counted, left, _given(line),
     )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
@@ -276,6 +284,17 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         of_line.rows.add(row)
         names.add(joined(row))
     return of_line
+
+
+def _given(line: tuple[Lexeme, ...]) -> set[tuple[str, str]]:
+    """Return the powers and the pitches that calls of a line give as plain numbers, by unit."""
+    rows = zip(line, line[1:], line[2:], line[3:], line[4:], line[5:], strict=False)
+    return {
+        (WORDS[word.text].arguments[1].unit, value.text)
+        for word, is_open, _, comma, value, is_closed in rows
+        if (is_open.text, comma.text, is_closed.text) == ("(", ",", ")") and value.kind is NUMBER
+        if word.text in CALLED and word.text != "M" and len(WORDS[word.text].arguments) > 1
+    }
 
 
 def _bare_values(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
@@ -360,6 +379,9 @@ class Names:
         self.defs = {name for line in of_lines for name in line.defs} - {
             row[0] for row in self.rows
         }
+        given = {pair for line in of_lines for pair in line.given}
+        units = [unit for unit, _ in given]
+        self.usual = {unit: text for unit, text in given if units.count(unit) == 1}
         self.called = frozenset(self.defs & {word for line in of_lines for word in line.called})
         counts = {name: len(self.parameters.get(name, ())) for name in self.defs}
         alone = {name for name, count in counts.items() if not count}
@@ -377,6 +399,7 @@ class Names:
             *words,
             self.called,
             frozenset(self.begun.items()),
+            frozenset(self.usual.items()),
             kit.actuators,
         )
         self._labels: dict[tuple[str, str, bool], str] = {}

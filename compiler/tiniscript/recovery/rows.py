@@ -582,10 +582,6 @@ LOOP ( @name = 1 to|until n=@num )
     | $a ( ⟨FOREVER , 80¦1 , $n¦$n , 0⟩ ) | 2 | TS020 | offered
     | ⟨F(FOREVER) UNTIL(DISTANCE < 10)¦SHOW(RANDOM(6))¦SHOW(ROUND(3))⟩ => ⟨F(FOREVER, 80)
     UNTIL(DISTANCE < 10)¦SHOW(RANDOM(1, 6))¦SHOW(ROUND(3, 0))⟩
-^ M ( ⟨¦n=@time @in_secs|S? ,⟩ s='-'? a=@power '%'? , t='-'? b=@power '%'? ⟨, n=@time @in_secs|S?¦⟩
-    ) $
-    | M ( $s $a , $t $b ) ; W ( $n ) ; S | 2 | TS020 | offered
-    | M(⟨¦2, ⟩50, -80⟨, 2¦⟩) => M(50, -80);W(2);S
 ^ a=F|B|L|R ( b=@num⟨|FOREVER ,? c=@num ,? UNTIL (? q=@noparen+ )?¦ , c=@num , d=@val e=<|> f=@num⟩
     ) $
     | $a ( $b , $c ) UNTIL ( ⟨$q¦$d $e $f⟩ ) | 2 | ⟨TS029¦TS020⟩ | offered

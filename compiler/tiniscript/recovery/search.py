@@ -32,7 +32,14 @@ from tiniscript.recovery.meanings import (
     words_of,
 )
 from tiniscript.recovery.moved import Moved, ordered
-from tiniscript.recovery.writing import PLAIN_SIGNS, as_written, laid_out, with_signs, without_note
+from tiniscript.recovery.writing import (
+    PLAIN_SIGNS,
+    as_written,
+    is_guessed,
+    laid_out,
+    with_signs,
+    without_note,
+)
 from tiniscript.syntax.outline import Failure
 
 UNREAD = 5  # lines that nobody can read, after which others are read quickly
@@ -155,6 +162,7 @@ class Recovery:
             if (dictated := with_signs(line.body)) != line.body:
                 before, after = lexemes(line.body), lexemes(dictated)
                 line.steps.append(Step(codes.OTHER_SIGN, before, after))
+                line.is_sure = not is_guessed(line.body)
                 line.body = dictated
             body = line.body.translate(PLAIN_SIGNS)
             if body == line.body and is_right(lexemes(body), names):
@@ -395,7 +403,10 @@ def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[
     if reading.is_new_line or tails or any(len(edit.new) > 1 for edit in edits):
         text = line.source[: line.indent] + laid_out(_without_empty(tokens))
         return text if tails or len(reading.items or ()) > 1 else text.rstrip("; ")
-    return line.source[: line.indent] + as_written(tokens).strip()
+    text = as_written(tokens).strip()
+    if "| " not in line.body:
+        text = text.replace("| ", "|", 1)  # a word that is gone leaves no blank
+    return line.source[: line.indent] + text
 
 
 def _without_empty(tokens: Sequence[Lexeme]) -> list[Lexeme]:

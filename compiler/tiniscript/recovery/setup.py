@@ -12,13 +12,16 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
-from tiniscript.recovery.meanings import Names, lexemes, plain
+from tiniscript.recovery.meanings import Names, lexemes, made, plain, texts
+from tiniscript.recovery.orders import block, orders, written
 from tiniscript.recovery.writing import without_note
+from tiniscript.syntax.operators import COMPARISONS
 
 SEAL = "~"  # begins a checksum: what has one is copied again
 _LONGEST = 4_000  # characters of a first line that are read
 _CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
 _BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
+_HEAD_IN_WORDS = re.compile(r"(?i)(s[ií]|sb)[ \t]*[,.:!]?[ \t]+(?=[^\W\d])")
 _INSIDE = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that are open before it
 
 
@@ -35,7 +38,9 @@ def beginning(
         is_call = _CALL.match(source.text, text.repair.edits[0].span.end) is not None
         if is_call or is_better(after, diagnostics, text.repair.edits):
             return [text]
-    return _titles(source, kit)
+    if orders := _spoken(source, kit):
+        return [orders]
+    return _set_before(source, kit) or _titles(source, kit)
 
 
 def other_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagnostic | None:
@@ -74,6 +79,31 @@ def setup(text: str) -> Diagnostic | None:
     return Diagnostic(codes.SETUP_NEEDS_BAR, span, said, None, Repair(tuple(edits), is_sure))
 
 
+def _spoken(source: Source, kit: Kit) -> Diagnostic | None:
+    """Return what is told of a first line that says `SI` and then orders in words, and asks none.
+
+    `SI go forward 2 seconds, then stop` is `SI|F(2, 80);S`: after SI comes the bar.
+    """
+    row = _ROW.search(source.text)
+    body = without_note(row[0])[0].rstrip(" ;\t\r") if row else ""
+    match = _HEAD_IN_WORDS.match(body)
+    if row is None or match is None or "(" in body or any(it in body for it in COMPARISONS):
+        return None
+    words = lexemes(body[match.end() :])
+    names = Names([lexemes(line) for line in source.text.split("\n")], kit)
+    said = orders(words, names)
+    if not said or block([made("IF"), *words], names, is_open=False):
+        return None
+    head = plain(match[1])
+    fix = f"{head}|{written(said)}"
+    place = Span(row.start(), row.start() + len(body))
+    values = {"found": head, "fix": fix}
+    span = Span(place.start, place.start + len(match[1]))
+    return Diagnostic(
+        codes.SETUP_NEEDS_BAR, span, values, place, Repair((Edit(place, fix),), False)
+    )
+
+
 def _begins_instruction(rest: str, sign: str, is_apart: bool) -> bool:
     """Whether an instruction begins, and no condition; a sign before it says that by itself."""
     match = re.match(r"([^\W\d]\w*)\s*(\(|=|;|$)?", rest)
@@ -85,6 +115,46 @@ def _begins_instruction(rest: str, sign: str, is_apart: bool) -> bool:
         return bool(sign) and after in ("=", "(")
     is_apart = is_apart and (after is not None or known.is_call or word == "DEF")
     return known.role.begins and (bool(sign) or after == "(" or is_apart)
+
+
+def _set_before(source: Source, kit: Kit) -> list[Diagnostic]:
+    """Return what is told of variables that are set above `SI|`, with a type before them.
+
+    `int vel = 70;` above `SI|F(2, vel)` is `SI|vel = 70;F(2, vel)`: SI| comes before them.
+    """
+    begun = _BEGUN.search(source.text)
+    if begun is None:
+        return []
+    edits: list[Edit] = []
+    sets: list[str] = []
+    declared = 0
+    for row in _ROW.finditer(source.text[: begun.start()]):
+        line = without_note(row[0])[0].rstrip(" ;\t\r")
+        words = lexemes(line)
+        if not words:
+            continue
+        count = next(
+            (k for k, it in enumerate(words) if not lexicon_meaning(it.text, "declare")), 0
+        )
+        size = sum(len((it.space or "") + (it.source or "")) for it in words[:count])
+        own = line[size:].lstrip()
+        signs = texts(words[count + 1 : count + 2])
+        if signs != ("=",) or not lines.is_right(lexemes(own), Names([lexemes(own)], kit)):
+            return []
+        start = row.start() + len(line) - len(own)
+        edits.append(Edit(Span(row.start(), start), ""))
+        sets.append(own)
+        declared += count
+    if not sets or not declared:
+        return []
+    head = Span(begun.start() + len(begun[0]) - len(begun[0].lstrip()), begun.end())
+    setup_text = "".join(source[head].split()).upper()
+    edits[0] = edits[0]._replace(text=setup_text)
+    edits = [edit for edit in edits if edit.text or edit.span.start < edit.span.end]
+    rest = without_note(source.text[begun.end() :].split("\n")[0])[0].strip(" ;\t\r")
+    fix = setup_text + ";".join((*sets, rest))
+    repair = Repair((*edits, Edit(head, "")), True)
+    return [Diagnostic(codes.SETUP_TWICE, head, {"begun": fix, "found": setup_text}, None, repair)]
 
 
 def _titles(source: Source, kit: Kit) -> list[Diagnostic]:

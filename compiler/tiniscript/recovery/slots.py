@@ -331,21 +331,24 @@ class _Reader:
         texts: list[str] = []
         samples: list[str] = []
         for value, its in zip(slots, word.arguments, strict=True):
-            own = value.text if value else self._matching_variable(its)
+            own = value.text if value else self._own_value(its)
             samples += [] if own else [f"{its.sample} {its.unit}"]
             texts.append(own or its.sample)
         call = f"{word.text}({','.join(texts)})".replace(",", f" {self.way},", 1)
         tokens = [made(lexeme.text) for lexeme in lexemes(call)]
         return Filled(tokens, self.cost, self.is_sure, self.times, tuple(samples))
 
-    def _matching_variable(self, argument: Argument) -> str:
-        """Return the one variable that is called what an argument is: VELOCIDAD for `F(2)`."""
+    def _own_value(self, argument: Argument) -> str:
+        """Return what a program has for an argument, "" for nothing or more than one thing.
+
+        The one variable that is called so, VELOCIDAD for `F(2)`, else what all other calls give.
+        """
         own = [
             it
             for it in self.names.variables
             if any(is_called(part, argument) for part in it.split("_"))
         ]
-        return own[0] if len(own) == 1 else ""
+        return own[0] if len(own) == 1 else "" if own else self.names.usual.get(argument.unit, "")
 
     def _with_decimals(self, count: int) -> list[_Value] | None:
         """Join whole numbers that are halves of decimal ones: `F(1,5,80,0)`, `W(0,5)`."""

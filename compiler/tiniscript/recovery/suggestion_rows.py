@@ -378,7 +378,7 @@ SUGGESTIONS = """
 ^ @twice
     | TS135 | word={question_begun}; *=in_words
     | SI|F(3, 50)⏎si hay una pared cerca BEEP(1, 440)⏎si no hay nada sigue otra vez => word=IF
-^ @twice | TS045 | ?={question_begun} | si adelante => TS045
+^ @twice | TS045 | ?={question_begun} | F(2, 80)⏎si adelante => TS045
 ^ @TS033_SB
     | = | found={begun_again}; here={begun_again}; button=SB; pause=W(2); twice={twice?};
     instead={instead?}
@@ -415,8 +415,11 @@ SUGGESTIONS = """
     | S = 5 => word=S
 ^ @clocked
     | = | right={time_right?}; clock={clock?}; line={time_line?}; lines={time_lines?}
-    | F(2, 60)⏎TIME = 0⏎WHILE(TIME < 10)⏎L(1, 40)⏎END_WHILE => clock=MY_TIME
+    | F(2, 60)⏎TIME = 0⏎WHILE(TIME < 10)⏎L(1, 40)⏎END_WHILE => clock=TIME_1
 ^ TS105 | = | right={name_right?} | cuadrado = LOOP(4) => word=LOOP
+^ TS042 ( @any+ ) $
+    | = | unnamed={said}; one={taking_one}; another={taking_another?}; button={waiting?}
+    | SB|(2, 60) => one=F(2, 60)
 ^ TS042 | TS007 | found={note} | /* hola */ F(2,80) => found=/*
 ^ TS046 | TS039 | word={sensor}; right={sensor} | IF(DISTANCE(cm) < 10);S;ENDIF => word=DISTANCE
 ^ TS046 | TS068 | ?={input} | X = input()⏎F(X, 80) => TS068

@@ -38,13 +38,16 @@ from tiniscript.recovery.trailing_tokens import Around, Trailing, set_in, whole,
 from tiniscript.recovery.worded import sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import free_number_name
-from tiniscript.syntax.lexer import WORD
+from tiniscript.syntax.lexer import QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 
 LONGEST = 24  # words behind an instruction that are read
 MOST = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
 _ASIDE = (codes.REPEATED, codes.WORDS_AFTER)
+_MAY_BE_NOTES = (codes.WORDS_AFTER, codes.SEVERAL_ORDERS)
+_MEASURES = (("s",), ("cm",), ("°",), ("%",), ("Hz",))
+_IN_PROSE = frozenset((",", ".", ":", "!", "\u00a1", *QUOTES))
 _MOST_BEFORE = 8  # instructions that an example repeats
 _FARTHEST = 40  # lines and instructions that are looked at for what is done again
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
@@ -236,6 +239,10 @@ def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
     span = Span(part.spans[start].start, part.spans[end - 1].end)
     code = row.code
     assert code is not None
+    is_other = any(values[gap] for gap in values if gap not in ("before", "words", "order"))
+    is_noted = "//" in values["fix"] or not is_other
+    if code in _MAY_BE_NOTES and part.tokens and not is_noted:
+        values = {**values, **_as_note(part)}  # what changes no movement comes first
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
     result = Diagnostic(code, span, values, place)
@@ -476,9 +483,34 @@ def _orders(gaps: Gaps) -> str:
 
 def _note(gaps: Gaps) -> str:
     part = gaps.part
+    return f"{part.call} // {part.words.strip(_BARE)}" if _is_last(part) else ""
+
+
+def _is_last(part: Trailing) -> bool:
+    """Whether nothing but a note follows the words on their line."""
     after = part.text[part.place.end :].split("\n")[0].lstrip(" \t;\r")
-    is_last = not after or after.startswith("//")
-    return f"{part.call} // {part.words.strip(_BARE)}" if is_last else ""
+    return not after or after.startswith("//")
+
+
+def _as_note(part: Trailing) -> dict[str, str]:
+    """Return how words behind a whole instruction are written as a note, where they may be one.
+
+    What has a number or a sign of a program, or is joined to the instruction, says more of it.
+    """
+    is_joined = lexicon_meaning(part.row[0].text, "then", "and", "or") or part.row[0].text in (
+        "AND",
+        "OR",
+    )
+    is_prose = all(it.kind is WORD or it.text in _IN_PROSE for it in part.row)
+    words = part.words.strip(_BARE)
+    if is_joined or not is_prose or not words or not lines.is_right(part.tokens, part.names):
+        return {}
+    is_order = any(it.text in WORDS and it.source == it.text for it in part.row)
+    is_order |= any(lexicon_meaning(it.text, "unit")[:1] in _MEASURES for it in part.row)
+    if is_order:
+        return {}
+    note = f"// {words}"
+    return {"note": f"{part.call} {note}"} if _is_last(part) else {"last_note": note}
 
 
 _GAPS: dict[str, Callable[[Gaps], str]] = {

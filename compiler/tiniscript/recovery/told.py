@@ -19,7 +19,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, drop_wrong_offers
 from tiniscript.recovery import slips
-from tiniscript.recovery.bracketed import bracketed
+from tiniscript.recovery.bracketed import answered, bracketed
 from tiniscript.recovery.calls import misplaced_values
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
@@ -29,7 +29,9 @@ from tiniscript.recovery.invisible import invisible
 from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.leftovers import leftovers, setup_and_end_leftovers
+from tiniscript.recovery.logo import turtle
 from tiniscript.recovery.meant import meant_in
+from tiniscript.recovery.motors import one_by_one
 from tiniscript.recovery.notes import noted
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
@@ -89,6 +91,7 @@ def told_of(
     message = drop_wrong_offers(message, text, check)  # what is offered is right
     message = conserving(message, text, kit)  # what is made keeps what was written
     message = [bracketed(item, text, kit, is_offered=False) for item in message]
+    message = [answered(item, text) for item in message]
     message = with_sample(message, text, kit)  # of a distance that nobody wrote it says: an example
     message = [invisible(item, text) for item in message]
     return codes.in_order([pointed(item, source) for item in message])
@@ -148,6 +151,17 @@ def _beginning(wrong: Wrong) -> Findings:
 def _calls(wrong: Wrong) -> Findings:
     """Return what is wrong with calls that have all their values in another form (`calls`)."""
     return _with_edits(misplaced_values(wrong.source))
+
+
+def _motors(wrong: Wrong) -> Findings:
+    """Return what is wrong with motors that are set one by one (`motors`)."""
+    found = one_by_one(wrong.source)
+    return Findings([message for message, _ in found], [edit for _, edit in found])
+
+
+def _turtle(wrong: Wrong) -> Findings:
+    """Return what is wrong with lines of Logo, whose words have one number each (`logo`)."""
+    return _with_edits(turtle(wrong.source, wrong.kit))
 
 
 def _given_back(wrong: Wrong) -> Findings:
@@ -215,8 +229,9 @@ def _words_of_blocks(wrong: Wrong) -> Findings:
 
 # Laws of their own come before what a search finds surely, and what it guesses comes last.
 READERS: tuple[Callable[[Wrong], Findings], ...] = (
-    _notes, _labels, _given_back, _beginning, _keys, _shares, _calls, _counters, _frame,
-    _wrong_start, _sure_findings, _leftovers, _words_after, _likely_findings, _words_of_blocks,
+    _notes, _labels, _given_back, _beginning, _keys, _shares, _motors, _turtle, _calls, _counters,
+    _frame, _wrong_start, _sure_findings, _leftovers, _words_after, _likely_findings,
+    _words_of_blocks,
 )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from functools import cached_property
 from itertools import accumulate, dropwhile, pairwise, takewhile
 from typing import NamedTuple
 
-from tiniscript.base.fixed_point import as_text
+from tiniscript.base.fixed_point import ONE, as_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.spelling import nearest
@@ -77,6 +77,8 @@ _UNTIL_BLOCK = re.compile(
     rf"(?P<power>[0-9]+)\s*\)[\s;]*(?:{words_of('end')}[ _]?UNTIL\b)?"
 )
 _UNTIL_END = re.compile(rf"{words_of('end')}_?{words_of('until')}")
+_PLAIN_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+_TAKING = ("F", "B", "M", "BEEP", "W")  # of values alone: which way first, then the others
 _SLOW = 20  # an example of a low power
 _MANY_BELOW = 6  # instructions that an example takes into a block
 _ENDS = re.compile(rf"\b{words_of('end')}")
@@ -211,6 +213,7 @@ class Usage:
         self.names = text.names
         self.found = diagnostic
         self.piece = instruction_at(diagnostic.span, text.source)
+        self.is_begun = self.text[: self.piece.start].strip().upper() == "SB|"
         self.is_first = diagnostic.span.start == self.piece.start
         self.behind_it = self.text[diagnostic.span.end :]
         self.row = lexemes(self.source[self.piece])
@@ -405,7 +408,8 @@ class Usage:
         is_call = all(float(number) <= MOST_POWER for number in numbers)
         if angle and not is_timed:
             return _Turn(way, angle, f"({angle} DEG, 60)")
-        if len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
+        is_long = len(turns) == 1 and not any(it.endswith(" s") for it in turns[0].samples)
+        if is_long and turns[0].is_side_free:
             return _Turn(way, "", turns[0].text[1:])
         if not way and is_call and lines.is_right(lexemes(f"L{values}"), self.names):
             return _Turn(way, "", values)  # `VOLTA(2, 80)`
@@ -1076,6 +1080,25 @@ def _leading_filler(gaps: Gaps) -> str:
     return right if found.is_first and is_said else ""
 
 
+def _may_be(argument: Argument, number: float) -> bool:
+    is_long = argument.unit == "s" and number >= LONG_S
+    return argument.low <= number * ONE <= argument.high and not is_long
+
+
+def _taking(gaps: Gaps) -> list[str]:
+    """The values in brackets that no word is before, behind each word that takes such ones."""
+    usage = _usage_at(gaps)
+    values = [it.strip() for it in usage.source[usage.piece].strip("() ").split(",")]
+    if not all(_PLAIN_NUMBER.fullmatch(value) for value in values):
+        return []
+    known = (WORDS[word] for word in _TAKING if len(WORDS[word].arguments) == len(values))
+    return [
+        f"{word.text}({', '.join(values)})"
+        for word in known
+        if all(_may_be(its, float(it)) for its, it in zip(word.arguments, values, strict=True))
+    ]
+
+
 def _in_capitals(gaps: Gaps) -> str:
     found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
     return right if found.source[found.found.span].isupper() else right.capitalize()
@@ -1194,6 +1217,9 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "words_behind": _words_behind, "before": _gap_of(lambda it: it.found.values["before"]),
     "plain_letters": _unaccented_name, "letters_mean": _gap_of(lambda it: it.letters[1]),
     "letters_usage": _gap_of(lambda it: it.usage(it.letters[1])), "called_here": _called_name,
+    "taking_one": lambda gaps: "".join(_taking(gaps)[:1]),
+    "taking_another": lambda gaps: "".join(_taking(gaps)[1:2]),
+    "waiting": _gap_of(lambda it: "SB|" if it.around.begun == "SB" and it.is_begun else ""),
     "lamp_here": _lamp_here,
     "said_first": _leading_filler, "cased": _in_capitals,
 }  # fmt: skip

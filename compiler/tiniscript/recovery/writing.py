@@ -13,6 +13,7 @@ from tiniscript.syntax.lexer import NUMBER, WORD, Token
 # What the lexicon calls the signs that somebody says.
 SPOKEN = {"open": "(", "close": ")", "comma": ",", "semicolon": ";", "bar": "|"}
 _SPOKEN = re.compile(rf"\b{words_of('sign').replace('_', ' ')}\b")
+_NAMED_LETTER = re.compile(rf"(?i)\b{words_of('spelt').replace('_', ' ')}(?=\s*\()")
 LONGEST_BLOCK = 160  # characters of one that a message shows
 PLAIN_SIGNS = str.maketrans("“”„‘’", '"""\'\'')
 PLAIN_SIGNS |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
@@ -95,12 +96,54 @@ def with_signs(line: str) -> str:
     if len(text) != len(line):
         return line
     found = [*_SPOKEN.finditer(text)]
-    said = [lexicon_meaning(match[0].replace(" ", "_"), "sign")[0] for match in found]
+    said = [_meaning(match[0], "sign") for match in found]
+    is_bare = "bracket" in said
+    said = _with_closed(said)
     is_begun = said[:1] == ["bar"] and text[: found[0].start()].strip() in ("SI", "SB")
-    if said.count("open") != said.count("close") or not ("open" in said or is_begun):
+    names = " ".join(said).split()
+    opened, closed = names.count("open"), names.count("close")
+    if not closed <= opened <= closed + is_bare or not (opened or is_begun):
         return line
-    for match, name in zip(found[::-1], said[::-1], strict=True):
+    for match, names in zip(found[::-1], [name.split() for name in said[::-1]], strict=True):
         before, after = line[: match.start()].rstrip(), line[match.end() :].lstrip()
-        sign = SPOKEN[name]
-        line = f"{before}{sign}{' ' * (sign in ',;' and bool(after))}{after}"
-    return line
+        sign = "".join(SPOKEN[name] for name in names)
+        line = f"{before}{sign}{' ' * (sign[-1] in ',;' and bool(after))}{after}"
+    line += ")" * (line.count("(") - line.count(")"))
+    return _NAMED_LETTER.sub(
+        lambda it: lexicon_meaning(plain(it[0]).replace(" ", "_"), "spelt")[0], line
+    )
+
+
+def _meaning(words: str, kind: str) -> str:
+    return lexicon_meaning(words.replace(" ", "_"), kind)[0]
+
+
+def is_guessed(line: str) -> bool:
+    """Whether a dictated line has what may mean another sign: `ve` is a letter and a word."""
+    kinds = [
+        lexicon_meaning(it[0].replace(" ", "_"), "sign")[0] for it in _SPOKEN.finditer(plain(line))
+    ]
+    return "bracket" in kinds or _NAMED_LETTER.search(_SPOKEN.sub("(", plain(line))) is not None
+
+
+def spoken_signs(text: str) -> list[str]:
+    """Return the names of signs in a text that is dictated with them, each once."""
+    body = without_note(text)[0]
+    if "\n" in text or with_signs(body) == body:
+        return []
+    return [*dict.fromkeys(body[slice(*it.span())].lower() for it in _SPOKEN.finditer(plain(body)))]
+
+
+def _with_closed(said: Sequence[str]) -> list[str]:
+    """Return signs in which a bracket that nobody says opens or closes does so in turn.
+
+    One that is open at the end of its instruction is closed there.
+    """
+    result: list[str] = []
+    is_open = False
+    for name in said:
+        name = ("close" if is_open else "open") if name == "bracket" else name
+        is_left = is_open and name == "semicolon" and "bracket" in said
+        result.append("close semicolon" if is_left else name)
+        is_open = name == "open" or (is_open and name not in ("close", "semicolon"))
+    return result

@@ -19,7 +19,7 @@ Body = Sequence[ast.Instruction]
 def find_move_end(source: Source, program: ast.Program, move: ast.Command) -> dict[str, str]:
     """Return `whole`, the move that ends there, or what is `running`, its motors; `used` is either
     in the text. Empty if no S ends it."""
-    if move.word not in _MOTORS or len(move.arguments) != 2:
+    if move.word not in _MOTORS or not move.arguments or len(move.arguments) != 2:
         return {}
     power = source[move.arguments[1].span]
     if not power.isdecimal():

@@ -6,20 +6,22 @@ branch, `IF(C);S;ELSE;BEEP(1, 440);ENDIF`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.syntax import ast
 
+_END = re.compile(r"(?i)\bEND_?IF\Z")
 _MOST_CHARACTERS = 180  # characters that a message can show
 
 
 class LeftOut(NamedTuple):
-    """The IF with the rest in its other branch: in one line, and as an edit of the text."""
+    """The IF with the rest in its other branch: in one line, and as edits of the text."""
 
     shown: str
-    edit: Edit
+    edits: tuple[Edit, ...]
 
 
 def rewrite_without_break(source: Source, parsed: ast.Program, node: ast.Break) -> LeftOut | None:
@@ -49,7 +51,7 @@ def _rewrite_if(
     arm = if_node.arms[0]
     branches = [[*arm.body], [*if_node.otherwise]]
     last = [branch[-1] if branch else None for branch in branches]
-    if node not in last or arm.condition is None or "//" in source[whole]:
+    if node not in last or arm.condition is None:
         return None
     ended = last.index(node)
     said = [[source[each.span] for each in branch if each is not node] for branch in branches]
@@ -58,7 +60,28 @@ def _rewrite_if(
     head = f"IF({source[arm.condition.span]})"
     parts = [head, *said[0], *(["ELSE", *said[1]] if said[1] else []), "ENDIF"]
     shown = ";".join(" ".join(part.split("\n")) for part in parts)
-    if len(shown) > _MOST_CHARACTERS or any("\n" in part for part in parts):
+    if len(shown) > _MOST_CHARACTERS or any("\n" in part or "//" in part for part in parts):
         return None
+    if "//" in source[whole]:
+        return _with_notes(source, if_node, rest, node, shown)
     between = "\n" if "\n" in source[whole] else "; " if "; " in source[whole] else ";"
-    return LeftOut(shown, Edit(whole, between.join(parts)))
+    return LeftOut(shown, (Edit(whole, between.join(parts)),))
+
+
+def _with_notes(
+    source: Source, if_node: ast.If, rest: Sequence[ast.Instruction], node: ast.Break, shown: str
+) -> LeftOut | None:
+    """Return the same where lines have notes: each stays where it is, and ENDIF comes last."""
+    body, otherwise = if_node.arms[0].body, if_node.otherwise
+    end = _END.search(source[if_node.span])
+    if node is not body[-1] or otherwise or end is None:
+        return None
+    here = if_node.span.start
+    last = source.text.find("\n", rest[-1].span.end)
+    last = last if last >= 0 else len(source.text)
+    edits = (
+        Edit(node.span, "S" if len(body) == 1 else ""),
+        Edit(Span(here + end.start(), here + end.end()), "ELSE"),
+        Edit(Span(last, last), "\nENDIF"),
+    )
+    return LeftOut(shown, edits)

@@ -25,6 +25,7 @@ from tiniscript.semantics.symbols import MOST_SUGGESTIONS, Scope
 from tiniscript.syntax import ast
 from tiniscript.syntax.lexer import WORD, scan
 
+_LETTER = re.compile(r"(?i)(?<!\w)([A-Z])[ \t]*\(")
 _DIGITS = "0123456789"
 _LAMP_NAME = "LED"  # in the kits that have one
 _TRUTH_BY_VALUE = {"TRUE": "TRUE", "1": "TRUE", "FALSE": "FALSE", "0": "FALSE"}
@@ -79,11 +80,24 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
         suggestion = ""  # `PASO2`, where there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
     letters = [word[0]] if is_held and word[0] in WORDS else expand_short(word)
+    letters = letters or _initial(word, scope.source.text)
     count = len(node.arguments or ())
     suggestion = next(
         (letter for letter in letters if len(WORDS[letter].arguments) == count), suggestion
     )
     scope.report(codes.UNKNOWN_WORD, span, None, found=scope.source[span].upper(), near=suggestion)
+
+
+def _initial(word: str, text: str) -> list[str]:
+    """Return the command that a letter begins in the language of the other letters of a text.
+
+    `A(2, 70)` is F beside `D(1, 50)`, which only in Spanish and Portuguese is a command: forward is
+    `adelante` there. Beside an F of its own it is none.
+    """
+    said = lexicon_meaning(word, "initial")
+    calls = {match.upper() for match in _LETTER.findall(text)} if said else set()
+    is_other = any(expand_short(other) for other in calls - {word} if other not in WORDS)
+    return [*said] if is_other and not calls.intersection(said) else []
 
 
 def report_placeholders(scope: Scope, node: ast.Command, word: Word, count: int) -> None:

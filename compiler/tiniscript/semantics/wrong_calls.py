@@ -129,7 +129,7 @@ class WrongCalls:
             self.scope.report(codes.BREAK_OUTSIDE, node.span)
             return
         values = {"fix": found.shown}
-        repair = Repair((found.edit,), False)
+        repair = Repair(found.edits, False)
         self.scope.diagnostics.append(
             Diagnostic(codes.BREAK_OUTSIDE, node.span, values, None, repair)
         )

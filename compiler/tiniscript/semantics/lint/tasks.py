@@ -18,6 +18,7 @@ from tiniscript.semantics.lint.look import Look
 from tiniscript.semantics.optimizer import known_value
 
 _WHEN_HEADER = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
+_MANY = 6  # instructions that a suggestion shows
 _INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call)
 
 
@@ -49,8 +50,13 @@ def _take_turns(tasks: list[ir.Body], look: Look) -> None:
     if len(begin) < 2 or not tasks[0] or begin[0] is not tasks[0][0]:
         return
     first = look.source[begin[0].span]
+    values = {"first": first, "both": "M(60, 30);W(4)"}
+    spans = sorted(item.span for body in (*tasks, look.program.body) for item in body)
+    orders = [look.source[span] for span in spans]
+    if len(orders) <= _MANY and not any("\n" in order for order in orders):
+        values["after"] = ";".join(orders)
     for item in begin[1:]:
-        look.report(codes.NO_MOTORS, item.span, first=first, both="M(60, 30);W(4)")
+        look.report(codes.NO_MOTORS, item.span, **values)
 
 
 class _Motors:

@@ -1,0 +1,140 @@
+"""Logo in one line, `REPEAT 4 [FD 30 RT 90]`: each word has one number, and no separator follows.
+
+A turtle goes steps and turns degrees, and has no power: what is read gets centimetres, DEG and a
+power, which is the program's own where it has one, and else an example. It is only shown.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import BLOCK_ENDS, POWER, UNIT_OF, WORDS, lexicon_meaning
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic, Repair
+from tiniscript.recovery.meanings import LONG_S, Names, lexemes, plain
+from tiniscript.recovery.writing import without_note
+
+_TOKEN = re.compile(
+    r"(?P<word>[^\W\d]\w*)|(?P<number>\d+(?:\.\d+)?)|(?P<sign>[\[\]])"
+    r"|(?P<apart>[ \t]*[;|][ \t;]*)|[ \t,]+"
+)
+_LEAST_STEPS = 5  # fewer are rather seconds
+_DEEPEST = 4  # loops
+_MOST = 12  # instructions that are read as one
+
+
+class _Token(NamedTuple):
+    text: str
+    kind: str
+    span: Span
+
+
+def turtle(source: Source, kit: Kit) -> list[Diagnostic]:
+    """Return what is told of each line of Logo."""
+    names = Names([lexemes(line) for line in source.text.split("\n")], kit)
+    diagnostics: list[Diagnostic] = []
+    start = 0
+    for line in source.text.split("\n"):
+        pieces = _pieces(without_note(line)[0], start)
+        while pieces:
+            ends = range(min(len(pieces), _MOST), 0, -1)
+            tried = ((end, [token for piece in pieces[:end] for token in piece]) for end in ends)
+            found = ((end, _diagnostic(tokens, source, names)) for end, tokens in tried)
+            end, diagnostic = next((it for it in found if it[1]), (1, None))
+            diagnostics += [diagnostic] if diagnostic else []
+            pieces = pieces[end:]
+        start += len(line) + 1
+    return diagnostics
+
+
+def _pieces(body: str, start: int) -> list[list[_Token]]:
+    """Return the instructions of a line, each nothing where it has other signs."""
+    pieces: list[list[_Token]] = [[]]
+    depth = end = 0
+    is_read = True
+    for match in _TOKEN.finditer(body):
+        is_read = is_read and match.start() == end
+        end = match.end()
+        depth += (match[0] == "[") - (match[0] == "]")
+        if match["apart"] and (not depth or "|" in match[0]):
+            pieces[-1] = pieces[-1] if is_read else []
+            pieces.append([])
+            is_read = True
+        elif match.lastgroup and match.lastgroup != "apart":
+            span = Span(start + match.start(), start + match.end())
+            pieces[-1].append(_Token(plain(match[0]), match.lastgroup, span))
+    is_read = is_read and end == len(body.rstrip())
+    return pieces if is_read else [*pieces[:-1], []]
+
+
+def _diagnostic(tokens: Sequence[_Token], source: Source, names: Names) -> Diagnostic | None:
+    if not tokens:
+        return None
+    reader = _Reader(tokens, names)
+    orders, end = reader.orders(0, 0)
+    is_turtle = reader.is_bracketed or (reader.moves > 1 and reader.is_turned)
+    if not orders or end != len(tokens) or not is_turtle:
+        return None
+    place = Span(tokens[0].span.start, tokens[-1].span.end)
+    first = source[tokens[0].span]
+    fix = ";".join(orders)
+    right = re.split(r"\W", fix)[0]
+    values = {"found": first, "right": right, "fix": fix}
+    return Diagnostic(
+        codes.OTHER_LANGUAGE, place, values, place, Repair((Edit(place, fix),), False)
+    )
+
+
+class _Reader:
+    """Reads orders, each a word with its number; `is_turned`: by degrees, which are no seconds."""
+
+    def __init__(self, tokens: Sequence[_Token], names: Names) -> None:
+        self.tokens = tokens
+        self.names = names
+        self.power = names.usual.get(POWER.unit) or POWER.sample
+        self.is_bracketed = self.is_turned = False
+        self.moves = 0
+
+    def orders(self, k: int, depth: int) -> tuple[list[str], int]:
+        """Return the orders from a token on, and where they end; nothing where one is none."""
+        result: list[str] = []
+        while k < len(self.tokens) and self.tokens[k].text != "]":
+            word, after = self.tokens[k], self.tokens[k + 1 : k + 2]
+            if word.kind != "word" or not after or after[0].kind != "number":
+                return [], k
+            meant = self._meant(word.text)
+            if meant == "LOOP" and depth < _DEEPEST and self._sign(k + 2) == "[":
+                self.is_bracketed = True
+                inside, end = self.orders(k + 3, depth + 1)
+                if not inside or self._sign(end) != "]":
+                    return [], k
+                result += [f"LOOP({after[0].text})", *inside, BLOCK_ENDS["LOOP"]]
+                k = end + 1
+                continue
+            move = self._move(meant, after[0].text)
+            if not move:
+                return [], k
+            result.append(move)
+            k += 2
+        return result, k
+
+    def _sign(self, k: int) -> str:
+        return self.tokens[k].text if k < len(self.tokens) else ""
+
+    def _meant(self, word: str) -> str:
+        if word in WORDS:
+            return word
+        said = lexicon_meaning(word, "turtle")
+        return said[0] if said and not self.names.is_name(word) else self.names.meant(word)
+
+    def _move(self, word: str, number: str) -> str:
+        unit = UNIT_OF.get(word, "")
+        if not unit or float(number) < (_LEAST_STEPS if unit == "CM" else LONG_S):
+            return ""
+        self.moves += 1
+        self.is_turned |= unit == "DEG"
+        return f"{word}({number} {unit}, {self.power})"

@@ -1,0 +1,96 @@
+"""How a program begins in words, with the names of signs, or with what comes above `SI|`."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source, apply_edits
+from tiniscript.diagnostics.fixing import edits_of, repair_program
+from tiniscript.diagnostics.rendering import message
+
+HEADS = ("SI", "Sí", "si", "SB")
+ORDERS = {
+    "forward two seconds at eighty percent then turn right one second at fifty percent then stop":
+        "F(2, 80);R(1, 50);STOP",
+    "adelante 3 segundos al 40 por ciento": "F(3, 40)",
+    "avance 3 segundos a 40 por cento e depois pare": "F(3, 40);S",
+    "turn left 2 seconds at 30 percent": "L(2, 30)",
+}  # fmt: skip
+# Names of signs: open, close, comma, separator, bar, and of letters.
+SPOKEN = (
+    ("abre paréntesis", "cierra paréntesis", "coma", "punto y coma", "barra", "efe", "erre"),
+    ("paréntesis", "paréntesis", "coma", "punto y coma", "barra", "efe", "ere"),
+    ("paréntesis", "", "coma", "punto y coma", "barra", "efe", "erre"),
+    ("abre parêntese", "fecha parêntese", "vírgula", "ponto e vírgula", "barra", "efe", "erre"),
+    ("open bracket", "close bracket", "comma", "semicolon", "bar", "ef", "ar"),
+    ("bracket", "bracket", "comma", "semicolon", "bar", "ef", "are"),
+)
+VALUES = (("2, 60", ["F", "B"]), ("1, 440", ["BEEP"]), ("-30, 40", ["M"]), ("2", ["W"]))
+
+
+@pytest.mark.parametrize("head", HEADS)
+@pytest.mark.parametrize("words", ORDERS)
+def test_si_before_orders_in_words_asks_nothing(head: str, words: str) -> None:
+    for text in (f"{head} {words}", f"{head}, {words}", f"{head} {words}\nS", f"{head} {words};"):
+        told = check(text)[0]
+        begun = "SB" if head == "SB" else "SI"
+        assert told.code.number == "TS036", text
+        assert told.values["fix"] == f"{begun}|{ORDERS[words]}", text
+
+
+@pytest.mark.parametrize(
+    "words", ["hay una pared, para", "DISTANCE < 10 avanza", "see a wall stop"]
+)
+def test_si_before_a_question_asks(words: str) -> None:
+    assert not any(each.code.number == "TS036" for each in check(f"si {words}"))
+
+
+@pytest.mark.parametrize("said", SPOKEN)
+def test_signs_that_are_named_are_written(said: tuple[str, ...]) -> None:
+    opened, closed, comma, separator, bar, forward, right = said
+    call = f"{forward} {opened} 2 {comma} 80 {closed}".strip()
+    turn = f"{right} {opened} 1 {comma} 50 {closed}".strip()
+    meant = {f"{call} {separator} {turn}": "F(2, 80);R(1, 50)", call: "F(2, 80)"}
+    for (words, line), place in product(
+        meant.items(), ("{}", "W(1)\n{}\nS", "IF(DISTANCE < 9)\n{}\nENDIF")
+    ):
+        text = place.format(words)
+        told = check(text)[0]
+        assert (told.code.number, told.values.get("fix")) == ("TS010", line), text
+        assert told.values["spoken"], text
+    text = f"Si {bar} {call}"
+    assert check(text)[0].values["fix"] == "SI|F(2, 80)"
+    assert repair_program(text, check).text == text  # a letter's name may be a word
+
+
+@pytest.mark.parametrize("kind", ["int ", "float ", "let ", "const int ", "variable "])
+@pytest.mark.parametrize("head", ["SI|", "SB|", "si |"])
+def test_a_typed_variable_above_si_comes_behind_it(kind: str, head: str) -> None:
+    for end, note, more in product((";", ""), ("", " // fast"), ("", "int t = 2\n")):
+        wrong = f"{kind}vel = 70{end}{note}\n{more}{head}F(2, vel)"
+        begun = "".join(head.split()).upper()
+        right = f"{begun}vel = 70{end}{note}\n{more.replace('int ', '')}F(2, vel)"
+        assert (
+            apply_edits(wrong, [it for each in check(wrong) for it in edits_of(each) or []])
+            == right
+        )
+        assert repair_program(wrong, check).text == right
+
+
+@pytest.mark.parametrize(
+    "place", ["SI|{}", "SB|{}", "W(1);{}", "{};S", "IF(DISTANCE < 9);{};ENDIF"]
+)
+@pytest.mark.parametrize(("values", "words"), VALUES)
+def test_values_without_a_word_get_those_that_take_them(
+    values: str, words: list[str], place: str
+) -> None:
+    text = place.format(f"({values})")
+    (told,) = [each for each in check(text) if each.is_mistake]
+    offered = [told.values["one"], told.values.get("another")]
+    assert [it for it in offered if it] == [f"{word}({values})" for word in words], text
+    for language in ("en", "es", "pt"):
+        said = message(told, Source(text), language)
+        assert f"({values})" in said.message and ("SB|" in said.message) is (place == "SB|{}")

@@ -1,0 +1,50 @@
+"""A number that nobody wrote is taken from the program, or said to be an example."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source
+from tiniscript.diagnostics.rendering import message
+
+PLACES = (
+    "SI|F(3, {p}); {}; F(3, {p})", "F(3, {p});{}", "{};F(3, {p})", "F(3, {p})\n{}\nB(1, {p})",
+    "F(3, {p});IF(DISTANCE < 9);{};ENDIF", "DEF A1;{};END_DEF;A1;F(3, {p})",
+    "TASK;{};END_TASK;W(1);F(3, {p})",
+)  # fmt: skip
+ALONE = ("SI|{}", "{}", "W(3);{}", "{};W(3)", "IF(DISTANCE < 9);{};ENDIF", "DEF A1;{};END_DEF;A1")
+SAID = {"en": "is an example", "es": "es solo un ejemplo", "pt": "é só um exemplo"}
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("word", ["F", "B", "L", "R"])
+def test_a_power_that_is_missing_is_the_one_of_the_others(word: str, place: str) -> None:
+    for power in ("50", "35"):
+        wrong = place.format(f"{word}(1)", p=power)
+        told = next(each for each in check(wrong) if each.is_mistake)
+        assert told.values["fix"] == f"{word}(1, {power})", wrong
+        assert not told.values.get("sample"), wrong
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_where_the_others_have_several_it_is_an_example(place: str) -> None:
+    wrong = place.format("R(1)", p="50") + ";L(1, 30)"
+    told = next(each for each in check(wrong) if each.is_mistake)
+    assert (told.values["fix"], told.values["sample"]) == ("R(1, 80)", "80 %"), wrong
+
+
+@pytest.mark.parametrize("place", ALONE)
+@pytest.mark.parametrize("language", SAID)
+def test_an_example_is_said_to_be_one(place: str, language: str) -> None:
+    for call, fix, sample in (("R(1)", "R(1, 80)", "80 %"), ("BEEP(1)", "BEEP(1, 440)", "440 Hz")):
+        text = place.format(call)
+        told = next(each for each in check(text) if each.is_mistake)
+        said = message(told, Source(text), language)
+        assert said.fix == fix, text  # and can be copied as it stands
+        assert f"{sample} {SAID[language]}" in said.message, text
+
+
+@pytest.mark.parametrize("text", ["F(2, 8O)", "F(dos, ochenta)", "W(uno)", "F(2 seg 80)"])
+def test_a_number_that_is_written_in_another_form_is_no_example(text: str) -> None:
+    assert not any(each.values.get("sample") for each in check(text))

@@ -1,0 +1,52 @@
+"""Motors that are set one by one: a pair is one M with both powers, wherever it stands."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source, apply_edits
+from tiniscript.diagnostics.fixing import edits_of, repair_program
+from tiniscript.diagnostics.rendering import message
+
+PAIRS = (
+    ("motorLeft.run", "motorRight.run"), ("left_motor", "right_motor"), ("motorL", "motorR"),
+    ("motorIzquierdo", "motorDerecho"), ("MotorEsquerdo.girar", "MotorDireito.girar"),
+    ("motor_izq", "motor_der"), ("LeftMotor.setSpeed", "RightMotor.setSpeed"),
+)  # fmt: skip
+PLACES = (
+    "SI|{}", "{}", "W(3);{}", "{};W(3)", "SI|W(3);{};S", "IF(DISTANCE < 9);{};ENDIF",
+    "DEF A1;{};END_DEF;A1", "TASK;{};END_TASK", "LOOP(2)\n{}\nEND_LOOP",
+)  # fmt: skip
+BETWEEN = (";", "; ", "\n", ";\n")
+POWERS = (("60", "60"), ("-30", "45"))
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("pair", PAIRS)
+def test_a_pair_is_one_m_with_both_powers(pair: tuple[str, str], place: str) -> None:
+    for between, (left, right), is_turned in product(BETWEEN, POWERS, (False, True)):
+        calls = (f"{pair[0]}({left})", f"{pair[1]}({right})")
+        wrong = place.format(between.join(calls[::-1] if is_turned else calls))
+        edits = [edit for each in check(wrong) for edit in edits_of(each) or []]
+        assert apply_edits(wrong, edits) == place.format(f"M({left}, {right})"), wrong
+        assert repair_program(wrong, check).text == wrong  # its power is no percentage elsewhere
+
+
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+@pytest.mark.parametrize("place", PLACES)
+def test_of_one_alone_it_is_said_that_m_has_both(place: str, language: str) -> None:
+    for pair in PAIRS:
+        for name in pair:
+            text = place.format(f"{name}(60)")
+            (told,) = [message(each, Source(text), language) for each in check(text)]
+            assert "M(50, 80)" in told.fix, text
+
+
+@pytest.mark.parametrize("between", BETWEEN)
+def test_a_name_that_a_program_defines_is_its_own(between: str) -> None:
+    defs = (f"DEF MOTOR_{side}(X);M(X, X);END_DEF" for side in "LR")
+    text = between.join((*defs, "MOTOR_L(60)", "MOTOR_R(30)", "F(2 80)"))
+    assert [each.code.number for each in check(text)] == ["TS017"]

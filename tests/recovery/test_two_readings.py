@@ -1,0 +1,72 @@
+"""Two readings are two offers, and the one that changes no movement comes first."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.base.source import Source
+from tiniscript.diagnostics.fixing import edits_of, repair_program
+from tiniscript.diagnostics.rendering import message
+
+LAST = (
+    "{}", "SI|{}", "W(1);{}", "W(1)\n{}\nW(1)", "IF(DISTANCE < 9)\n{}\nENDIF",
+    "DEF A1\n{}\nEND_DEF\nA1", "TASK\n{}\nEND_TASK",
+)  # fmt: skip
+BEFORE_OTHERS = ("{};W(1)", "SI|W(1);{};S", "IF(DISTANCE < 9);{};ENDIF")
+# What may be a note, and the other thing that it may say.
+ASIDES = {
+    "avanza otra vez": "LOOP(2);F(3, 50);END_LOOP", "again": "LOOP(2);F(3, 50);END_LOOP",
+    "siempre": "LOOP(FOREVER);F(3, 50);END_LOOP", "al reves": "B(3, 50)",
+    "gira a la derecha": "F(3, 50);R(2, 50)", "turn right": "F(3, 50);R(2, 50)",
+    "vira para a direita": "F(3, 50);R(2, 50)",
+}  # fmt: skip
+IFS = (
+    ("DISTANCE < 20", "DISTANCE > 20"), ("DISTANCE < 20", "DISTANCE >= 20"),
+    ("DISTANCE > 35", "DISTANCE < 35"), ("LIGHT_L = 5", "LIGHT_L <> 5"), ("KEY_A", "NOT KEY_A"),
+)  # fmt: skip
+AROUND = ("{}", "SI|W(1);{}", "{};S", "LOOP(3);{};END_LOOP", "DEF A1;{};END_DEF;A1")
+
+
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+@pytest.mark.parametrize("words", ASIDES)
+def test_words_that_may_be_a_note_are_one_first(words: str, language: str) -> None:
+    for place in (*LAST, *BEFORE_OTHERS):
+        text = place.format(f"F(3, 50) {words}")
+        told = next(each for each in check(text) if each.code.number in ("TS085", "TS074"))
+        fix = message(told, Source(text), language).fix
+        note = f"F(3, 50) // {words}" if place in LAST else f"// {words}"
+        assert 0 < fix.find(note) < fix.find(ASIDES[words]), text
+        assert repair_program(text, check).text == text
+
+
+@pytest.mark.parametrize("between", [";", "\n"])
+@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize(("asked", "other"), IFS)
+def test_an_else_that_asks_the_opposite_asks_nothing(
+    asked: str, other: str, around: str, between: str
+) -> None:
+    body = between.join((f"IF({asked})", "B(1, 60)", f"ELSE({other})", "F(1, 60)", "ENDIF"))
+    wrong = around.format(body)
+    told = next(each for each in check(wrong) if each.code.number == "TS039")
+    assert (told.values["fix"], told.values["rival"]) == ("ELSE", f"ELSEIF({other})"), wrong
+    (edit,) = edits_of(told) or []
+    assert wrong[slice(*edit.span)] == f"ELSE({other})" and edit.text == "ELSE"
+
+
+@pytest.mark.parametrize("around", AROUND)
+@pytest.mark.parametrize("other", ["DISTANCE > 40", "LIGHT_L > 20", "DISTANCE < 10"])
+def test_an_else_that_asks_something_else_is_an_elseif(around: str, other: str) -> None:
+    wrong = around.format(f"IF(DISTANCE < 20);B(1, 60);ELSE({other});F(1, 60);ENDIF")
+    told = next(each for each in check(wrong) if each.code.number == "TS039")
+    assert told.values["fix"] == f"ELSEIF({other})"
+
+
+@pytest.mark.parametrize("one", ["F(3, 60)", "L(2, 40)"])
+@pytest.mark.parametrize("other", ["B(3, 60)", "F(1, 30)"])
+def test_tasks_that_drive_may_be_meant_one_after_the_other(one: str, other: str) -> None:
+    text = f"SI|TASK;{one};END_TASK;TASK;{other};END_TASK"
+    (warning,) = check(text)
+    assert re.search(rf"{re.escape(one)};{re.escape(other)}", warning.values["after"])
