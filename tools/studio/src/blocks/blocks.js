@@ -3,18 +3,19 @@
 // The text is what is kept: a change of the blocks is told to the page, which asks for their text.
 
 import * as Blockly from 'blockly/core';
-import { clear, drawForm, formOf, isLoose, keepPlaces, knownPlaces, makeRoom, showForm } from './form.js';
+import { clear, drawForm, formOf, isLoose, keepPlaces, kindsIn, knownPlaces, makeRoom, showForm } from './form.js';
 import { follow, labelCalls } from './own_words.js';
 import { setActuators } from './places.js';
-import { Checker, defineBlocks, setRobot } from './shapes.js';
+import { Checker, defineBlocks, setNew, setRobot } from './shapes.js';
 import { pictureOf } from './picture.js';
 import { look } from './styles.js';
-import { toolbox } from './toolbox.js';
+import { levelOf, toolbox } from './toolbox.js';
 import { text, textsOf } from '../page/texts.js';
 
 /** @import { Form, Range } from './form.js' */
 /** @typedef {import('./toolbox.js').Level} Level */
 /** @typedef {import('../python.js').Finding} Finding */
+/** @typedef {import('../page/page_state.js').Taught} Taught */
 /** @typedef {{changed: () => void, toggle: (place: {line: number, column: number}) => void}} Told */
 
 const NARROW = 700; // pixels of width, below which blocks are smaller
@@ -38,6 +39,10 @@ export class Blocks {
   #used = { names: [], words: [] };
   /** @type {string[]} */
   #taught = [];
+  /** Kinds that the open lesson is the first to speak of. @type {string[]} */
+  #new = [];
+  /** Kinds that have been in the program. @type {Set<string>} */
+  #tried = new Set();
   /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
   #places = [];
   #isTouched = false; // by somebody, who may have scrolled
@@ -56,16 +61,16 @@ export class Blocks {
    * @param {HTMLElement} place
    * @param {string} robot
    * @param {Level} level
-   * @param {Told} told
+   * @param {Told | null} told null of blocks that are only drawn
    */
-  constructor(place, robot, level, told) {
+  constructor(place, robot, level, told = null) {
     this.#place = place;
     this.#told = told;
     this.#level = level;
     Blockly.registry.register(Blockly.registry.Type.CONNECTION_CHECKER, 'tiniscript', Checker, true);
     Object.assign(Blockly.config, { snapRadius: SNAPS, connectingSnapRadius: STAYS });
     this.#leaveOut();
-    this.#offerBreakpoints();
+    if (told) this.#offerBreakpoints(told);
     setRobot(robot);
     setActuators(robot);
     this.#workspace = this.#begin();
@@ -84,10 +89,10 @@ export class Blocks {
   }
 
   /** In the menu of a block, and by F9. */
-  #offerBreakpoints() {
+  #offerBreakpoints(/** @type {Told} */ told) {
     const toggle = (/** @type {any} */ block) => {
       const place = block && this.#places.find(([id]) => id === block.id)?.[1];
-      if (place?.[0]) this.#told.toggle({ line: place[0], column: place[1] });
+      if (place?.[0]) told.toggle({ line: place[0], column: place[1] });
       return Boolean(place?.[0]);
     };
     if (Blockly.ContextMenuRegistry.registry.getItem('breakpoint')) return; // a page has its blocks once
@@ -107,20 +112,22 @@ export class Blocks {
   }
 
   #begin() {
+    const { common } = Blockly, before = this.#told ? null : common.getMainWorkspace(); // keys are those of the blocks that are seen
     Blockly.setLocale(textsOf('blockly'));
     defineBlocks();
     const isNarrow = innerWidth < NARROW;
     const workspace = withoutSound(() => Blockly.inject(this.#place, {
       ...this.#looks,
       plugins: { connectionChecker: 'tiniscript' },
-      toolbox: this.#offered(),
-      trashcan: !isNarrow,
+      ...(this.#told ? { toolbox: this.#offered() } : {}),
+      trashcan: Boolean(this.#told) && !isNarrow,
       comments: false,
       collapse: false,
       disable: false,
       move: { scrollbars: true, drag: true, wheel: true },
-      zoom: { controls: !isNarrow, wheel: false, pinch: true, startScale: isNarrow ? 0.6 : 0.75, minScale: 0.4, maxScale: 1.6 },
+      zoom: { controls: Boolean(this.#told) && !isNarrow, wheel: false, pinch: true, startScale: isNarrow ? 0.6 : 0.75, minScale: 0.4, maxScale: 1.6 },
     }));
+    if (before) common.setMainWorkspace(before);
     workspace.MAX_UNDO = 0;
     hideMeasure();
     hideConnections(workspace.getFlyout()?.getWorkspace().getCanvas());
@@ -128,7 +135,7 @@ export class Blocks {
       if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closed = this.#saidAt(event.blockId);
       if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
       follow(workspace, event);
-      this.#told.changed();
+      this.#told?.changed();
     });
     return workspace;
   }
@@ -169,18 +176,27 @@ export class Blocks {
     this.#offer();
   }
 
-  /** @param {string[]} kinds of blocks that the open lesson speaks of */
-  setTaught(kinds) {
-    this.#taught = kinds;
+  /** @param {Taught} taught what the open lesson speaks of */
+  setTaught({ offered, fresh }) {
+    this.#taught = offered;
+    this.#new = fresh;
     this.#offer();
   }
 
+  /** @param {string[]} kinds @returns {Level} the lowest one that offers them all */
+  levelOf(kinds) {
+    return levelOf(kinds, this.#used);
+  }
+
   #offered() {
-    return toolbox(this.#level, this.#used, this.#taught);
+    const fresh = this.#new.filter((kind) => !this.#tried.has(kind));
+    setNew(fresh);
+    this.#place.style.setProperty('--new', JSON.stringify(text('block_new')));
+    return toolbox(this.#level, this.#used, this.#taught, fresh);
   }
 
   #offer() {
-    this.#workspace.updateToolbox(this.#offered());
+    if (this.#told) this.#workspace.updateToolbox(this.#offered());
   }
 
   /** Other blocks as a PNG file, made in slices: nobody sees them here. @param {Form} form @param {string} robot @param {number} most pixels */
@@ -286,7 +302,10 @@ export class Blocks {
     const of = (/** @type {string} */ kind) => [...new Set(blocks.filter((block) => block.kind === kind).map((block) => block.word))].sort();
     const counts = new Map(blocks.filter((block) => block.kind === 'def').map((block) => [block.word, block.values.length]));
     const used = { names: of('assign'), words: [...counts].sort() };
-    if (JSON.stringify(used) === JSON.stringify(this.#used)) return;
+    const tried = kindsIn(blocks).filter((kind) => !this.#tried.has(kind));
+    for (const kind of tried) this.#tried.add(kind);
+    const isTried = tried.some((kind) => this.#new.includes(kind));
+    if (!isTried && JSON.stringify(used) === JSON.stringify(this.#used)) return;
     this.#used = used;
     if (!this.#workspace.isDragging()) this.#offer();
   }

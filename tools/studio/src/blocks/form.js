@@ -236,6 +236,11 @@ function partOf(block) {
   return part ? [part, word] : [word, ''];
 }
 
+/** @param {FormBlock[]} blocks @returns {string[]} their kinds, and those of their values */
+export function kindsIn(blocks) {
+  return blocks.flatMap(({ kind, values }) => [kind, ...values.flatMap((value) => value.flatMap(([op]) => KIND_OF.get(op) ?? []))]);
+}
+
 // -- a form to blocks ------------------------------------------------------------------------------
 
 /**

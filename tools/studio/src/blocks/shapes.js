@@ -19,6 +19,14 @@ export function setRobot(name) {
   robot = name;
 }
 
+/** @type {string[]} */
+let fresh = [];
+
+/** @param {string[]} kinds of blocks that glow where they are taken from */
+export function setNew(kinds) {
+  fresh = kinds;
+}
+
 /** @param {'sensor' | 'actuator'} role */
 export function devices(role) {
   return devicesOf(robot, role);
@@ -123,6 +131,11 @@ function add(block, message, what, kindOf, isFolded = false) {
 function named(field, name) {
   field.name = name;
   return field;
+}
+
+/** @param {any} block @param {string} kind */
+function glow(block, kind) {
+  if (block.isInFlyout && fresh.includes(kind)) block.addClass('fresh');
 }
 
 /** @param {Blockly.Block} block @param {string} kind @param {Kind} shape */
@@ -249,6 +262,7 @@ const IF = {
     this.setNextStatement(true);
     this.setStyle('control');
     this.setTooltip(tipOf('if'));
+    glow(this, 'if');
   },
 };
 
@@ -272,6 +286,7 @@ export function defineBlocks() {
       /** @this {Blockly.Block} */
       init() {
         build(this, kind, shape);
+        glow(this, kind);
         if (kind === 'def') /** @type {any} */ (this).addNames();
         this.setTooltip(tipOf(kind));
         if (shape.field === 'sensor' || shape.field === 'actuator') this.setTooltip(() => deviceTip(this));

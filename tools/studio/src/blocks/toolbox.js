@@ -128,12 +128,27 @@ function groups(used) {
 }
 
 /**
+ * @param {string[]} kinds of blocks
+ * @param {Used} used
+ * @returns {Level} the lowest one that offers them all
+ */
+export function levelOf(kinds, used) {
+  const rows = groups(used).flatMap(([, items]) => items);
+  const least = kinds.flatMap((kind) => {
+    const levels = rows.filter(([, { type }]) => type === kind).map(([level]) => LEVELS.indexOf(level));
+    return levels.length ? Math.min(...levels) : [];
+  });
+  return LEVELS[Math.max(0, ...least)] ?? 'few';
+}
+
+/**
  * @param {Level} level
  * @param {Used} used
  * @param {string[]} taught kinds of blocks that the open lesson speaks of
+ * @param {string[]} fresh those of them that glow
  * @returns {any}
  */
-export function toolbox(level, used, taught) {
+export function toolbox(level, used, taught, fresh) {
   const most = LEVELS.indexOf(level);
   const isShown = (/** @type {[Level, Item]} */ [from, { type }]) => LEVELS.indexOf(from) <= most || taught.includes(type);
   const shown = groups(used).map(([name, items]) => /** @type {const} */ ([name, items.filter(isShown)]));
@@ -143,7 +158,7 @@ export function toolbox(level, used, taught) {
       kind: 'category',
       name: text(known(`group/${name}`)),
       categorystyle: name,
-      cssConfig: { icon: `category ${name}` },
+      cssConfig: { icon: `category ${name}`, row: `blocklyToolboxCategory${items.some(([, { type }]) => fresh.includes(type)) ? ' fresh' : ''}` },
       contents: items.map(([, each]) => ({ ...each, gap: 8 })),
     })),
   };
