@@ -64,6 +64,20 @@ export function formOf(workspace) {
   };
 }
 
+/**
+ * A program of one block and what is in it, with the words that it may use; of a value one that shows it.
+ * @param {Blockly.Block} block
+ * @returns {Form}
+ */
+export function formOfOne(block) {
+  const tops = topsOf(/** @type {Blockly.WorkspaceSvg} */ (block.workspace));
+  const words = tops.filter((top) => top.type === 'def' && top !== block).map((top) => blockOf(top, []));
+  const shown = { kind: 'show', word: 'SHOW', values: [valueOf(block)], bodies: [], note: '', is_apart: false };
+  const begins = block.type === 'program' || isHat(block);
+  const own = block.outputConnection ? [shown] : begins ? bodyOf(block.getNextBlock(), []) : [blockOf(block, [])];
+  return { start: 'SI', note: '', is_one_line: false, body: [...words, ...own], loose: [] };
+}
+
 /** @param {Blockly.WorkspaceSvg} workspace */
 function topsOf(workspace) {
   return workspace.getTopBlocks(true).filter((block) => !block.isInsertionMarker());

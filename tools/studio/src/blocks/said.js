@@ -28,7 +28,7 @@ function filled(label, fillings) {
 }
 
 /** @param {string} kind @param {string} word @param {string[] | null} values what is in its places; null for gaps @returns {Label} */
-function labelOf(kind, word, values) {
+export function labelOf(kind, word, values) {
   const shape = KINDS[kind];
   if (!shape) return { said: '', colour: '' };
   const [plain = '', unit = ''] = word.split(' ');

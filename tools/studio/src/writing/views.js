@@ -17,6 +17,8 @@ import { text } from '../page/texts.js';
  * @property {import('./editor.js').Editor} editor
  * @property {import('../programs/work.js').Work} work
  * @property {() => void} remember
+ * @property {(program: string, isAsked: boolean) => Promise<void>} tryAlone on the virtual robot
+ * @property {(hertz: number) => void} hear
  */
 
 const TYPING_MS = 200; // of silence before blocks are made of a text
@@ -225,6 +227,15 @@ export class Views {
       toggle: (place) => {
         if (!this.#isStale()) this.#page.editor.toggleBreakpoint(place);
       },
+      tryAlone: async (form, isAsked) => {
+        try {
+          const { text: program } = await this.#page.python.ask({ do: 'text', form });
+          await this.#page.tryAlone(program, isAsked);
+        } catch (why) {
+          this.#fail(why);
+        }
+      },
+      hear: this.#page.hear,
     });
     this.#teach();
     this.#pane.dataset['state'] = 'empty';
