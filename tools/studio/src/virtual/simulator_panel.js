@@ -11,6 +11,7 @@ import { made } from '../page/made.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
+import { Stage } from './stage.js';
 import { Run, Runs } from './runs.js';
 import { RunsWindow } from './runs_window.js';
 import { TimeLine } from './time_line.js';
@@ -55,6 +56,7 @@ export class SimulatorPanel {
   #arena = new Arena(element('arena', HTMLCanvasElement));
   #plot = new Plot(element('plot', HTMLCanvasElement));
   #sounds = new Sounds();
+  #stage;
   #where = new Where();
   #timeLine = new TimeLine(() => this.#lookBack());
   runs = new Runs();
@@ -184,6 +186,14 @@ export class SimulatorPanel {
     pageState.programText.subscribe(() => { // what runs is no longer what is seen
       this.#places = [];
       this.#show();
+    });
+    this.#stage = new Stage({
+      look: (camera) => {
+        this.#arena.camera = camera;
+        this.#arena.resize();
+        this.#arena.draw(this.#state);
+      },
+      stop: () => this.stop(),
     });
     this.begin();
     this.#restored = this.#restore();
@@ -460,6 +470,7 @@ export class SimulatorPanel {
     this.#shown.clear();
     this.#program = program;
     this.#isAlone = alone !== null;
+    if (!alone && !judged) this.#stage.begin();
     this.#places = alone ? [] : program.places; // which are those of another text
     this.#variables = program.variables;
     this.#findStops();
