@@ -196,9 +196,11 @@ export class Arena {
       this.#place = new DOMMatrix().translate(width / 2, height * BEHIND).scale(scale, -scale).rotate(90 - heading).translate(-x, -y);
       return;
     }
-    const left = within(width / 2 - x * scale, width, width_cm * scale, MARGIN_CM * scale);
-    const bottom = height - within(height / 2 - y * scale, height, height_cm * scale, MARGIN_CM * scale);
-    this.#place = new DOMMatrix([scale, 0, 0, -scale, left, bottom]);
+    const margin = MARGIN_CM * scale, high = height_cm * scale + margin;
+    const left = within(width / 2 - x * scale, width, width_cm * scale, margin);
+    const bottom = height - within(height / 2 - y * scale, height, height_cm * scale, margin);
+    // Whole pixels of the floor are on whole ones of the picture: else it would be blurred.
+    this.#place = new DOMMatrix([scale, 0, 0, -scale, Math.round(left - margin) + margin, Math.round(bottom - high) + high]);
   }
 
   /** Draws what is new on the floor, or all of it where it has become another one. @param {World} world */
