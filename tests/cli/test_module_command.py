@@ -14,7 +14,7 @@ from tests.support.pty_end import PtyEnd
 from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hc06New, Hm10
 from tests.support.simulated_modules import SimulatedModule as Simulated
 from tests.support.waiting import until
-from tiniscript.cli.texts.causes import sentences_of as lexicon_meaning
+from tiniscript.cli.texts.causes import sentences_of
 from tiniscript.doctor.findings import CAUSES, WRONG, sure
 from tiniscript.link.modules import set_up, talk
 from tiniscript.link.ports import open_port
@@ -99,7 +99,7 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     with PtyEnd(end) as pty_end:
         done = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA")
     assert done.code == 3
-    silent = lexicon_meaning(sure("module_silent"), "en")
+    silent = sentences_of(sure("module_silent"), "en")
     assert f"WRONG  module: {silent.what}\n" in done.out and silent.then in done.out
     assert done.err == ""
 

@@ -17,14 +17,14 @@ ENDLESS = sorted(
 )  # fmt: skip
 
 
-def lexicon_meaning(text: str, lang: str) -> list[Message]:
+def messages_of(text: str, lang: str) -> list[Message]:
     return [message(diagnostic, Source(text), lang) for diagnostic in check(text)]
 
 
 @pytest.mark.parametrize("lang", LANGUAGES)
 @pytest.mark.parametrize("text", NUMBERS)
 def test_no_number_is_called_a_word(text: str, lang: str) -> None:
-    (said, *_) = lexicon_meaning(text, lang)
+    (said, *_) = messages_of(text, lang)
     assert said.code == "TS044" and text.split("\n")[0].split(";")[0][-1] in said.message
     assert not any(word in said.message.lower() for word in ("word", "palabra", "palavra"))
 
@@ -43,9 +43,9 @@ def test_what_begins_a_block_is_never_called_forever_alone(word: str, around: st
 
 
 def test_forever_is_called_so_where_it_is_a_time() -> None:
-    (said,) = lexicon_meaning("SI|W(SIEMPRE) UNTIL(DISTANCE < 9)", "en")
+    (said,) = messages_of("SI|W(SIEMPRE) UNTIL(DISTANCE < 9)", "en")
     assert said.message == "In TiniScript, SIEMPRE is FOREVER"
-    (said,) = lexicon_meaning("void loop() {\n  F(1, 60);\n}", "es")
+    (said,) = messages_of("void loop() {\n  F(1, 60);\n}", "es")
     assert said.message.startswith("En TiniScript void loop se dice LOOP(FOREVER), y el bloque")
 
 
@@ -53,5 +53,5 @@ def test_forever_is_called_so_where_it_is_a_time() -> None:
 @pytest.mark.parametrize("last", ["F(1, 60)", "LOOP(2);S;END_LOOP", "IF(KEY_A)\nS\nENDIF"])
 def test_the_end_of_a_block_is_on_a_line_of_its_own(last: str, lang: str) -> None:
     text = f"SI|IF(DISTANCE < 9)\n{last}"
-    said = lexicon_meaning(text, lang)[-1]
+    said = messages_of(text, lang)[-1]
     assert said.code == "TS024" and "ENDIF" in said.fix and ": ENDIF" not in said.fix

@@ -69,7 +69,7 @@ SCROLLED = LOOK.replace(
 # The same in the window of programs.
 DIALOG = """() => {
   const found = [];
-  const boxes = [...document.querySelectorAll('#programs button, #programs h2, #programs textarea, #programs canvas')]
+  const boxes = [...document.querySelectorAll('#programs button, #programs h2, #programs summary, #programs textarea, #programs canvas')]
     .filter((e) => e.checkVisibility()).map((e) => [e.id || e.textContent, e.getBoundingClientRect(), e]);
   const own = document.querySelector('#programs').getBoundingClientRect();
   for (const [name, box, e] of boxes) {
@@ -129,6 +129,8 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
         if screen == "drawing":
             assert page.evaluate("arena.clientHeight") >= 60, size
         if screen == "programs":
+            assert page.evaluate(DIALOG) == [], size
+            page.locator("#share").evaluate("e => { e.open = true; }")
             for how in ("link", "line"):
                 page.click(f"#share_{how}")
                 page.locator("#programs:not([data-shared=asked])").wait_for()
@@ -180,7 +182,7 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
             break
         page.keyboard.press("Tab")
     assert visited == [
-        "robot", "language", "open", "save", "my_programs", "stop", "view_blocks", "view_text",
+        "robot", "language", "bar_new", "open", "save", "my_programs", "stop", "view_blocks", "view_text",
         "words", "undo", "redo", "editor", "place", "repair",
     ]  # fmt: skip
     page.keyboard.press("Enter")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import SETTLED, Pages, axe, in_phase, shown, turn, write
+from tests.support.studio import SETTLED, Pages, axe, in_phase, shown, speak, turn, write
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -171,3 +171,65 @@ def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None
     page.keyboard.press("Escape")
     page.emulate_media(forced_colors="none")
     page.click("#view_text")
+
+
+# The height of letters in a box of blocks, and how wide and high what can be touched in it is.
+TOUCHED = """all => all.map((e) => {
+  const isNumber = e.matches('.blocklyNumberField'); // which is all of its block
+  const shape = e.querySelector(':scope > .blocklyFieldRect') ?? e;
+  const own = isNumber ? e.closest('.blocklyBlock') : shape;
+  const { width, height } = own.getBoundingClientRect();
+  return [e.textContent, Math.min(width, height)];
+})"""
+LETTERS = """all => all.map((e) => parseFloat(getComputedStyle(e).fontSize) * e.getScreenCTM().a)"""
+LONG = """SI|IF(LIGHT_L > LIGHT_R AND DISTANCE < 20 OR TIME > 3);
+  L(0.5, 60);
+ELSE;
+  M(30, 60);
+ENDIF;
+F(5, 60) UNTIL(DISTANCE < 10);
+"""
+
+
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> None:
+    """Letters are 12 pixels high, what is touched is 24, and a long question has more rows: all of
+    the program is seen, but for a question in a question."""
+    page = pages.open(viewport={"width": 390, "height": 844})
+    speak(page, language)
+    write(page, LONG)
+    page.click("#view_blocks")
+    shown(page)
+    canvas = "#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas"
+    letters = page.locator(f"{canvas} .blocklyText").evaluate_all(LETTERS)
+    assert letters and min(letters) >= 11.99
+    fields = ".blocklyDropdownField, .blocklyNumberField, .blocklyImageField"
+    for said, least in page.locator(f"{canvas} :is({fields})").evaluate_all(TOUCHED):
+        assert least >= 23, said
+    rows = page.locator(f"{canvas} .compare > .blocklyPath:not(.blocklyPathSelected)")
+    width = page.evaluate("document.querySelector('#blocks').getBoundingClientRect().right")
+    last = rows.last.evaluate("e => e.getBoundingClientRect()['right']")
+    assert last <= width
+    assert rows.first.evaluate("e => e.getBoundingClientRect().height") > 60  # two rows
+    page.set_viewport_size({"width": 1366, "height": 768})
+    speak(page, "en" if language != "en" else "es")  # blocks are made anew
+    shown(page)
+    assert rows.first.evaluate("e => e.getBoundingClientRect().height") < 60
+
+
+def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) -> None:
+    page = pages.open(viewport={"width": 390, "height": 844}, view="start")
+
+    def width() -> float:
+        box = page.locator("#stop").bounding_box()
+        assert box is not None and box["height"] >= 44
+        return float(box["width"])
+
+    assert width() < 130
+    page.evaluate("document.querySelector('#link_connected').hidden = false")
+    assert width() > 360
+    page.evaluate("document.querySelector('#link_connected').hidden = true")
+    page.evaluate("document.documentElement.dataset.phase = 'running'")
+    assert width() > 360
+    page.evaluate("document.documentElement.dataset.phase = 'ended'")
+    assert width() < 130

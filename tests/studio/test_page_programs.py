@@ -14,7 +14,7 @@ import pytest
 
 from tests.studio.programs import programs
 from tests.support.rows import each_row
-from tests.support.studio import Pages, asked, checked, image, in_phase, noted, write
+from tests.support.studio import Pages, asked, axe, checked, image, in_phase, noted, write
 from tiniscript import check, compile
 from tiniscript.studio.building import MODULES
 from tiniscript.studio.checking import line
@@ -30,18 +30,26 @@ def content(page: Page) -> str:
     return str(page.locator(".cm-content").inner_text())
 
 
+def unfold(page: Page) -> None:
+    """Show how a program is shared."""
+    if not page.locator("#share[open]").count():
+        page.click("#share summary")
+    page.locator("#programs[data-shared]:not([data-shared=asked])").wait_for()
+
+
 def share(page: Page, how: str = "link") -> str:
     """Open the window if it is not, and return what it shares."""
     if not page.locator("#programs").is_visible():
         page.click("#my_programs")
+    unfold(page)
     page.click(f"#share_{how}")
     page.locator("#programs:not([data-shared=asked])").wait_for()
     return str(page.input_value("#shared"))
 
 
 def opened(page: Page) -> list[str]:
-    """Return the beginnings of the earlier programs."""
-    return page.locator("#versions code").all_inner_texts()
+    """Return what earlier programs are called."""
+    return page.locator("#versions li:not(:has(#new)) strong").all_inner_texts()
 
 
 def test_a_link_brings_the_program_and_runs_nothing(pages: Pages, page: Page) -> None:
@@ -86,7 +94,7 @@ def test_a_program_gets_a_name(page: Page) -> None:
     write(page, "SI|F(1, 33)")
     page.click("#my_programs")
     page.fill("#program_name", ' my/ <b>dance: "2" ')
-    assert opened(page)[0] == "my bdance 2.ts: SI|F(1, 33)"
+    assert opened(page)[0] == "my bdance 2"
     page.click("#programs_close")
     with page.expect_download() as download:
         page.click("#save")
@@ -94,7 +102,7 @@ def test_a_program_gets_a_name(page: Page) -> None:
     page.click("#my_programs")
     assert page.input_value("#program_name") == "my bdance 2"
     page.fill("#program_name", "..ñandú 🤖.ts")
-    assert opened(page)[0] == "ñandú 🤖.ts: SI|F(1, 33)"
+    assert opened(page)[0] == "ñandú 🤖"
     page.fill("#program_name", "  ")
     assert opened(page)[0] == "SI|F(1, 33)"
     page.click("#programs_close")
@@ -257,10 +265,52 @@ def pictured(page: Page) -> str:
 
 
 def test_the_pictures_hold_what_is_shared(page: Page) -> None:
+    """No phone can open an address of this computer alone, so that has none."""
     write(page, TEXT)
+    assert share(page, "link") and page.locator("#shared_picture").is_hidden()
+    assert "QR" not in page.inner_text("#shared_told")
+    page.fill("#public", "https://school.example/studio/")
+    page.locator("#public").blur()
+    page.locator("#shared_picture").wait_for()
     for how in ("link", "line"):
         shared = share(page, how)
         assert pictured(page) == shared != ""
+    page.fill("#public", "")
+    page.locator("#public").blur()
+    page.keyboard.press("Escape")
+
+
+def test_the_window_opens_on_programs(page: Page) -> None:
+    """Each with a picture, a large plus before them, and how one is shared is folded away."""
+    page.evaluate("localStorage.removeItem('tiniscript.versions')")
+    for text in ("SI|F(1, 12)", "SI|LOOP(2); S; END_LOOP"):
+        write(page, text)
+        page.click("#my_programs")
+        page.keyboard.press("Escape")
+    page.click("#my_programs")
+    tiles = page.locator("#versions button")
+    assert tiles.count() == 3 and tiles.first.get_attribute("id") == "new"
+    pictures = [tile.locator("rect").count() for tile in tiles.all()[1:]]
+    assert pictures == [2, 1]  # a bar for each instruction
+    for tile in tiles.all():
+        box = tile.bounding_box()
+        assert box is not None and min(box["width"], box["height"]) >= 100
+    hidden = page.locator("#share_link, #shared, #shared_picture, #public")
+    assert hidden.count() == 4 and not hidden.filter(visible=True).count()
+    assert axe(page, within="#programs") == []
+    page.keyboard.press("Escape")
+
+
+@pytest.mark.parametrize("button", ["#bar_new", "#new"])
+def test_a_new_program_is_one_press_away_and_keeps_the_one_before(page: Page, button: str) -> None:
+    write(page, "SI|F(7, 70)")
+    if button == "#new":
+        page.click("#my_programs")
+    page.click(button)
+    checked(page)
+    assert content(page).strip() == "" and not page.locator("#programs").is_visible()
+    page.click("#my_programs")
+    assert opened(page)[0] == "SI|F(7, 70)"
     page.keyboard.press("Escape")
 
 
@@ -282,6 +332,7 @@ COLOURS = """async (letters) => {
 
 def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
     """Save the picture of the blocks; return its size, and how often it has each colour."""
+    unfold(page)
     with page.expect_download() as download:
         page.click("#share_picture")
     assert download.value.suggested_filename.endswith(".png")
@@ -318,6 +369,7 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
         assert "0,0,0" not in small[2], view  # nothing lacks its colour
     write(page, "S;" * 1600)
     page.click("#my_programs")
+    unfold(page)
     page.click("#share_picture")
     page.locator("#shared_told", has_text="No picture is available").wait_for()
     page.keyboard.press("Escape")
@@ -358,6 +410,7 @@ def test_earlier_programs_come_back(page: Page) -> None:
     page.click("#my_programs")
     assert opened(page) == ["SI|F(3, 30)", "SI|F(2, 20)", "SI|F(1, 10)"]
     rows = page.locator("#versions li")
+    assert rows.locator("svg").count() == 4
     rows.filter(has_text="SI|F(1, 10)").get_by_role("button").click()
     noted(page, "Opened: the program of")
     checked(page)
@@ -430,6 +483,8 @@ def test_a_stop_is_in_reach(page: Page) -> None:
 def test_the_keyboard_alone_is_enough(page: Page) -> None:
     write(page, "SI|F(5, 50)")
     page.locator("#my_programs").focus()
+    page.keyboard.press("Enter")
+    page.locator("#share summary").focus()
     page.keyboard.press("Enter")
     page.locator("#programs[data-shared=done]").wait_for()
     for _ in range(4):

@@ -130,7 +130,7 @@ def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Page
     page.click("#run")
     in_phase(page, "ended")
     page.click("#my_programs")
-    page.locator("#programs[data-shared=done]").wait_for()
+    page.locator("#versions").wait_for()
 
 
 def test_a_program_that_is_too_long_to_be_kept_says_so(page: Page) -> None:

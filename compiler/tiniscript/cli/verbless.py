@@ -27,9 +27,9 @@ from tiniscript.cli.texts.verbs import (
     STEPS,
     VERBS,
     command_words,
+    verb_sentence,
     verb_text,
 )
-from tiniscript.cli.texts.verbs import verb_sentence
 
 
 def refuse(name: str, words: list[str], language: str) -> NoReturn:

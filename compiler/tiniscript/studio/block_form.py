@@ -90,6 +90,13 @@ def kinds_in(form: Form) -> set[str]:
     return kinds
 
 
+def lone_block(form: Form) -> Block | None:
+    """Return the one instruction of a program, whatever is in it; None of another program."""
+    is_alone = len(form.body) == 1 and not form.loose
+    is_understood = all(block.kind != "grey" for block in in_order(form.body))
+    return form.body[0] if is_alone and is_understood else None
+
+
 def beginning(form: Form, most: int) -> Form:
     """Return a form with no more than so many blocks, and a last one that says that there were."""
     if size_of(form) <= most:

@@ -24,7 +24,7 @@ from tiniscript.lessons.variation import is_mirrored, point_of, vary
 from tiniscript.library.compiling import compile_source, fit_to_robot, image_maker
 from tiniscript.library.named_robot import shipped_name_in
 from tiniscript.link.session import Session
-from tiniscript.studio.block_form import kinds_in
+from tiniscript.studio.block_form import kinds_in, lone_block
 from tiniscript.studio.block_kinds import KIND_OF
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.checking import profile_of
@@ -36,6 +36,12 @@ from tiniscript.virtual.world import World
 MISTAKES = "mistakes"
 STEPS, TASK = 2, 3  # of a page's headings, after what is needed
 CODE, WORD = re.compile("`([^`]+)`"), re.compile(r"\w+")  # in its sentences
+# What makes a program of code in a sentence: the end of what it begins, or SHOW around a value.
+WHOLE = (
+    "{}",
+    *(f"{{}}\n{end}" for end in ("END_LOOP", "ENDIF", "END_WHILE", "END_WHEN", "END_DEF")),
+)
+VALUE = "SHOW({})"
 
 
 def titles(language: str) -> list[dict[str, Any]]:
@@ -75,22 +81,66 @@ def steps(number: int, language: str) -> list[dict[str, Any]]:
     ]
 
 
+@cache
 def taught(number: int, language: str) -> list[str]:
     """Return the kinds of blocks that a lesson speaks of, and those that its task asks for."""
+    words = {word for code in _codes(number, language) for word in WORD.findall(code)}
+    return sorted({*needed(number, language), *_kinds_of(words)})
+
+
+@cache
+def needed(number: int, language: str) -> list[str]:
+    """Return the kinds of blocks of a lesson's programs, and those that its task asks for."""
     lesson = _lesson(number)
     kit = profile_of(lesson.robot).kit
     words = {word for criterion in lesson.criteria for word in criterion.words}
-    result: set[str] = set()
+    kinds = (kinds_in(read(text, kit)) for text in _programs(number, language))
+    return sorted(_kinds_of(words).union(*kinds))
+
+
+def new(number: int, language: str) -> list[str]:
+    """Return the kinds of blocks that a lesson speaks of and no lesson before it."""
+    before = (kind for other in range(1, number) for kind in taught(other, language))
+    return sorted({*taught(number, language)}.difference(before))
+
+
+def spoken(number: int, language: str) -> dict[str, dict[str, Any]]:
+    """Return the block that each code in a lesson's sentences is; of a value one without a kind."""
+    kit = profile_of(_lesson(number).robot).kit
+    result: dict[str, dict[str, Any]] = {}
+    for code in _codes(number, language):
+        if WORD.fullmatch(code):
+            continue  # what a word is called, the page knows
+        for text in (*WHOLE, VALUE):
+            block = lone_block(read(text.format(code), kit))
+            if block is not None:
+                kind = "" if text == VALUE else block.kind
+                result[code] = {"kind": kind, "word": block.word, "values": block.values}
+                break
+    return result
+
+
+def _kinds_of(words: set[str]) -> set[str]:
+    return {KIND_OF[word] for word in words & WORDS.keys() & KIND_OF.keys()}
+
+
+def _programs(number: int, language: str) -> list[str]:
+    """Return the programs of a lesson's steps."""
+    parts = [block for step in steps(number, language) for block in step["blocks"]]
+    return [_text_of(block) for block in parts if block["kind"] == "program"]
+
+
+def _codes(number: int, language: str) -> list[str]:
+    """Return the code in the sentences and the hints of a lesson's steps."""
+    sentences = []
     for step in steps(number, language):
-        sentence = step["hint"]
-        for block in step["blocks"]:
-            text = "\n".join(row[0] for row in block["rows"] if row)
-            if block["kind"] == "program":
-                result |= kinds_in(read(text, kit))
-            else:
-                sentence += f"\n{text}"
-        words.update(word for code in CODE.findall(sentence) for word in WORD.findall(code))
-    return sorted(result | {KIND_OF[word] for word in words & WORDS.keys() & KIND_OF.keys()})
+        parts = [block for block in step["blocks"] if block["kind"] != "program"]
+        sentences += [*map(_text_of, parts), step["hint"]]
+    return [code for sentence in sentences for code in CODE.findall(sentence)]
+
+
+def _text_of(block: dict[str, Any]) -> str:
+    return "\n".join(row[0] for row in block["rows"] if row)
 
 
 def _without_blanks(block: Block) -> dict[str, Any]:

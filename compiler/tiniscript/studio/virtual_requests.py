@@ -178,6 +178,9 @@ ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "lesson_steps": lambda fields, data: {
         "steps": _lessons().steps(fields["number"], fields["language"]),
         "taught": _lessons().taught(fields["number"], fields["language"]),
+        "needed": _lessons().needed(fields["number"], fields["language"]),
+        "new": _lessons().new(fields["number"], fields["language"]),
+        "spoken": _lessons().spoken(fields["number"], fields["language"]),
     },
     "lesson_world": _lesson_world,
     "lesson_check": _lesson_check,

@@ -83,7 +83,14 @@ showRobots();
 pageState.robotName.set(work.robot);
 
 const editor = new Editor(element('editor', HTMLElement));
-const views = new Views({ python, editor, work, remember });
+const views = new Views({
+  python, editor, work, remember,
+  tryAlone: (program, isAsked) => driving.tryAlone(program, isAsked, () => {
+    element('side_virtual', HTMLButtonElement).click();
+    phone.show('robot');
+  }),
+  hear: (hertz) => driving.hear(hertz),
+});
 const pad = new Pad();
 const driving = new SimulatorPanel({
   python, work, remember, pad,

@@ -3,24 +3,36 @@
 // The text is what is kept: a change of the blocks is told to the page, which asks for their text.
 
 import * as Blockly from 'blockly/core';
-import { clear, drawForm, formOf, isLoose, keepPlaces, knownPlaces, makeRoom, showForm } from './form.js';
+import { clear, drawForm, formOf, isLoose, formOfOne, keepPlaces, kindsIn, knownPlaces, makeRoom, showForm } from './form.js';
 import { follow, labelCalls } from './own_words.js';
 import { setActuators } from './places.js';
-import { Checker, defineBlocks, setRobot } from './shapes.js';
+import { Checker, defineBlocks, setNarrow, setNew, setRobot } from './shapes.js';
+import { letHear } from './fields.js';
+import { insert } from './insert.js';
 import { pictureOf } from './picture.js';
+import { Search } from './search.js';
 import { look } from './styles.js';
-import { toolbox } from './toolbox.js';
+import { found, levelOf, toolbox } from './toolbox.js';
 import { text, textsOf } from '../page/texts.js';
 
 /** @import { Form, Range } from './form.js' */
 /** @typedef {import('./toolbox.js').Level} Level */
 /** @typedef {import('../python.js').Finding} Finding */
-/** @typedef {{changed: () => void, toggle: (place: {line: number, column: number}) => void}} Told */
+/** @typedef {import('../page/page_state.js').Taught} Taught */
+/**
+ * @typedef {object} Told who is told of what is done to blocks
+ * @property {() => void} changed
+ * @property {(place: {line: number, column: number}) => void} toggle
+ * @property {(form: Form, isAsked: boolean) => Promise<void>} tryAlone a part of the program, until it has run; whoever only touched it wants nothing else to end for it
+ * @property {(hertz: number) => void} hear
+ */
 
-const NARROW = 700; // pixels of width, below which blocks are smaller
+const NARROW = 700; // pixels of width, below which questions are folded
+const SCALE = 0.75; // at which letters are 12 pixels high, and what is pressed is 24
 const LONGEST_TIP = 30; // about so many characters are in a line of a message at a block
 const SNAPS = 48; // units of a workspace: how far off a block may be dropped
 const STAYS = 68; // the same while it is shown where it would go
+const NOTCH = 8; // of a block, in the one below it
 const BESIDE = 24; // units between a block and its message
 const BELOW = 12; // the same, where it stands below
 const LOW = 240; // pixels of height: in less, a message is seen when somebody asks
@@ -38,6 +50,10 @@ export class Blocks {
   #used = { names: [], words: [] };
   /** @type {string[]} */
   #taught = [];
+  /** Kinds that the open lesson is the first to speak of. @type {string[]} */
+  #new = [];
+  /** Kinds that have been in the program. @type {Set<string>} */
+  #tried = new Set();
   /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
   #places = [];
   #isTouched = false; // by somebody, who may have scrolled
@@ -49,6 +65,8 @@ export class Blocks {
   /** The ids of the blocks with each look. @type {Record<string, Set<string>>} */
   #marked = {};
   #fault = { id: '', said: '' };
+  /** @type {Search | null} */
+  #search = null;
   /** @type {Finding[]} */
   #findings = [];
 
@@ -56,16 +74,20 @@ export class Blocks {
    * @param {HTMLElement} place
    * @param {string} robot
    * @param {Level} level
-   * @param {Told} told
+   * @param {Told | null} told null of blocks that are only drawn
    */
-  constructor(place, robot, level, told) {
+  constructor(place, robot, level, told = null) {
     this.#place = place;
     this.#told = told;
     this.#level = level;
     Blockly.registry.register(Blockly.registry.Type.CONNECTION_CHECKER, 'tiniscript', Checker, true);
     Object.assign(Blockly.config, { snapRadius: SNAPS, connectingSnapRadius: STAYS });
     this.#leaveOut();
-    this.#offerBreakpoints();
+    if (told) {
+      letHear(told.hear);
+      this.#offerBreakpoints(told);
+      this.#offerTrying(told);
+    }
     setRobot(robot);
     setActuators(robot);
     this.#workspace = this.#begin();
@@ -84,10 +106,10 @@ export class Blocks {
   }
 
   /** In the menu of a block, and by F9. */
-  #offerBreakpoints() {
+  #offerBreakpoints(/** @type {Told} */ told) {
     const toggle = (/** @type {any} */ block) => {
       const place = block && this.#places.find(([id]) => id === block.id)?.[1];
-      if (place?.[0]) this.#told.toggle({ line: place[0], column: place[1] });
+      if (place?.[0]) told.toggle({ line: place[0], column: place[1] });
       return Boolean(place?.[0]);
     };
     if (Blockly.ContextMenuRegistry.registry.getItem('breakpoint')) return; // a page has its blocks once
@@ -106,29 +128,102 @@ export class Blocks {
     });
   }
 
+  /** In the menu of a block, by Shift and Enter, and by a click. @param {Told} told */
+  #offerTrying(told) {
+    const act = (/** @type {any} */ block) => {
+      if (block) this.#try(told, block, true);
+      return Boolean(block);
+    };
+    if (Blockly.ContextMenuRegistry.registry.getItem('try')) return;
+    Blockly.ContextMenuRegistry.registry.register({
+      id: 'try',
+      weight: -1,
+      scopeType: Blockly.ContextMenuRegistry.ScopeType.BLOCK,
+      displayText: () => text('try_block'),
+      preconditionFn: ({ block }) => (block && !block.isInFlyout ? 'enabled' : 'hidden'),
+      callback: ({ block }) => act(block),
+    });
+    const { SHIFT, ENTER } = Blockly.utils.KeyCodes;
+    Blockly.ShortcutRegistry.registry.register({
+      name: 'try',
+      keyCodes: [Blockly.ShortcutRegistry.registry.createSerializedKey(ENTER, [SHIFT])],
+      callback: () => act(this.#focused()),
+    });
+  }
+
+  /** @param {Told} told @param {Blockly.Block} block @param {boolean} isAsked and not only touched */
+  async #try(told, block, isAsked) {
+    let whole = block;
+    while (whole.isShadow()) whole = whole.getParent() ?? whole;
+    this.#mark('alone', [whole.id]);
+    try {
+      await told.tryAlone(formOfOne(whole), isAsked);
+    } finally {
+      if (this.#marked['alone']?.has(whole.id)) this.#mark('alone', []);
+    }
+  }
+
+  /** Whoever chooses a block of a list with the keyboard has it where the focus was. @param {Blockly.WorkspaceSvg} workspace */
+  #insertByKeys(workspace) {
+    /** @type {Blockly.BlockSvg | null} */
+    let last = null; // that had the focus of the program
+    this.#place.addEventListener('focusin', ({ target }) => {
+      const drawn = /** @type {Element} */ (target).closest('.blocklyBlock');
+      last = workspace.getBlockById(drawn?.getAttribute('data-id') ?? '') ?? last;
+    });
+    this.#place.addEventListener('keydown', (event) => {
+      const taken = Blockly.getFocusManager().getFocusedNode();
+      const isTaken = taken instanceof Blockly.BlockSvg && taken.isInFlyout && workspace === this.#workspace && workspace === taken.workspace.targetWorkspace;
+      if (!isTaken || !['Enter', ' '].includes(event.key) || event.shiftKey || event.ctrlKey || event.metaKey) return;
+      const isThere = last && workspace.getBlockById(last.id) === last;
+      const block = insert(/** @type {Blockly.BlockSvg} */ (taken.getRootBlock()), workspace, isThere ? last : null);
+      if (!block) return; // Blockly lets it be moved to a place
+      event.preventDefault();
+      event.stopPropagation();
+      this.#search?.clear();
+      workspace.hideChaff();
+      workspace.getFlyout()?.hide();
+      Blockly.getFocusManager().focusNode(block);
+    }, { capture: true });
+  }
+
   #begin() {
+    const { common } = Blockly, before = this.#told ? null : common.getMainWorkspace(); // keys are those of the blocks that are seen
     Blockly.setLocale(textsOf('blockly'));
-    defineBlocks();
     const isNarrow = innerWidth < NARROW;
+    setNarrow(isNarrow && this.#told !== null);
+    defineBlocks();
     const workspace = withoutSound(() => Blockly.inject(this.#place, {
       ...this.#looks,
       plugins: { connectionChecker: 'tiniscript' },
-      toolbox: this.#offered(),
-      trashcan: !isNarrow,
+      ...(this.#told ? { toolbox: this.#offered() } : {}),
+      trashcan: Boolean(this.#told) && !isNarrow,
       comments: false,
       collapse: false,
       disable: false,
       move: { scrollbars: true, drag: true, wheel: true },
-      zoom: { controls: !isNarrow, wheel: false, pinch: true, startScale: isNarrow ? 0.6 : 0.75, minScale: 0.4, maxScale: 1.6 },
+      zoom: { controls: Boolean(this.#told) && !isNarrow, wheel: false, pinch: true, startScale: SCALE, minScale: 0.4, maxScale: 1.6 },
     }));
+    if (before) common.setMainWorkspace(before);
+    if (this.#told) {
+      this.#search?.place.remove();
+      this.#search = new Search(workspace, (words) => found(words, this.#used));
+      this.#place.prepend(this.#search.place);
+      this.#search.fit();
+      this.#insertByKeys(workspace);
+    }
     workspace.MAX_UNDO = 0;
     hideMeasure();
     hideConnections(workspace.getFlyout()?.getWorkspace().getCanvas());
     workspace.addChangeListener((event) => {
+      if (this.#told && event instanceof Blockly.Events.Click && event.targetType === 'block') {
+        const block = workspace.getBlockById(event.blockId ?? '');
+        if (block) this.#try(this.#told, block, false);
+      }
       if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closed = this.#saidAt(event.blockId);
       if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
       follow(workspace, event);
-      this.#told.changed();
+      this.#told?.changed();
     });
     return workspace;
   }
@@ -169,18 +264,29 @@ export class Blocks {
     this.#offer();
   }
 
-  /** @param {string[]} kinds of blocks that the open lesson speaks of */
-  setTaught(kinds) {
-    this.#taught = kinds;
+  /** @param {Taught} taught what the open lesson speaks of */
+  setTaught({ offered, fresh }) {
+    this.#taught = offered;
+    this.#new = fresh;
     this.#offer();
   }
 
+  /** @param {string[]} kinds @returns {Level} the lowest one that offers them all */
+  levelOf(kinds) {
+    return levelOf(kinds, this.#used);
+  }
+
   #offered() {
-    return toolbox(this.#level, this.#used, this.#taught);
+    const fresh = this.#new.filter((kind) => !this.#tried.has(kind));
+    setNew(fresh);
+    this.#place.style.setProperty('--new', JSON.stringify(text('block_new')));
+    return toolbox(this.#level, this.#used, this.#taught, fresh);
   }
 
   #offer() {
+    if (!this.#told) return;
     this.#workspace.updateToolbox(this.#offered());
+    this.#search?.fit();
   }
 
   /** Other blocks as a PNG file, made in slices: nobody sees them here. @param {Form} form @param {string} robot @param {number} most pixels */
@@ -201,6 +307,7 @@ export class Blocks {
   resize() {
     if (!this.#place.clientWidth) return; // hidden: Blockly would forget what was seen
     Blockly.svgResize(this.#workspace);
+    this.#search?.fit();
     if (!this.isBusy) makeRoom(this.#workspace, true);
     this.#seeBeginning();
     for (const [id] of this.#places) if (!this.#put(id)) this.#badgeOf(id)?.setBubbleVisible(false);
@@ -286,7 +393,10 @@ export class Blocks {
     const of = (/** @type {string} */ kind) => [...new Set(blocks.filter((block) => block.kind === kind).map((block) => block.word))].sort();
     const counts = new Map(blocks.filter((block) => block.kind === 'def').map((block) => [block.word, block.values.length]));
     const used = { names: of('assign'), words: [...counts].sort() };
-    if (JSON.stringify(used) === JSON.stringify(this.#used)) return;
+    const tried = kindsIn(blocks).filter((kind) => !this.#tried.has(kind));
+    for (const kind of tried) this.#tried.add(kind);
+    const isTried = tried.some((kind) => this.#new.includes(kind));
+    if (!isTried && JSON.stringify(used) === JSON.stringify(this.#used)) return;
     this.#used = used;
     if (!this.#workspace.isDragging()) this.#offer();
   }
@@ -343,25 +453,35 @@ export class Blocks {
     else if (!this.#put(id)) badge.setBubbleVisible(false); // the list below has it
   }
 
-  /** Has an open message beside all blocks of its height, else below all, else beside its own block. @param {string} id @returns {boolean} whether there is room */
+  /**
+   * Has an open message beside its block, as near as it stands on no other one: level with it, or higher or lower; else below
+   * all blocks. A line leads to the block. @param {string} id @returns {boolean} whether there is room
+   */
   #put(id) {
     const block = this.#workspace.getBlockById(id);
     const bubble = this.#badgeOf(id)?.getBubble();
     if (!block || !bubble) return true;
     const own = block.getBoundingRectangleWithoutChildren();
-    const { top } = own;
     const view = this.#workspace.getMetricsManager().getViewMetrics(true);
     const size = bubble.getBoundingRectangle();
     const all = block.getRootBlock().getBoundingRectangle();
-    const beside = block.getRootBlock().getDescendants(false).map((each) => each.getBoundingRectangleWithoutChildren());
-    const right = Math.max(...beside.filter((each) => each.top < top + size.getHeight() && each.bottom > top).map((each) => each.right));
+    const beside = this.#workspace.getAllBlocks(false).map((each) => each.getBoundingRectangleWithoutChildren());
     const { Coordinate } = Blockly.utils;
-    const fits = (/** @type {number} */ edge) => edge + BESIDE + size.getWidth() <= view.left + view.width;
+    const places = [own.top, own.bottom - size.getHeight(), (own.top + own.bottom - size.getHeight()) / 2]
+      .filter((top) => top >= view.top && top + size.getHeight() <= view.top + view.height)
+      .map((top) => {
+        const inWay = beside.filter((each) => each.top < top + size.getHeight() && each.bottom - NOTCH > top && each.right > own.left);
+        return { top, edge: Math.max(own.right, ...inWay.map((each) => each.right)) };
+      })
+      .filter(({ edge }) => edge + BESIDE + size.getWidth() <= view.left + view.width)
+      .sort((a, b) => a.edge - b.edge);
     const isBelow = all.bottom + BELOW + size.getHeight() <= view.top + view.height;
-    const edge = [right, ...(isBelow ? [] : [own.right])].find(fits);
-    if (edge !== undefined) bubble.moveDuringDrag(new Coordinate(edge + BESIDE, top));
+    const fits = own.right + BESIDE + size.getWidth() <= view.left + view.width;
+    const [place] = places.length || isBelow || !fits ? places : [{ top: own.top, edge: own.right }];
+    /** @type {any} */ (bubble).setAnchorLocation(new Coordinate(own.right, (own.top + own.bottom) / 2)); // else its line would go across the block
+    if (place) bubble.moveDuringDrag(new Coordinate(place.edge + BESIDE, place.top));
     else if (isBelow) bubble.moveDuringDrag(new Coordinate(all.left, all.bottom + BELOW));
-    return edge !== undefined || isBelow;
+    return Boolean(place) || isBelow;
   }
 
   /** Marks the blocks that run now, one in each task. @param {{line: number, column: number}[]} ranges */

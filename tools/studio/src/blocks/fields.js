@@ -1,10 +1,20 @@
 // Fields of blocks: numbers that fit their place, and names as the language has them.
 
 import * as Blockly from 'blockly/core';
+import { Piano } from './piano.js';
 import { rangeAt } from './places.js';
+import { noteAt, stepFrom } from './tones.js';
 import { onBlock } from '../page/words.js';
 
 export const WAY = 'way'; // not for so long, but so far
+
+/** @type {(hertz: number) => void} */
+let hear = () => {};
+
+/** @param {(hertz: number) => void} act sounds a tone, for who chooses one */
+export function letHear(act) {
+  hear = act;
+}
 
 /** A number with at most three decimals; what a person types is made to fit, what a text says stays. */
 export class NumberField extends Blockly.FieldNumber {
@@ -22,9 +32,81 @@ export class NumberField extends Blockly.FieldNumber {
     return Math.min(high, Math.max(low, found));
   }
 
+  /** Whether it is how high a tone is. */
+  get isPitch() {
+    const block = this.getSourceBlock(), beep = block?.getParent();
+    return beep?.type === 'beep' && beep.getInput('V1')?.connection?.targetBlock() === block;
+  }
+
+  /**
+   * A tone has keys of a piano below it. A finger has no need of the keyboard that a phone would put over them.
+   * @param {Event} [event]
+   * @param {boolean} [isQuiet]
+   */
+  showEditor_(event, isQuiet = false) {
+    if (!this.isPitch) {
+      super.showEditor_(event, isQuiet);
+      return;
+    }
+    super.showEditor_(event, isQuiet || matchMedia('(pointer: coarse)').matches);
+    const piano = new Piano((hertz) => this.choose(hertz));
+    piano.show(Number(this.getValue()));
+    const { DropDownDiv } = Blockly;
+    DropDownDiv.clearContent();
+    DropDownDiv.getContentDiv().append(piano.place);
+    DropDownDiv.setColour('#fff', '#c8d2dc');
+    DropDownDiv.showPositionedByField(this, () => { this.piano = null; }, undefined, false);
+    this.piano = piano;
+  }
+
+  /** @param {number} hertz */
+  choose(hertz) {
+    /** @type {any} */ (this).setEditorValue_(hertz);
+    this.piano?.show(hertz);
+    hear(hertz);
+  }
+
+  /** Up and down go to the next tone of a piano. @param {KeyboardEvent} event */
+  onHtmlInputKeyDown_(event) {
+    const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+    if (!this.isPitch || !way) {
+      super.onHtmlInputKeyDown_(event);
+      return;
+    }
+    event.preventDefault();
+    event.stopPropagation();
+    this.choose(noteAt(stepFrom(Number(this.getValue()), way)));
+  }
+
   /** Without an exponent, which the language does not know. @returns {string} */
   written() {
     return Number(this.getValue()).toFixed(3).replace(/\.?0+$/, '');
+  }
+}
+
+/** Where each move leads, from above. @type {Record<string, string>} */
+const ARROWS = {
+  F: 'M9 1 16 9H11.500V17H6.500V9H2z', B: 'M9 17 2 9H6.500V1H11.500V9H16z',
+  L: 'M7 1v4h3.500a5.500 5.500 0 0 1 5.500 5.500V17h-4.500v-6.500a1 1 0 0 0-1-1H7v4L.5 7.250z',
+  R: 'M11 1v4H7.500A5.500 5.500 0 0 0 2 10.500V17h4.500v-6.500a1 1 0 0 1 1-1H11v4l6.500-6.250z',
+};
+const ARROW = 18;
+
+/** An arrow before the words of a move. */
+export class ArrowField extends Blockly.FieldLabel {
+  constructor() {
+    super('');
+    this.size_ = new Blockly.utils.Size(ARROW, ARROW);
+  }
+
+  initView() {
+    const { dom, Svg } = Blockly.utils;
+    this.path = dom.createSvgElement(Svg.PATH, { class: 'arrow', fill: '#fff', 'aria-hidden': 'true' }, this.fieldGroup_);
+  }
+
+  render_() {
+    this.path?.setAttribute('d', ARROWS[String(this.getSourceBlock()?.getFieldValue('WORD'))] ?? '');
+    this.size_ = new Blockly.utils.Size(ARROW, ARROW);
   }
 }
 

@@ -64,6 +64,20 @@ export function formOf(workspace) {
   };
 }
 
+/**
+ * A program of one block and what is in it, with the words that it may use; of a value one that shows it.
+ * @param {Blockly.Block} block
+ * @returns {Form}
+ */
+export function formOfOne(block) {
+  const tops = topsOf(/** @type {Blockly.WorkspaceSvg} */ (block.workspace));
+  const words = tops.filter((top) => top.type === 'def' && top !== block).map((top) => blockOf(top, []));
+  const shown = { kind: 'show', word: 'SHOW', values: [valueOf(block)], bodies: [], note: '', is_apart: false };
+  const begins = block.type === 'program' || isHat(block);
+  const own = block.outputConnection ? [shown] : begins ? bodyOf(block.getNextBlock(), []) : [blockOf(block, [])];
+  return { start: 'SI', note: '', is_one_line: false, body: [...words, ...own], loose: [] };
+}
+
 /** @param {Blockly.WorkspaceSvg} workspace */
 function topsOf(workspace) {
   return workspace.getTopBlocks(true).filter((block) => !block.isInsertionMarker());
@@ -234,6 +248,11 @@ function partOf(block) {
   const word = String(field?.written?.() ?? field?.getValue() ?? '');
   const part = KINDS[block.type]?.part;
   return part ? [part, word] : [word, ''];
+}
+
+/** @param {FormBlock[]} blocks @returns {string[]} their kinds, and those of their values */
+export function kindsIn(blocks) {
+  return blocks.flatMap(({ kind, values }) => [kind, ...values.flatMap((value) => value.flatMap(([op]) => KIND_OF.get(op) ?? []))]);
 }
 
 // -- a form to blocks ------------------------------------------------------------------------------

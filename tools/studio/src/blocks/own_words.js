@@ -4,6 +4,8 @@ import * as Blockly from 'blockly/core';
 import { NameField } from './fields.js';
 import { LETTERS, MOST_PARAMETERS, tipOf } from '../page/words.js';
 
+const FINGER = 32; // units of a button on a block
+
 /** @param {any} block @param {() => void} act fires what has changed of its state */
 function changed(block, act) {
   const before = JSON.stringify(block.saveExtraState());
@@ -61,7 +63,7 @@ export const DEF = {
     const row = this.appendDummyInput('NAMES');
     for (const [name, act] of [['more', () => this.more()], ['less', () => this.less()]]) {
       const tip = tipOf(`${name}_values`);
-      row.appendField(new Blockly.FieldImage(`./${name}.svg`, 24, 24, tip, /** @type {any} */ (act))).fieldRow.at(-1).setTooltip(tip);
+      row.appendField(new Blockly.FieldImage(`./${name}.svg`, FINGER, FINGER, tip, /** @type {any} */ (act))).fieldRow.at(-1).setTooltip(tip);
     }
   },
 };

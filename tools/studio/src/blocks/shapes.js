@@ -2,7 +2,7 @@
 // order of their values are those of `studio/block_kinds.py`.
 
 import * as Blockly from 'blockly/core';
-import { LineField, NameField, NumberField, UnitField } from './fields.js';
+import { ArrowField, LineField, NameField, NumberField, UnitField } from './fields.js';
 import { CALL, DEF } from './own_words.js';
 import { rangeOf } from './places.js';
 import { called } from '../page/texts.js';
@@ -17,6 +17,23 @@ let robot = '';
 /** @param {string} name of the robot whose words are offered */
 export function setRobot(name) {
   robot = name;
+}
+
+/** @type {string[]} */
+let fresh = [];
+
+/** @param {string[]} kinds of blocks that glow where they are taken from */
+export function setNew(kinds) {
+  fresh = kinds;
+}
+
+const FOLDED = ['compare', 'logic', 'motors', 'move_until', 'random', 'round', 'extreme'];
+const LONG = 9; // letters of a move: with more it is folded, too
+let isNarrow = false;
+
+/** @param {boolean} is long blocks have their second half below the first from now on: on a phone they are not seen side by side */
+export function setNarrow(is) {
+  isNarrow = is;
 }
 
 /** @param {'sensor' | 'actuator'} role */
@@ -80,8 +97,9 @@ class DeviceField extends Blockly.FieldDropdown {
  * @param {(number: number) => Blockly.Field | string} what a field, or the name of a place
  * @param {(name: string) => Place} kindOf
  * @param {boolean} [isFolded] a question begins a row, so that it is seen beside a lesson, too
+ * @param {boolean} [isBroken] so does its second value
  */
-function add(block, message, what, kindOf, isFolded = false) {
+function add(block, message, what, kindOf, isFolded = false, isBroken = false) {
   let label = '';
   /** @type {Blockly.Field[]} */
   let fields = [];
@@ -110,6 +128,7 @@ function add(block, message, what, kindOf, isFolded = false) {
         endRow();
         block.appendEndRowInput();
       }
+      if (isBroken && shape === 'V1') block.appendEndRowInput();
       const input = block.appendValueInput(shape).setCheck(CHECKS[kindOf(shape)]);
       for (const field of fields) input.appendField(field, field.name);
       fields = [];
@@ -125,18 +144,41 @@ function named(field, name) {
   return field;
 }
 
+/** @param {Blockly.Block} block @param {boolean} is its second value stands below the first */
+function fold(block, is) {
+  if (is === Boolean(block.getInput('FOLD'))) return;
+  if (!is) block.removeInput('FOLD');
+  else {
+    block.appendEndRowInput('FOLD');
+    block.moveInputBefore('FOLD', 'V1');
+  }
+}
+
+/** @param {any} block @param {string} kind */
+function glow(block, kind) {
+  if (block.isInFlyout && fresh.includes(kind)) block.addClass('fresh');
+}
+
 /** @param {Blockly.Block} block @param {string} kind @param {Kind} shape */
 function build(block, kind, shape) {
   const first = firstField(block, shape);
   const unit = Object.keys(shape.units).length ? new UnitField(shape.units) : null;
-  if (unit) first?.setValidator(() => unit.forceRerender());
+  const arrow = unit ? new ArrowField() : null; // of a move
+  if (unit) {
+    first?.setValidator((word) => {
+      unit.forceRerender();
+      arrow?.forceRerender();
+      if (kind === 'move') fold(block, isNarrow && onBlock(word).length > LONG);
+    });
+  }
   if (kind === 'set') first?.setValidator((word) => fill(block, kind, shape.values, word));
   let value = 0;
   add(block, onBlock(kind), (number) => {
     if (first && number === 1) return named(first, 'WORD');
     if (unit && number === 3) return named(unit, 'UNIT');
     return `V${value++}`;
-  }, (name) => shape.values[Number(name.slice(1))] ?? 'any', !shape.gives);
+  }, (name) => shape.values[Number(name.slice(1))] ?? 'any', !shape.gives, isNarrow && FOLDED.includes(kind));
+  if (arrow) block.inputList.find(({ fieldRow }) => fieldRow.includes(/** @type {Blockly.Field} */ (first)))?.insertFieldAt(0, arrow);
   for (let k = 0; k < shape.bodies && !shape.is_hat; k += 1) block.appendStatementInput(`B${k}`);
   block.setInputsInline(true);
   if (shape.gives) block.setOutput(true, CHECKS[shape.gives]);
@@ -171,6 +213,7 @@ function truth() {
 }
 
 const MOST_ARMS = 20;
+const FINGER = 32; // units of a button on a block: 24 pixels at the least scale
 
 /** The block of IF: as many arms as its state says. */
 const IF = {
@@ -240,7 +283,7 @@ const IF = {
     this.setArms(1, false);
     const buttons = this.appendDummyInput('MORE');
     for (const [name, act] of [['more', () => this.more()], ['less', () => this.less()]]) {
-      const picture = new Blockly.FieldImage(`./${name}.svg`, 24, 24, tipOf(String(name)), /** @type {any} */ (act));
+      const picture = new Blockly.FieldImage(`./${name}.svg`, FINGER, FINGER, tipOf(String(name)), /** @type {any} */ (act));
       picture.setTooltip(tipOf(String(name)));
       buttons.appendField(picture);
     }
@@ -249,6 +292,7 @@ const IF = {
     this.setNextStatement(true);
     this.setStyle('control');
     this.setTooltip(tipOf('if'));
+    glow(this, 'if');
   },
 };
 
@@ -272,6 +316,7 @@ export function defineBlocks() {
       /** @this {Blockly.Block} */
       init() {
         build(this, kind, shape);
+        glow(this, kind);
         if (kind === 'def') /** @type {any} */ (this).addNames();
         this.setTooltip(tipOf(kind));
         if (shape.field === 'sensor' || shape.field === 'actuator') this.setTooltip(() => deviceTip(this));

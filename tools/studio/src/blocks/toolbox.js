@@ -2,9 +2,10 @@
 // it, the names that the program has, and for beginners what the open lesson speaks of, too. A group
 // is short enough to be seen at once.
 
+import { labelOf } from './said.js';
 import { devices } from './shapes.js';
 import { known, text } from '../page/texts.js';
-import { PLAIN, plainKind } from '../page/words.js';
+import { KINDS, onBlock, PLAIN, plainKind, tipOf } from '../page/words.js';
 
 /** @typedef {'few' | 'usual' | 'all'} Level */
 /** @typedef {{names: string[], words: [string, number][]}} Used names of variables, and own words with the count of their values */
@@ -127,13 +128,51 @@ function groups(used) {
   ];
 }
 
+const MOST_FOUND = 8; // are seen at once
+
+/** @param {string} said @returns {string} in small letters without accents */
+function plainly(said) {
+  return said.toLowerCase().normalize('NFD').replace(/[\u0300-\u036f]/g, '');
+}
+
+/**
+ * @param {string} words that somebody looks for
+ * @param {Used} used
+ * @returns {object[]} blocks whose label has them, or their word in the text, or what is said of what they do
+ */
+export function found(words, used) {
+  const wanted = plainly(words).split(/\s+/).filter(Boolean);
+  const rows = groups(used).flatMap(([, items]) => items.map(([, each]) => {
+    const word = /** @type {{WORD?: string}} */ (each.fields ?? {}).WORD ?? '';
+    const choices = word ? [] : (KINDS[each.type]?.words ?? []).map(onBlock);
+    const names = plainly([labelOf(each.type, word, null).said, word, each.type, ...choices].join(' ')), tip = plainly(tipOf(each.type));
+    return { each, rank: wanted.every((part) => names.includes(part)) ? Number(!names.startsWith(wanted[0] ?? '')) : wanted.every((part) => tip.includes(part)) ? 2 : 3 };
+  }));
+  return rows.filter(({ rank }) => rank < 3).sort((a, b) => a.rank - b.rank).slice(0, MOST_FOUND).map(({ each }) => ({ ...each, gap: 8 }));
+}
+
+/**
+ * @param {string[]} kinds of blocks
+ * @param {Used} used
+ * @returns {Level} the lowest one that offers them all
+ */
+export function levelOf(kinds, used) {
+  const rows = groups(used).flatMap(([, items]) => items);
+  const least = kinds.flatMap((kind) => {
+    const levels = rows.filter(([, { type }]) => type === kind).map(([level]) => LEVELS.indexOf(level));
+    return levels.length ? Math.min(...levels) : [];
+  });
+  return LEVELS[Math.max(0, ...least)] ?? 'few';
+}
+
 /**
  * @param {Level} level
  * @param {Used} used
  * @param {string[]} taught kinds of blocks that the open lesson speaks of
+ * @param {string[]} fresh those of them that glow
  * @returns {any}
  */
-export function toolbox(level, used, taught) {
+export function toolbox(level, used, taught, fresh) {
   const most = LEVELS.indexOf(level);
   const isShown = (/** @type {[Level, Item]} */ [from, { type }]) => LEVELS.indexOf(from) <= most || taught.includes(type);
   const shown = groups(used).map(([name, items]) => /** @type {const} */ ([name, items.filter(isShown)]));
@@ -143,7 +182,7 @@ export function toolbox(level, used, taught) {
       kind: 'category',
       name: text(known(`group/${name}`)),
       categorystyle: name,
-      cssConfig: { icon: `category ${name}` },
+      cssConfig: { icon: `category ${name}`, row: `blocklyToolboxCategory${items.some(([, { type }]) => fresh.includes(type)) ? ' fresh' : ''}` },
       contents: items.map(([, each]) => ({ ...each, gap: 8 })),
     })),
   };

@@ -2,11 +2,11 @@
 // program and the virtual robot are behind the wall, for who wants to show something.
 // Everything that pupils and robots have written is put there as text, never as markup.
 
+import { Pictures } from '../blocks/drawn.js';
 import { BigCode, BigPupil } from './big.js';
 import { Giving } from './giving.js';
 import { openWork, saveWork } from './keeping.js';
 import { button, labelled, made } from '../page/made.js';
-import { Pictures } from './pictures.js';
 import { sign } from './signs.js';
 import { clock, Wall } from './wall.js';
 import { element, say } from '../page/elements.js';
@@ -68,7 +68,7 @@ export class Teacher {
 
   /** @param {import('../python.js').Python} python */
   constructor(python) {
-    this.#pictures = new Pictures(python);
+    this.#pictures = new Pictures(python, 'class_blocks');
     const side = element('side_class', HTMLButtonElement);
     side.hidden = false;
     side.addEventListener('click', () => this.#showWall(true));

@@ -6,6 +6,8 @@
 import { element } from '../page/elements.js';
 import { button, made } from '../page/made.js';
 import { bugSaid } from '../page/faults.js';
+import { labelOfBlock, labelOfWord } from '../blocks/said.js';
+import { Pictures } from '../blocks/drawn.js';
 import { elementOf, filled } from './page.js';
 import { keepDone, lessonsDone } from './progress.js';
 import { offer, pictured, worldPicture } from '../page/pictures.js';
@@ -42,6 +44,8 @@ const BUSY_MS = 40; // of the worker's time for a part of a check
 const LEAST_MS = 20; // of the robot's time in a part, and the most
 const MOST_MS = 2000;
 
+const MORE = 4; // pixels below that nobody misses
+
 export class Lessons {
   #page;
   /** @type {Lesson[]} */
@@ -60,12 +64,16 @@ export class Lessons {
   #findings = element('lesson_findings', HTMLElement);
   #next = element('lesson_next', HTMLButtonElement);
   #hint = element('lesson_hint', HTMLDetailsElement);
+  #pictures;
+  /** What each code in the lesson's sentences is as a block. @type {Record<string, import('../blocks/said.js').Spoken>} */
+  #spoken = {};
   #hasPassed = false;
   #isPlaying = false;
 
   /** @param {Page} page */
   constructor(page) {
     this.#page = page;
+    this.#pictures = new Pictures(page.python, 'lesson_blocks');
     element('side_lessons', HTMLButtonElement).addEventListener('click', () => this.#show());
     this.#choice.addEventListener('change', () => {
       this.#choose(Number(this.#choice.value)).catch((why) => this.#fail(why));
@@ -86,11 +94,23 @@ export class Lessons {
       else this.#choose(this.#number + 1).catch((why) => this.#fail(why));
     });
     pageState.language.subscribe(() => {
+      this.#pictures.showWords();
       if (this.#isShown) this.#fetch();
     });
+    pageState.areWordsShown.subscribe(() => {
+      this.#pictures.showWords();
+      this.#fill();
+    });
+    pageState.view.subscribe(() => this.#fill());
+    pageState.robotName.subscribe(() => this.#fill());
     pageState.programText.subscribe(() => { // what was said of the one before is not of it
       if (this.#isShown) this.#forget();
     });
+    const place = element('lesson_page', HTMLElement);
+    const tellMore = () => place.classList.toggle('more', place.scrollTop + place.clientHeight < place.scrollHeight - MORE);
+    place.addEventListener('scroll', tellMore, { passive: true });
+    const watcher = new ResizeObserver(tellMore);
+    for (const each of [place, element('lesson_step', HTMLElement)]) watcher.observe(each);
     this.#setReady(false);
   }
 
@@ -157,13 +177,14 @@ export class Lessons {
     const asked = ++this.#asked;
     const language = currentLanguage();
     this.#forget();
-    const { steps, taught } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
+    const { steps, taught, needed, new: fresh, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
     if (asked !== this.#asked) return;
     const isOther = number !== this.#number || !this.#steps.length;
     this.#number = number; // from now on: until then the one before is seen and checked
     this.#choice.value = String(number);
     this.#steps = steps;
-    pageState.taughtBlocks.set(taught);
+    this.#spoken = spoken;
+    pageState.taughtBlocks.set({ offered: taught, needed, fresh });
     this.#go(isOther ? 0 : this.#step);
     if (isOther && !element('lessons', HTMLElement).hidden) await this.#seeWorld(1);
     this.#setReady(true);
@@ -173,18 +194,12 @@ export class Lessons {
   #go(step) {
     this.#step = step;
     const place = element('lesson_page', HTMLElement);
-    const { blocks, hint } = /** @type {Step} */ (this.#steps[step]);
-    const { robot, title } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
-    element('lesson_name', HTMLElement).textContent = title;
-    element('lesson_step', HTMLElement).replaceChildren(...blocks.map((block) => elementOf(block, (program) => {
-      this.#page.put({ text: program, robot });
-      pageState.note.set(text('lesson_used'));
-    })));
+    element('lesson_name', HTMLElement).textContent = /** @type {Lesson} */ (this.#lessons[this.#number - 1]).title;
+    this.#fill();
     place.dataset['lesson'] = String(this.#number);
     element('lesson_page', HTMLElement).scrollTop = 0;
     this.#hint.open = false;
-    this.#hint.hidden = !hint;
-    element('lesson_hint_said', HTMLElement).replaceChildren(filled('span', hint));
+    this.#hint.hidden = !this.#steps[step]?.hint;
     element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, k) => {
       const isTask = k === this.#steps.length - 1;
       const tile = button('', () => {
@@ -196,6 +211,28 @@ export class Lessons {
       return made('li', '', tile);
     }));
     this.#lay();
+  }
+
+  /** Shows what the step says, with programs and their words as this person writes them. */
+  #fill() {
+    const step = this.#steps[this.#step], lesson = this.#lessons[this.#number - 1];
+    if (!step || !lesson) return;
+    const areBlocks = pageState.view.value === 'blocks';
+    const reader = {
+      use: (/** @type {string} */ program) => {
+        this.#page.put({ text: program, robot: lesson.robot });
+        pageState.note.set(text('lesson_used'));
+      },
+      say: (/** @type {string} */ code) => {
+        const spoken = this.#spoken[code];
+        return areBlocks ? spoken ? asWritten(labelOfBlock(spoken), code) : labelOfWord(code) : null;
+      },
+      draw: areBlocks ? (/** @type {string} */ program, /** @type {(address: string) => void} */ done) => {
+        this.#pictures.want(program, { text: program, robot: pageState.robotName.value }, done);
+      } : null,
+    };
+    element('lesson_step', HTMLElement).replaceChildren(...step.blocks.map((block) => elementOf(block, reader)));
+    element('lesson_hint_said', HTMLElement).replaceChildren(filled('span', step.hint, reader));
   }
 
   /** Which buttons there are. Who pressed one that goes away is at the page. */
@@ -290,4 +327,10 @@ export class Lessons {
     if (!isKept) pageState.note.set(text('not_kept'));
     if (hadFocus) (this.#next.hidden ? this.#check : this.#next).focus();
   }
+}
+
+/** Names that a sentence has in small letters. @param {import('../blocks/said.js').Label} label @param {string} code */
+function asWritten({ said, colour }, code) {
+  const names = code.match(/[\p{Ll}_]{2,}/gu) ?? [];
+  return { said: names.reduce((whole, name) => whole.replace(name.toUpperCase(), name), said), colour };
 }

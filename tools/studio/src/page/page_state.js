@@ -4,6 +4,13 @@
 /** @typedef {import('../writing/editor.js').Range} Range */
 /** @typedef {{line: number, column: number, point: object}} Breakpoint */
 
+/**
+ * @typedef {object} Taught kinds of blocks of the open lesson
+ * @property {string[]} offered that it speaks of
+ * @property {string[]} needed in its programs, or by its task
+ * @property {string[]} fresh that no lesson before it speaks of
+ */
+
 /** @template T */
 class Observable {
   #value;
@@ -37,7 +44,8 @@ export const pageState = {
   language: new Observable(''),
   areWordsShown: new Observable(false), // of the text, on blocks and at readings
   robotName: new Observable(''),
-  taughtBlocks: new Observable(/** @type {string[]} */ ([])), // kinds of blocks that the open lesson speaks of
+  view: new Observable(/** @type {'blocks' | 'text'} */ ('blocks')), // of the program
+  taughtBlocks: new Observable(/** @type {Taught} */ ({ offered: [], needed: [], fresh: [] })),
   isRobotNamed: new Observable(false), // by the text: `// robot: liner`
   programText: new Observable(''),
   /** What the compiler says of the newest text; null while it is at work. */

@@ -1,5 +1,6 @@
-// The window with this person's programs: one is shared as a link or as a line of text, each with a
-// picture for a phone's camera, and earlier ones are opened again.
+// The window with this person's programs: pictures of earlier ones, which are opened again, and a place
+// to begin a new one. The newest is shared as a link or as a line of text, each with a picture for a
+// phone's camera, unless nobody else could open it.
 
 import { correction, generate } from 'lean-qr';
 import { element } from '../page/elements.js';
@@ -13,7 +14,8 @@ import { isGiven } from '../start/beginnings.js';
 import { showInstead } from '../start/screens.js';
 import { pageState } from '../page/page_state.js';
 import { called, currentLanguage, text } from '../page/texts.js';
-import { beginOf, keepVersion, MOST_CHARACTERS, versions } from './versions.js';
+import { keepVersion, MOST_CHARACTERS, titleOf, versions } from './versions.js';
+import { thumbnail } from '../start/thumbnail.js';
 import { robotOf } from '../page/words.js';
 import { keep } from './work.js';
 import { whole } from '../writing/messages.js';
@@ -46,6 +48,7 @@ export class Programs {
   #name = element('program_name', HTMLInputElement);
   #public = element('public', HTMLInputElement);
   #page;
+  #fold = element('share', HTMLDetailsElement);
   #asked = 0;
 
   /** @param {Page} page */
@@ -55,9 +58,12 @@ export class Programs {
     element('programs_close', HTMLButtonElement).addEventListener('click', () => this.#window.close());
     // The page's own is behind this window.
     element('programs_stop', HTMLButtonElement).addEventListener('click', () => element('stop', HTMLButtonElement).click());
-    element('new', HTMLButtonElement).addEventListener('click', () => {
+    for (const id of ['new', 'bar_new']) element(id, HTMLButtonElement).addEventListener('click', () => {
       this.replace({ text: '', robot: page.work.robot, name: '' });
       this.#window.close();
+    });
+    this.#fold.addEventListener('toggle', () => {
+      if (this.#fold.open) this.#share('link');
     });
     this.#link.addEventListener('click', () => this.#share('link'));
     this.#line.addEventListener('click', () => this.#share('line'));
@@ -111,8 +117,9 @@ export class Programs {
     this.#showVersions();
     this.#name.value = this.#page.work.name.replace(/\.\w+$/, '');
     this.#public.value = publicAddress();
+    this.#fold.open = false;
+    delete this.#window.dataset['shared'];
     this.#window.showModal();
-    this.#share('link');
   }
 
   /** Gives the program another name; its file gets it, too. */
@@ -137,7 +144,8 @@ export class Programs {
       given = { wrong: bugSaid(why) };
     }
     const told = how === 'line' ? 'share_line_told' : LINK_TOLD[reachOf(this.#address)];
-    if (asked === this.#asked) this.#show(given, text(told));
+    const isForOthers = how === 'line' || reachOf(this.#address) !== 'here';
+    if (asked === this.#asked) this.#show(given, text(told), isForOthers);
   }
 
   /** Where others find the page. */
@@ -163,17 +171,18 @@ export class Programs {
   /**
    * @param {Given} given
    * @param {string} told
+   * @param {boolean} isForOthers a phone could open what its camera reads
    */
-  #show(given, told) {
+  #show(given, told, isForOthers = true) {
     const shared = 'text' in given ? given.text : '';
     const isPictured = shared !== '' && new TextEncoder().encode(shared).length <= MOST_PICTURED;
     this.#shared.value = shared;
     this.#shared.hidden = shared === '';
     this.#copy.hidden = shared === '' || !navigator.clipboard; // which plain http has not
     this.#told.textContent = 'wrong' in given ? given.wrong
-      : shared && !isPictured ? `${told} ${text('no_picture')}` : told;
-    this.#picture.hidden = !isPictured;
-    if (isPictured) {
+      : shared && isForOthers && !isPictured ? `${told} ${text('no_picture')}` : told;
+    this.#picture.hidden = !isPictured || !isForOthers;
+    if (!this.#picture.hidden) {
       generate(shared, { minCorrectionLevel: correction.L })
         .toCanvas(this.#picture, { padX: MARGIN, padY: MARGIN, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
     }
@@ -211,16 +220,17 @@ export class Programs {
       const said = time.format(at);
       const when = made('time', '', said);
       when.dateTime = at.toISOString();
-      const open = button('open_again', () => {
+      const title = titleOf(version), robot = called(robotOf(version.robot)?.labels ?? {}) || version.robot;
+      const open = button('', () => {
         this.replace(version);
         this.#window.close();
         pageState.note.set(text('opened_again', { time: said }));
-      });
-      open.setAttribute('aria-label', text('open_again_from', { time: said }));
-      const what = (version.name ? `${version.name}: ` : '') + beginOf(version.text);
-      return made('li', '', when, made('span', '', called(robotOf(version.robot)?.labels ?? {}) || version.robot), made('code', '', what), open);
+      }, thumbnail(version.text, version.robot), made('strong', '', title), when);
+      open.title = `${title}, ${robot}`;
+      return made('li', '', open);
     });
-    element('versions', HTMLElement).replaceChildren(...rows);
+    const place = element('versions', HTMLElement);
+    place.replaceChildren(...[...place.children].slice(0, 1), ...rows);
   }
 }
 

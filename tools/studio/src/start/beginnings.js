@@ -7,7 +7,7 @@ export const FIRST_PROGRAM = 'SI|F(2, 80);\nR(0.5, 60);\nF(1, 80);\n';
 
 /** @type {Record<string, Beginning>} by the names of the pictures */
 export const BEGINNINGS = {
-  dance: { robot: 'tinibot', world: 'obstacles', text: `\
+  dance: { robot: 'tinibot', world: 'dance', text: `\
 SI|LOOP(3);
   R(0.4, 70);
   BEEP(0.15, 440);
@@ -16,7 +16,7 @@ SI|LOOP(3);
   R(0.4, 70);
 END_LOOP;
 ` },
-  square: { robot: 'tinibot', world: 'obstacles', text: `\
+  square: { robot: 'tinibot', world: 'free', text: `\
 SI|LOOP(4);
   F(0.8, 70);
   L(0.42, 60);
@@ -51,7 +51,7 @@ SI|LOOP(FOREVER);
   W(0.05);
 END_LOOP;
 ` },
-  music: { robot: 'tinibot', world: 'obstacles', text: `\
+  music: { robot: 'tinibot', world: 'dance', text: `\
 SI|M(20, 40);
 LOOP(2);
   BEEP(0.6, 659);
@@ -64,7 +64,7 @@ LOOP(2);
 END_LOOP;
 S;
 ` },
-  drive: { robot: 'tinibot', world: 'obstacles', text: `\
+  drive: { robot: 'tinibot', world: 'free', text: `\
 SI|LOOP(FOREVER);
   M(PAD_Y + PAD_X, PAD_Y - PAD_X);
   W(0.05);

@@ -3,7 +3,7 @@
 import { drawRobot } from './robot_drawing.js';
 import { dot, path } from '../page/shapes.js';
 import { robotOf, ROBOTS, WORLDS } from '../page/words.js';
-import { drawWorld } from '../world/floor.js';
+import { drawWorld, lightTile } from '../world/floor.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
 /** @import { World, Place } from '../world/parts.js' */
@@ -12,6 +12,10 @@ import { drawWorld } from '../world/floor.js';
 /** @typedef {import('../page/shapes.js').Pen} Pen */
 
 const MARGIN_CM = 4;
+const LEAST_ROBOT = 72; // pixels of a robot that the camera follows
+const BEHIND = 0.78; // of the picture's height is ahead of a robot that is seen from behind
+const NEARER = 1.7; // than from above: what is far is small then
+/** @typedef {'whole' | 'near' | 'behind'} Camera */
 const FINGER = 22; // pixels that a finger may miss
 const MOST_POINTS = 5000; // of a way
 const MOST_WAYS = 4; // of runs before, which are pale
@@ -39,7 +43,10 @@ export class Arena {
   #taken = 0; // flags
   /** What it has shown last, and when. @type {[string, number]} */
   #said = ['', 0];
+  /** @type {Camera} */
+  #camera = 'whole';
   #scale = 1; // pixels of the canvas for a centimetre
+  #place = new DOMMatrix(); // from the floor, in centimetres, to the canvas
   /** What is chosen to be changed. @type {Mark | null} */
   #mark = null;
 
@@ -54,8 +61,13 @@ export class Arena {
     const ratio = window.devicePixelRatio || 1;
     const width = Math.max(1, Math.round(this.#canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(this.#canvas.clientHeight * ratio));
-    for (const each of [this.#canvas, this.#floor]) Object.assign(each, { width, height });
-    this.#isFloorDrawn = false;
+    Object.assign(this.#canvas, { width, height });
+  }
+
+  /** @param {Camera} camera the whole floor, or the robot with what is around it: from above, or from behind */
+  set camera(camera) {
+    this.#camera = camera;
+    this.#canvas.classList.toggle('behind', camera === 'behind');
   }
 
   /**
@@ -134,12 +146,9 @@ export class Arena {
    */
   floorAt(event) {
     const box = this.#canvas.getBoundingClientRect();
-    const scale = this.#scale / (window.devicePixelRatio || 1);
-    const { width_cm, height_cm } = this.#world ?? { width_cm: 0, height_cm: 0 };
-    return {
-      place: [(event.clientX - box.left - box.width / 2) / scale + width_cm / 2, (box.top + box.height / 2 - event.clientY) / scale + height_cm / 2],
-      reach_cm: FINGER / scale,
-    };
+    const ratio = this.#canvas.width / box.width;
+    const { x, y } = this.#place.inverse().transformPoint({ x: (event.clientX - box.left) * ratio, y: (event.clientY - box.top) * ratio });
+    return { place: [x, y], reach_cm: (FINGER * ratio) / this.#scale };
   }
 
   /** @param {RobotState | null} state */
@@ -147,10 +156,9 @@ export class Arena {
     const world = this.#world;
     if (!world) return;
     const { width, height } = this.#canvas;
-    this.#scale = Math.min(
-      width / (world.width_cm + 2 * MARGIN_CM),
-      height / (world.height_cm + 2 * MARGIN_CM),
-    );
+    const { start } = world;
+    const [x, y, heading] = state?.pose ?? [start.x_cm, start.y_cm, start.heading];
+    this.#look(world, x, y, heading);
     const taken = state?.score?.taken ?? 0;
     if (taken !== this.#taken) this.#isFloorDrawn = false;
     this.#taken = taken;
@@ -158,12 +166,41 @@ export class Arena {
     const pen = this.#pen;
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.clearRect(0, 0, width, height);
-    pen.drawImage(this.#floor, 0, 0);
-    this.#measure(pen, world);
-    const { start } = world;
-    const [x, y, heading] = state?.pose ?? [start.x_cm, start.y_cm, start.heading];
+    pen.setTransform(this.#place);
+    pen.scale(1 / this.#scale, -1 / this.#scale);
+    pen.drawImage(this.#floor, -MARGIN_CM * this.#scale, -(world.height_cm + MARGIN_CM) * this.#scale);
+    pen.setTransform(this.#place);
+    pen.lineCap = pen.lineJoin = 'round';
+    lightTile(pen, world, x, y);
     this.#drawBody(x, y, heading, state);
     this.#drawMark();
+  }
+
+  /**
+   * Says where on the canvas the floor is. A robot that is changed by a finger is seen with all of its floor.
+   * @param {World} world @param {number} x @param {number} y @param {number} heading of the robot
+   */
+  #look({ width_cm, height_cm }, x, y, heading) {
+    const { width, height } = this.#canvas;
+    const whole = [width_cm + 2 * MARGIN_CM, height_cm + 2 * MARGIN_CM];
+    const fit = Math.min(width / (whole[0] ?? 1), height / (whole[1] ?? 1));
+    const camera = this.#mark ? 'whole' : this.#camera;
+    const long = Math.max(...(this.#robot?.outline ?? [[1]]).map(([ahead = 0]) => ahead)) - Math.min(...(this.#robot?.outline ?? [[0]]).map(([ahead = 0]) => ahead));
+    const scale = camera === 'whole' ? fit : Math.max(fit, (LEAST_ROBOT * (camera === 'behind' ? NEARER : 1) * (window.devicePixelRatio || 1)) / long);
+    if (Math.abs(scale - this.#scale) > 1e-9 || this.#floor.width !== Math.ceil((whole[0] ?? 0) * scale)) {
+      this.#scale = scale;
+      Object.assign(this.#floor, { width: Math.ceil((whole[0] ?? 0) * scale), height: Math.ceil((whole[1] ?? 0) * scale) });
+      this.#isFloorDrawn = false;
+    }
+    if (camera === 'behind') {
+      this.#place = new DOMMatrix().translate(width / 2, height * BEHIND).scale(scale, -scale).rotate(90 - heading).translate(-x, -y);
+      return;
+    }
+    const margin = MARGIN_CM * scale, high = height_cm * scale + margin;
+    const left = within(width / 2 - x * scale, width, width_cm * scale, margin);
+    const bottom = height - within(height / 2 - y * scale, height, height_cm * scale, margin);
+    // Whole pixels of the floor are on whole ones of the picture: else it would be blurred.
+    this.#place = new DOMMatrix([scale, 0, 0, -scale, Math.round(left - margin) + margin, Math.round(bottom - high) + high]);
   }
 
   /** Draws what is new on the floor, or all of it where it has become another one. @param {World} world */
@@ -184,10 +221,10 @@ export class Arena {
   }
 
   /** Centimetres from the lower left corner of the floor; y goes up. @param {Pen} pen @param {World} world */
-  #measure(pen, { width_cm, height_cm }) {
-    const { width, height } = this.#canvas, scale = this.#scale;
+  #measure(pen, { height_cm }) {
+    const scale = this.#scale;
     pen.lineCap = pen.lineJoin = 'round';
-    pen.setTransform(scale, 0, 0, -scale, (width - width_cm * scale) / 2, (height + height_cm * scale) / 2);
+    pen.setTransform(scale, 0, 0, -scale, MARGIN_CM * scale, (height_cm + MARGIN_CM) * scale);
   }
 
   /**
@@ -215,13 +252,13 @@ export class Arena {
   /** A bubble beside the robot, inside the picture. @param {number} x @param {number} y @param {string} what */
   #drawSaid(x, y, what) {
     const pen = this.#pen;
-    const { a: scale, e: left, f: bottom } = pen.getTransform();
+    const scale = this.#scale;
     const size = 15 * (window.devicePixelRatio || 1);
     pen.save();
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.font = `600 ${size}px system-ui, sans-serif`;
     const width = pen.measureText(what).width + size, height = 1.6 * size;
-    const [robot_x, robot_y] = [left + x * scale, bottom - y * scale];
+    const { x: robot_x, y: robot_y } = this.#place.transformPoint({ x, y });
     const from_x = Math.max(2, Math.min(robot_x + 0.5 * size, this.#canvas.width - width - 2));
     const isBelow = robot_y - 12 * scale - height < 2;
     const from_y = isBelow ? robot_y + 12 * scale : robot_y - 12 * scale - height;
@@ -267,6 +304,15 @@ export class Arena {
       dot(pen, x, y, radius * 0.75, mark.point < 0 || k === mark.point ? '#b0186b' : '#7c8894');
     });
   }
+}
+
+/**
+ * Where the edge of a floor is, so that its robot is in the middle of the picture, unless more would be beside the floor.
+ * @param {number} wanted @param {number} room @param {number} size of the floor @param {number} margin around it
+ */
+function within(wanted, room, size, margin) {
+  if (size + 2 * margin <= room + 1e-6) return (room - size) / 2;
+  return Math.min(margin, Math.max(room - size - margin, wanted));
 }
 
 /** @param {HTMLCanvasElement} canvas @returns {Pen} */

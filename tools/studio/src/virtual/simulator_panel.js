@@ -10,6 +10,7 @@ import { dialPicture, offer, pictured } from '../page/pictures.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
+import { Stage } from './stage.js';
 import { Run, Runs } from './runs.js';
 import { RunsWindow } from './runs_window.js';
 import { TimeLine } from './time_line.js';
@@ -39,6 +40,7 @@ const SHOWN = 200; // lines of the trace
 const READ_MS = 100; // nobody reads what changes more often; where the program is and what is measured take turns
 const SPEEDS = [0.1, 0.5, 1, 4, 20]; // times as quick as the robot
 const PLAYED_MS = 6000; // at most for a run of a lesson, or a recorded one
+const HEARD_S = 0.35; // a tone that somebody chooses
 const NEAR_MS = 60; // of a moment: nothing else of it is kept
 /** What of a run is seen, by the button that shows it. */
 const SEEN = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_place' };
@@ -47,11 +49,13 @@ export class SimulatorPanel {
   #page;
   #starts = 0; // one that STOP or a newer one has overtaken does nothing
   #isWaiting = false; // for the compiler
+  #isAlone = false; // what runs is a part of the program
   #seenRun = () => {}; // the run of a lesson is over
   #simulator;
   #arena = new Arena(element('arena', HTMLCanvasElement));
   #plot = new Plot(element('plot', HTMLCanvasElement));
   #sounds = new Sounds();
+  #stage;
   #where = new Where();
   #timeLine = new TimeLine(() => this.#lookBack());
   runs = new Runs();
@@ -181,6 +185,14 @@ export class SimulatorPanel {
       this.#places = [];
       this.#show();
     });
+    this.#stage = new Stage({
+      look: (camera) => {
+        this.#arena.camera = camera;
+        this.#arena.resize();
+        this.#arena.draw(this.#state);
+      },
+      stop: () => this.stop(),
+    });
     this.begin();
     this.#restored = this.#restore();
   }
@@ -204,6 +216,34 @@ export class SimulatorPanel {
     const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
     await this.#start(false, run, isStill ? run.until_ms : run.until_ms / PLAYED_MS);
     if (this.#isDriving) await new Promise((resolve) => { this.#seenRun = () => resolve(undefined); });
+  }
+
+  /**
+   * Runs a part of the program alone; resolves when it is over. A run of the whole program goes on.
+   * @param {string} program
+   * @param {boolean} isAsked whoever only touched a block wants the virtual robot to be seen already
+   * @param {() => void} see has it seen
+   */
+  async tryAlone(program, isAsked, see) {
+    const isSeen = element('arena', HTMLCanvasElement).checkVisibility();
+    if ((this.#isDriving && !this.#isAlone) || this.#isWaiting || !(isSeen || isAsked)) return;
+    if (!isSeen) see();
+    const start = ++this.#starts;
+    const request = { do: 'check', robot: pageState.robotName.value, language: pageState.language.value };
+    const checked = /** @type {Checked} */ (await this.#page.python.ask(request, new TextEncoder().encode(program)));
+    if (start !== this.#starts) return;
+    if (!checked.image) {
+      pageState.note.set(text('alone_wrong', { why: checked.findings.find(({ severity }) => severity === 'mistake')?.message ?? '' }));
+      return;
+    }
+    await this.#start(false, null, 0, null, { text: program, checked });
+    if (this.#isDriving) await new Promise((resolve) => { this.#seenRun = () => resolve(undefined); });
+  }
+
+  /** @param {number} hertz of a tone that somebody chooses */
+  hear(hertz) {
+    this.#sounds.begin();
+    this.#sounds.beep(hertz, HEARD_S);
   }
 
   /** Nothing comes of the compiler, for which a run may wait. */
@@ -393,12 +433,13 @@ export class SimulatorPanel {
    * @param {import('../lesson/lessons.js').JudgedRun | null} judged
    * @param {number} least times as quick as the robot
    * @param {{opened: import('./runs_window.js').Opened, again: Run | null} | null} played a recorded run
+   * @param {{text: string, checked: Checked} | null} alone a part of the program
    */
-  async #start(isPaused, judged = null, least = 0, played = null) {
+  async #start(isPaused, judged = null, least = 0, played = null, alone = null) {
     this.#seenRun();
     const start = ++this.#starts;
     this.#drawing.said = '';
-    let program = pageState.checked.value;
+    let program = alone?.checked ?? pageState.checked.value;
     if (!program) {
       this.#isWaiting = true;
       this.#note = text(this.#page.python.isLate ? 'run_waits' : 'still_compiling');
@@ -419,15 +460,17 @@ export class SimulatorPanel {
     this.#plot.begin();
     this.#shown.clear();
     this.#program = program;
-    this.#places = program.places;
+    this.#isAlone = alone !== null;
+    if (!alone && !judged) this.#stage.begin();
+    this.#places = alone ? [] : program.places; // which are those of another text
     this.#variables = program.variables;
     this.#findStops();
     this.#remote = judged || played ? [] : program.remote;
     const world = judged ?? this.#world.request;
-    const run = this.#newest = this.#runOf(program, world, played);
+    const run = this.#newest = this.#runOf(program, world, played, alone?.text);
     run.isJudged = judged !== null;
     this.#timeLine.begin(run);
-    const stops = judged || played ? [] : this.#stops.offsets;
+    const stops = judged || played || alone ? [] : this.#stops.offsets;
     await this.#simulator.begin(program, pageState.robotName.value, world, stops, isPaused, least, played !== null);
   }
 
@@ -436,9 +479,10 @@ export class SimulatorPanel {
    * @param {Checked} program
    * @param {unknown} world
    * @param {{opened: import('./runs_window.js').Opened, again: Run | null} | null} played
+   * @param {string} [whole] its text
    */
-  #runOf(program, world, played) {
-    const run = played?.again ?? new Run({ of: 'virtual', text: pageState.programText.value, robot: pageState.robotName.value, program: program.program, world }, program, null);
+  #runOf(program, world, played, whole = pageState.programText.value) {
+    const run = played?.again ?? new Run({ of: 'virtual', text: whole, robot: pageState.robotName.value, program: program.program, world }, program, null);
     if (played && !played.again) {
       run.of = { ...run.of, of: played.opened.of };
       run.file = played.opened.file;
@@ -447,7 +491,7 @@ export class SimulatorPanel {
     run.program = program;
     run.again();
     if (played) run.markKeys(played.opened.rows);
-    if (!played?.again) this.runs.begin(run);
+    if (!played?.again && !this.#isAlone) this.runs.begin(run);
     return run;
   }
 

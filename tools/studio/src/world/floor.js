@@ -10,6 +10,11 @@ import { cornersOf } from './parts.js';
 /** @typedef {{x_cm: number, y_cm: number, is_flag: boolean, radius_cm?: number, around?: import('./parts.js').Place[]}} Goal */
 
 const GRID_CM = 10; // while a world is changed
+const TILE_CM = 25;
+const PAPER = '#fffdf6', NIGHT = '#27324b';
+const TILES = ['#fbeefc', '#e3f0fd', '#fff3cf'], LIT = ['#f3b8f7', '#a9d3fb', '#ffe08a']; // as on the picture of a dance
+/** What the floor of a world is. @type {Record<string, 'night' | 'tiles' | 'kitchen' | 'grass' | 'ring'>} */
+const THEMES = { light: 'night', dance: 'tiles', obstacles: 'kitchen', delivery: 'grass', ring: 'ring' };
 
 /**
  * @param {Pen} pen
@@ -19,13 +24,14 @@ const GRID_CM = 10; // while a world is changed
  * @param {boolean} isChanged now, by a finger
  */
 export function drawWorld(pen, world, goals, taken, isChanged) {
-  pen.fillStyle = '#fffdf6';
-  pen.fillRect(0, 0, world.width_cm, world.height_cm);
+  drawTheme(pen, world);
   if (isChanged) drawGrid(pen, world);
   for (const goal of goals) drawGoal(pen, goal);
   world.flags.forEach((flag, k) => drawFlag(pen, flag, k - taken, k + 1));
   for (const line of world.lines) path(pen, line.points, '#20242a', line.width_cm);
   for (const { x_cm: x, y_cm: y } of world.lamps) {
+    const reach = THEMES[world.name] === 'night' ? [46, 30, 17] : [];
+    for (const each of reach) dot(pen, x, y, each, '#ffe9a324');
     dot(pen, x, y, 9, '#ffe9a3');
     dot(pen, x, y, 3, '#e08a1e');
   }
@@ -36,6 +42,36 @@ export function drawWorld(pen, world, goals, taken, isChanged) {
     pen.lineWidth = 2;
     pen.strokeRect(0, 0, world.width_cm, world.height_cm);
   }
+}
+
+/** @param {Pen} pen @param {World} world */
+function drawTheme(pen, world) {
+  const { width_cm: width, height_cm: height } = world, theme = THEMES[world.name];
+  pen.fillStyle = theme === 'night' ? NIGHT : theme === 'grass' ? '#e4efdc' : theme === 'ring' ? '#e9eef2' : PAPER;
+  pen.fillRect(0, 0, width, height);
+  if (theme === 'tiles') {
+    for (let x = 0; x < width; x += TILE_CM) for (let y = 0; y < height; y += TILE_CM) fillTile(pen, world, x, y, TILES);
+  }
+  if (theme === 'kitchen') {
+    for (let at = TILE_CM; at < Math.max(width, height); at += TILE_CM) {
+      if (at < width) path(pen, [[at, 0], [at, height]], '#efe6d2', 0.5);
+      if (at < height) path(pen, [[0, at], [width, at]], '#efe6d2', 0.5);
+    }
+  }
+  if (theme === 'ring') for (const { points } of world.lines) path(pen, points, 'transparent', 0, '#f6e3bd');
+}
+
+/** @param {Pen} pen @param {World} world @param {number} x @param {number} y @param {string[]} colors */
+function fillTile(pen, { width_cm, height_cm }, x, y, colors) {
+  const column = Math.floor(x / TILE_CM), row = Math.floor(y / TILE_CM);
+  pen.fillStyle = colors[(column + 2 * row) % colors.length] ?? PAPER;
+  pen.fillRect(column * TILE_CM, row * TILE_CM, Math.min(TILE_CM, width_cm - column * TILE_CM), Math.min(TILE_CM, height_cm - row * TILE_CM));
+}
+
+/** Lights the tile under a robot, where the floor has such tiles. @param {Pen} pen @param {World} world @param {number} x @param {number} y */
+export function lightTile(pen, world, x, y) {
+  const isThere = x > 0 && y > 0 && x < world.width_cm && y < world.height_cm;
+  if (isThere && THEMES[world.name] === 'tiles') fillTile(pen, world, x, y, LIT);
 }
 
 /** @param {Pen} pen @param {World} world */

@@ -17,6 +17,8 @@ import { text } from '../page/texts.js';
  * @property {import('./editor.js').Editor} editor
  * @property {import('../programs/work.js').Work} work
  * @property {() => void} remember
+ * @property {(program: string, isAsked: boolean) => Promise<void>} tryAlone on the virtual robot
+ * @property {(hertz: number) => void} hear
  */
 
 const TYPING_MS = 200; // of silence before blocks are made of a text
@@ -58,7 +60,7 @@ export class Views {
     this.#level.addEventListener('change', () => {
       work.level = LEVELS.find(([level]) => level === this.#level.value)?.[0] ?? 'few';
       remember();
-      this.#blocks?.setLevel(work.level);
+      this.#offer(work.level);
     });
     element('undo', HTMLButtonElement).addEventListener('click', () => this.#again(() => editor.undo()));
     element('redo', HTMLButtonElement).addEventListener('click', () => this.#again(() => editor.redo()));
@@ -74,7 +76,7 @@ export class Views {
     pageState.language.subscribe(() => this.#showWords());
     pageState.areWordsShown.subscribe(() => this.#showWords());
     pageState.robotName.subscribe(() => this.#setRobot());
-    pageState.taughtBlocks.subscribe((kinds) => this.#blocks?.setTaught(kinds));
+    pageState.taughtBlocks.subscribe(() => this.#teach());
     pageState.programText.subscribe(() => this.#textChanged());
     pageState.checked.subscribe((answer) => {
       if (answer) this.#showFindings(answer.findings);
@@ -110,9 +112,26 @@ export class Views {
     if (this.#isOn) import('../blocks/blocks.js');
   }
 
+  /** Offers what the open lesson speaks of, at the level that it needs; whoever wants another one chooses it. */
+  #teach() {
+    const taught = pageState.taughtBlocks.value;
+    this.#blocks?.setTaught(taught);
+    const order = LEVELS.map(([level]) => level);
+    const least = this.#blocks?.levelOf(taught.needed) ?? 'few';
+    const own = this.#page.work.level;
+    this.#offer(order.indexOf(least) > order.indexOf(own) ? least : own);
+  }
+
+  /** @param {'few' | 'usual' | 'all'} level */
+  #offer(level) {
+    this.#level.value = level;
+    this.#blocks?.setLevel(level);
+  }
+
   #showWords() {
+    const { value } = this.#level;
     offer(this.#level, LEVELS.map(([level, name], k) => pictured(text(name), level, blocksPicture(k + 1))));
-    this.#level.value = this.#page.work.level;
+    this.#level.value = value || this.#page.work.level;
     this.#blocks?.showWords();
     if (!this.#isStale()) this.#showAll();
     if (this.#blocks) this.#refresh(true);
@@ -198,6 +217,7 @@ export class Views {
       element(`view_${each}`, HTMLButtonElement).setAttribute('aria-pressed', String(each === view));
     }
     this.#level.hidden = view !== 'blocks';
+    if (pageState.view.value !== view) pageState.view.set(view);
     if (view === 'blocks' && this.#isAwake) this.#fetching ??= this.#fetch();
   }
 
@@ -208,8 +228,17 @@ export class Views {
       toggle: (place) => {
         if (!this.#isStale()) this.#page.editor.toggleBreakpoint(place);
       },
+      tryAlone: async (form, isAsked) => {
+        try {
+          const { text: program } = await this.#page.python.ask({ do: 'text', form });
+          await this.#page.tryAlone(program, isAsked);
+        } catch (why) {
+          this.#fail(why);
+        }
+      },
+      hear: this.#page.hear,
     });
-    this.#blocks.setTaught(pageState.taughtBlocks.value);
+    this.#teach();
     this.#pane.dataset['state'] = 'empty';
     if (this.#isReady) this.#refresh(true);
   }

@@ -1,6 +1,7 @@
-// Pictures of pupils' programs as blocks, made here of their text alone: nothing that a pupil has sent
-// is shown but as text. They are made one at a time, in slices, of the first blocks, and of each pupil
-// once a second at most: whatever pupils write, STOP ALL waits for none of it.
+// Pictures of programs as blocks, for who only looks at them: a teacher at those of pupils, a lesson's
+// reader at its own. They are made of the text alone, and nothing that somebody has sent is shown but
+// as text: one at a time, in slices, of the first blocks, and for each owner once a second at most.
+// Whatever pupils write, STOP ALL waits for none of it.
 
 import { ROBOTS } from '../page/words.js';
 
@@ -15,7 +16,7 @@ const NO_PICTURE = ''; // of a program that is empty
 
 export class Pictures {
   #python;
-  /** @type {Promise<import('../blocks/blocks.js').Blocks> | null} */
+  /** @type {Promise<import('./blocks.js').Blocks> | null} */
   #blocks = null;
   /** What is wanted, the oldest first; each owner wants its newest program alone. @type {Map<string, Wish>} */
   #wanted = new Map();
@@ -25,11 +26,10 @@ export class Pictures {
   #areWordsOld = false;
   #place = document.createElement('div');
 
-  /** @param {import('../python.js').Python} python */
-  constructor(python) {
+  /** @param {import('../python.js').Python} python @param {string} id of where they are made; its width is that of their room */
+  constructor(python, id) {
     this.#python = python;
-    this.#place.id = 'class_blocks';
-    this.#place.inert = true;
+    Object.assign(this.#place, { id, className: 'drawn_blocks', inert: true });
     document.body.append(this.#place);
   }
 
@@ -77,7 +77,7 @@ export class Pictures {
     if (!text.trim()) return NO_PICTURE;
     await this.#python.ready;
     const form = await this.#python.ask({ do: 'blocks', robot, first: FIRST }, new TextEncoder().encode(text));
-    this.#blocks ??= import('../blocks/blocks.js').then(({ Blocks }) => new Blocks(this.#place, ROBOTS[0]?.name ?? '', 'few', { changed() {}, toggle() {} }));
+    this.#blocks ??= import('./blocks.js').then(({ Blocks }) => new Blocks(this.#place, ROBOTS[0]?.name ?? '', 'few'));
     const blocks = await this.#blocks.catch((why) => {
       this.#blocks = null; // the next picture tries again
       throw why;

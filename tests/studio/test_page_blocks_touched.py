@@ -1,0 +1,342 @@
+"""Blocks that are tried with a click, found by a word, tuned on a piano and put in by keys."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.studio.test_page_blocks import (
+    FLYOUT,
+    PROGRAM,
+    becomes,
+    block,
+    box_of,
+    meet,
+    path_of,
+    start,
+    text_of,
+)
+from tests.support.node import in_node
+from tests.support.studio import SETTLED, Pages, axe, in_phase, noted, shown, speak
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
+
+SCRIPT = Path(__file__).with_name("tones_in_node.mjs")
+GAP = 30  # pixels between a block and its message
+
+
+@pytest.fixture
+def page(only_page: tuple[Pages, Page]) -> Any:
+    pages, found = only_page
+    found.bring_to_front()
+    found.set_viewport_size({"width": 1366, "height": 768})
+    speak(found, "en")
+    found.click("#side_virtual")
+    found.select_option("#robot", "tinibot")
+    found.select_option("#speed", "20")
+    yield found
+    found.keyboard.press("Escape")
+    wrong, pages.wrong[:] = pages.wrong[:], []
+    assert not wrong
+
+
+def touch(page: Page, words: str) -> None:
+    """Click a block where no field is."""
+    box = box_of(block(page, words))
+    page.mouse.click(box["x"] + 4, box["y"] + 26)
+
+
+def rest(page: Page) -> None:
+    """Have the virtual robot switched off."""
+    world = page.input_value("#world")
+    page.select_option("#world", "light" if world == "obstacles" else "obstacles")
+    in_phase(page, "off")
+
+
+def did(page: Page) -> list[str]:
+    """Return what the virtual robot has done, once it has ended."""
+    in_phase(page, "ended")
+    lines = (page.locator("#trace").text_content() or "").splitlines()
+    return [line.partition(" ")[2] for line in lines]
+
+
+# -- a block alone ---------------------------------------------------------------------------------
+
+
+WHOLE = """SI|F(2, 80);
+LOOP(2);
+  HOP;
+END_LOOP;
+SHOW(DISTANCE);
+B(X, 50);
+WHEN(DISTANCE < 0);
+  BEEP(0.1, 880);
+END_WHEN;
+DEF HOP;
+  BEEP(0.2, 440);
+END_DEF;
+"""
+
+
+def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -> None:
+    """With the words that it uses, too; a value is shown, and a hat runs what is below it."""
+    start(page, WHOLE)
+    text = text_of(page)
+    for words, sounds, shows in (
+        ("forward", 0, 0), ("do", 1, 0), ("repeat", 2, 0), ("each time", 1, 0), ("new word", 1, 0),
+        ("show", 0, 1),
+    ):  # fmt: skip
+        rest(page)
+        touch(page, words)
+        done = did(page)
+        assert sum(each.startswith("BEEP") for each in done) == sounds, (words, done)
+        assert sum(each.startswith("SHOW") for each in done) == shows, (words, done)
+    rest(page)
+    box = box_of(page.locator(f"{PROGRAM} .blocklyBlock.sensor").first)
+    page.mouse.click(box["x"] + 6, box["y"] + 4)
+    assert any(each.startswith("SHOW") for each in did(page))
+    assert text_of(page) == text
+    page.click("#runs_open")
+    assert page.locator("#runs_list li").count() == 0  # what was tried is no run to keep
+    page.click("#runs_close")
+
+
+def test_a_block_that_does_not_run_alone_says_why(page: Page) -> None:
+    start(page, WHOLE)
+    page.select_option("#speed", "1")
+    touch(page, "forward")
+    page.locator(f"{PROGRAM} .alone").wait_for()
+    page.locator(f"{PROGRAM} .alone").wait_for(state="detached")
+    touch(page, "back")
+    noted(page, "does not run alone: ")
+    assert "X" in page.inner_text("#note")
+    assert page.locator(f"{PROGRAM} .alone").count() == 0
+
+
+def test_a_click_ends_no_run_and_moves_no_robot_that_is_not_seen(page: Page) -> None:
+    start(page, "SI|LOOP(FOREVER);\n  F(1, 80);\nEND_LOOP;\n")
+    page.click("#run")
+    in_phase(page, "running")
+    touch(page, "forward")
+    page.wait_for_timeout(300)
+    page.locator(f"{PROGRAM} .running").wait_for()
+    in_phase(page, "running")
+    page.keyboard.press("Escape")
+    in_phase(page, "ended")
+    page.click("#side_real")
+    touch(page, "forward")
+    page.wait_for_timeout(300)
+    in_phase(page, "ended")
+
+
+@pytest.mark.parametrize("way", ["keys", "menu"])
+def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, way: str) -> None:
+    page = pages.open(viewport={"width": 390, "height": 844})
+    start(page, "SI|BEEP(0.2, 440);\nS;\n")
+    touch(page, "beep")  # which shows nothing: the robot is not seen
+    page.wait_for_timeout(200)
+    assert page.locator("html[data-half=program]").count() == 1
+    if way == "keys":
+        page.keyboard.press("Shift+Enter")
+    else:
+        path_of(block(page, "beep")).click(button="right", position={"x": 6, "y": 6})
+        page.locator(".blocklyMenuItem", has_text="Try this block alone").click()
+    page.locator("html[data-half=robot]").wait_for(state="attached")
+    assert [each.split()[0] for each in did(page) if "BEEP" in each] == ["BEEP"]
+
+
+# -- what a block shows ----------------------------------------------------------------------------
+
+
+# The word of each move, and its arrow.
+ARROWS = """all => all.map((arrow) => {
+  const block = arrow.closest('.blocklyBlock');
+  const word = [...block.children].find((each) => each.matches('.blocklyDropdownField'));
+  return [word.textContent.replace(/[^a-z ]|\\u00a0/g, ' ').trim(), arrow.getAttribute('d')];
+})"""
+
+
+def test_each_move_has_its_arrow(page: Page) -> None:
+    start(page, "SI|F(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
+    arrows = page.locator(f"{PROGRAM} path.arrow")
+    before = dict(arrows.evaluate_all(ARROWS))
+    assert len(before) == len(set(before.values())) == 4 and all(before.values())
+    page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="forward").click()
+    page.locator(".blocklyMenuItem", has_text="turn left").click()
+    becomes(page, "SI|L(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
+    after = arrows.evaluate_all(ARROWS)
+    assert [before[said] for said, _ in after] == [drawn for _, drawn in after]
+    assert [said for said, _ in after].count("turn left") == 2
+    gap = arrows.first.evaluate(
+        "e => e.getBoundingClientRect().x - e.closest('.blocklyBlock').getBoundingClientRect().x"
+    )
+    assert 0 < gap < 14
+
+
+def test_an_editor_stands_over_its_own_field(page: Page) -> None:
+    start(page, "SI|F(2, 80);\nBEEP(0.5, 440);\nF(1, 60);\n")
+    for k in range(6):
+        field = page.locator(f"{PROGRAM} .blocklyNumberField").nth(k)
+        own = field.evaluate("e => e.closest('.blocklyBlock').getBoundingClientRect().toJSON()")
+        field.click()
+        editor = page.locator(".blocklyWidgetDiv input")
+        editor.wait_for()
+        over = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
+        assert over["top"] == pytest.approx(own["top"], abs=4)
+        assert over["bottom"] == pytest.approx(own["bottom"], abs=4)
+        page.keyboard.press("Escape")
+        editor.wait_for(state="detached")
+
+
+def test_a_message_is_at_its_block(page: Page) -> None:
+    """As near as it stands on no other one, with a line that begins at the block."""
+    wide = "IF(DISTANCE < 10 AND DISTANCE > 20 AND DISTANCE < 10);\n  S;\nENDIF;\n"
+    for text, isolated in (
+        (f"SI|{wide}S;\nS;\nF(-2);\n", True), (f"SI|F(-2);\nS;\nS;\n{wide}", True),
+        (f"SI|{wide}F(-2);\n{wide}", False),
+    ):  # fmt: skip
+        start(page, text)
+        bubble = page.locator("#blocks .blocklyBubble")
+        bubble.wait_for()
+        page.evaluate(SETTLED)
+        said = bubble.locator("rect").first.evaluate("e => e.getBoundingClientRect().toJSON()")
+        own = box_of(page.locator(f"{PROGRAM} .wrong").last)
+        others = page.locator(f"{PROGRAM} .blocklyBlock > .blocklyPath:not(.blocklyPathSelected)")
+        boxes = others.evaluate_all("all => all.map((e) => e.getBoundingClientRect().toJSON())")
+        if isolated:
+            assert 0 < said["left"] - own["right"] < GAP
+            assert not [box for box in boxes if meet(box, said)]
+        tail = page.locator("#blocks .blocklyBubbleTail")
+        begin = tail.evaluate("e => e.getBoundingClientRect().left")
+        assert begin > own["right"] - 14 and tail.is_visible()
+
+
+# -- a piano ---------------------------------------------------------------------------------------
+
+
+def test_the_keys_are_those_of_a_piano() -> None:
+    """Each has its whole hertz, in equal steps around A at 440; an arrow leads to the next tone."""
+    (row,) = in_node(SCRIPT)
+    tones = json.loads(row)
+    keys = tones["keys"]
+    assert [each["back"] for each in keys] == [each["key"] for each in keys]
+    assert {each["name"]: each["hertz"] for each in keys if 69 <= each["key"] < 81}["A"] == 440
+    octave = ["C", "C♯", "D", "D♯", "E", "F", "F♯", "G", "G♯", "A", "A♯", "B"]
+    for each in keys:
+        assert each["name"] == octave[each["key"] % 12]
+        assert each["hertz"] == round(440 * 2 ** ((each["key"] - 69) / 12))
+    hertz = [each["hertz"] for each in keys]
+    for step in tones["steps"]:
+        ahead = [each for each in hertz if (each - step["hertz"]) * step["way"] > 0]
+        nearest = min(ahead, key=lambda each: abs(each - step["hertz"])) if ahead else None
+        ends = (hertz[-1],) if step["way"] > 0 else (hertz[0],)
+        assert step["to"] == (nearest if nearest is not None else ends[0]), step
+
+
+def pitch(page: Page) -> Locator:
+    field = page.locator(f"{PROGRAM} .blocklyNumberField", has_text="440")
+    field.first.wait_for()
+    return field
+
+
+def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
+    for language, name in (("en", "E"), ("es", "mi"), ("pt", "mi")):
+        speak(page, language)
+        start(page, "SI|BEEP(0.5, 440);\nF(5, 80);\n")
+        page.locator(f"{PROGRAM} .blocklyNumberField", has_text="80").click()
+        page.locator(".blocklyWidgetDiv input").wait_for()
+        assert page.locator(".piano").count() == 0
+        page.keyboard.press("Escape")
+        pitch(page).first.click()
+        piano = page.locator(".piano")
+        piano.wait_for()
+        assert piano.locator("[aria-pressed=true]").count() == 1
+        shade = page.locator(".blocklyDropDownDiv")
+        shade.evaluate("e => Promise.all(e.getAnimations().map((each) => each.finished))")
+        assert axe(page, within=".blocklyDropDownDiv") == []
+        piano.get_by_text(name, exact=True).click()
+        becomes(page, "SI|BEEP(0.5, 330);\nF(5, 80);\n")
+        piano.locator("button").last.click()  # higher
+        piano.locator(".white").first.click()
+        becomes(page, "SI|BEEP(0.5, 523);\nF(5, 80);\n")
+        page.keyboard.press("Escape")
+    speak(page, "en")
+
+
+def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
+    start(page, "SI|BEEP(0.5, 440);\nS;\n")
+    pitch(page).first.click()
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    becomes(page, "SI|BEEP(0.5, 466);\nS;\n")
+    page.locator(f"{PROGRAM} .blocklyNumberField", has_text="466").click()
+    page.keyboard.press("Control+a")
+    page.keyboard.type("1234")  # what is no tone of a piano stays
+    page.keyboard.press("Enter")
+    becomes(page, "SI|BEEP(0.5, 1234);\nS;\n")
+
+
+# -- what somebody looks for -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("en", {"repeat": "repeat", "WHILE": "repeat while", "beep": "beep", "distance": "distance",
+                "LEFT": "turn left", "hertz": "beep"}),
+        ("es", {"repite": "repite", "SÍ": "sí", "si": "si", "gira derecha": "gira a la derecha"}),
+    ],
+)  # fmt: skip
+def test_a_block_is_found_by_its_words(page: Page, language: str, words: dict[str, str]) -> None:
+    """At every level; with and without accents, by a word of the text, and by what it does."""
+    speak(page, language)
+    start(page, "SI|S;\n", "few")
+    for typed, said in words.items():
+        page.fill(".search input", typed)
+        page.locator(FLYOUT).filter(has_text=said).first.wait_for()
+    page.fill(".search input", "xyzzy")
+    page.locator(".blocklyFlyout:visible .blocklyFlyoutLabel").wait_for()
+    assert page.locator(FLYOUT).count() == 0
+    page.keyboard.press("Escape")
+    page.locator(".blocklyFlyout:visible").wait_for(state="detached")
+    assert page.input_value(".search input") == ""
+    assert axe(page, within="#writing") == []
+    speak(page, "en")
+
+
+# -- the keyboard alone ----------------------------------------------------------------------------
+
+
+def take(page: Page, words: str) -> None:
+    """Look for a block with the keyboard, and take it."""
+    page.locator(".search input").focus()
+    page.keyboard.press("Control+a")
+    page.keyboard.type(words)
+    page.locator(FLYOUT).filter(has_text=words).first.wait_for()
+    page.keyboard.press("Enter")
+    page.wait_for_timeout(100)
+    page.keyboard.press("Enter")
+
+
+def test_a_block_that_keys_take_goes_where_the_focus_was(page: Page) -> None:
+    start(page, "SI|F(1, 80);\nB(1, 80);\n")
+    touch(page, "forward")
+    in_phase(page, "ended")
+    take(page, "wait")
+    becomes(page, "SI|F(1, 80);\nW(1);\nB(1, 80);\n")
+    assert "wait" in page.evaluate("document.activeElement.closest('.blocklyBlock').textContent")
+    take(page, "repeat forever")  # and now below that one
+    becomes(page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\nEND_LOOP;\nB(1, 80);\n")
+    take(page, "beep")  # into what is empty
+    becomes(page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\n  BEEP(0.5, 440);\nEND_LOOP;\nB(1, 80);\n")
+    take(page, "distance")  # a value into its first place
+    becomes(
+        page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\n  BEEP(DISTANCE, 440);\nEND_LOOP;\nB(1, 80);\n"
+    )
+    shown(page)

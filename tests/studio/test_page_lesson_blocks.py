@@ -1,0 +1,162 @@
+"""A lesson hands over what it teaches, and speaks as this person writes: in blocks or as text."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_blocks import drag, offered, start
+from tests.support.studio import SETTLED, Pages, axe, shown, speak
+from tiniscript.lessons import catalogue
+from tiniscript.studio import page_lessons
+from tiniscript.studio.block_kinds import KINDS
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+LESSONS = range(1, len(catalogue.folders()) + 1)
+LEVELS = ["few", "usual", "all"]
+FRESH = ".blocklyToolboxCategory.fresh"
+
+
+@pytest.fixture
+def page(pages: Pages) -> Page:
+    page = pages.open(view="blocks")
+    page.click("#side_lessons")
+    page.locator("#lesson:enabled").wait_for()
+    return page
+
+
+def open_lesson(page: Page, number: int, step: int = 0) -> None:
+    page.select_option("#lesson", str(number))
+    page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
+    page.locator("#lesson:enabled").wait_for()
+    page.locator("#lesson_steps button").nth(step).click()
+
+
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+def test_each_kind_of_block_is_new_in_the_first_lesson_that_speaks_of_it(language: str) -> None:
+    seen: set[str] = set()
+    for number in LESSONS:
+        taught, new = (f(number, language) for f in (page_lessons.taught, page_lessons.new))
+        assert set(new) == set(taught) - seen
+        assert set(page_lessons.needed(number, language)) <= set(taught) <= KINDS.keys()
+        seen |= set(taught)
+
+
+def test_the_level_rises_to_what_a_lesson_needs_and_no_further(page: Page) -> None:
+    """Each kind that it needs is there without the lesson, one level below some are missing. Who
+    has chosen more keeps it."""
+    kinds: dict[str, set[str]] = {}
+    for level in LEVELS:
+        page.select_option("#level", level)
+        kinds[level] = offered(page)
+    page.select_option("#level", "few")
+    for number in LESSONS:
+        open_lesson(page, number)
+        needed = set(page_lessons.needed(number, "en")) & kinds["all"]
+        level = page.input_value("#level")
+        assert level == next(each for each in LEVELS if needed <= kinds[each] | {"set"}), number
+    page.select_option("#level", "all")
+    open_lesson(page, 1)
+    assert page.input_value("#level") == "all"
+
+
+def test_a_new_block_glows_until_it_is_in_the_program(page: Page) -> None:
+    start(page, "SI|F(1, 80);\n")
+    open_lesson(page, 6)
+    locator = page.locator(FRESH)
+    assert locator.all_inner_texts() == ["Wait, sound", "Robot"]
+    locator.first.click()
+    glowing = page.locator(".blocklyFlyout:visible .blocklyBlockCanvas > .fresh")
+    assert "show" in (glowing.text_content() or "")
+    assert axe(page) == []
+    page.keyboard.press("Escape")
+    drag(
+        page, "Wait, sound", "show", page.locator("#blocks .blocklyBlock", has_text="forward").last
+    )
+    page.locator("#blocks[data-state=shown]").wait_for()
+    locator.filter(has_text="Wait").wait_for(state="detached")
+    assert locator.all_inner_texts() == ["Robot"]
+    open_lesson(page, 7)
+    open_lesson(page, 6)
+    assert locator.all_inner_texts() == ["Robot"]
+
+
+def test_a_glow_moves_for_nobody_who_wants_it_still(pages: Pages) -> None:
+    page = pages.open(view="blocks", reduced_motion="reduce")
+    page.click("#side_lessons")
+    page.locator("#lesson:enabled").wait_for()
+    open_lesson(page, 4)
+    page.locator(FRESH).click()
+    path = page.locator(".blocklyFlyout:visible .blocklyBlockCanvas > .fresh > .blocklyPath").first
+    assert path.evaluate("e => getComputedStyle(e).animationName") == "none"
+
+
+def test_a_lesson_speaks_as_its_reader_writes(page: Page) -> None:
+    """Its programs are drawn, and its words are those on blocks, while blocks are seen; a screen
+    reader has the text of both."""
+    for language, label, word in (
+        ("en", "repeat 4 times", "LOOP repeat 4 times"),
+        ("es", "repite 4 veces", "LOOP repite 4 veces"),
+    ):
+        speak(page, language)
+        shown(page)
+        open_lesson(page, 4, 1)
+        named = page.locator("#lesson_step .on_block")
+        named.filter(has_text=re.compile(f"^{label}$")).wait_for()
+        program = page.locator("#lesson_step .program")
+        program.locator("img").wait_for()
+        assert program.locator("pre.heard").text_content() == (
+            "SI|LOOP(4)\n  F(1, 60)\n  L(0.42, 60)\nEND_LOOP"
+        )
+        assert axe(page) == []
+        page.click("#words")
+        named.filter(has_text=re.compile(f"^{word}$")).wait_for()
+        page.click("#words")
+        page.click("#view_text")
+        assert named.count() == program.locator("img").count() == 0
+        assert program.locator("pre:not(.heard)").is_visible()
+        assert page.locator("#lesson_step code").first.inner_text() == "LOOP(4)"
+        page.click("#view_blocks")
+        program.locator("img").wait_for()
+    program.locator("button").click()
+    page.locator("#blocks .blocklyBlock", has_text="repite").first.wait_for()
+
+
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+def test_what_a_lesson_names_of_a_block_is_what_the_block_says(page: Page, language: str) -> None:
+    """No label has a place of the table in it, and none is empty."""
+    speak(page, language)
+    shown(page)
+    found = 0
+    for number in LESSONS:
+        open_lesson(page, number)
+        for k in range(page.locator("#lesson_steps button").count()):
+            page.locator("#lesson_steps button").nth(k).click()
+            said = page.locator("#lessons .on_block").all_text_contents()
+            assert not [
+                each for each in said if not each.strip() or re.search(r"%\d|\{|undefined", each)
+            ]
+            found += len(said)
+    assert found > 50
+
+
+@pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
+def test_what_is_below_of_a_step_is_announced_by_a_shadow(
+    page: Page, size: tuple[int, int]
+) -> None:
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.evaluate(SETTLED)
+    if page.locator("html[data-phone]").count():
+        page.click("#other")
+    for number in (1, 7, 13):
+        open_lesson(page, number, 0 if number == 1 else 1)
+        place = page.locator("#lesson_page")
+        for _ in range(2):
+            page.evaluate(SETTLED)
+            left = place.evaluate("e => e.scrollHeight - e.clientHeight - e.scrollTop")
+            page.locator(f"#lesson_page{'.more' if left >= 4 else ':not(.more)'}").wait_for()
+            place.evaluate("e => e.scrollTo(0, e.scrollHeight)")

@@ -1,0 +1,163 @@
+"""How large the virtual robot is seen, and from where."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.support.studio import Pages, axe, hears, in_phase, speak, turn, write
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+FOREVER = "SI|LOOP(FOREVER);\n  F(1, 60);\n  R(0.5, 60);\nEND_LOOP;\n"
+AREA = (
+    "(() => { const { width, height } = arena.getBoundingClientRect(); return width * height; })()"
+)
+# How long the robot is on the screen: its green is on no floor.
+LONG = """() => {
+  const { width, height } = arena;
+  const pen = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+  pen.drawImage(arena, 0, 0);
+  const { data } = pen.getImageData(0, 0, width, height);
+  const at = [];
+  for (let k = 0; k < data.length; k += 4) {
+    if (data[k] === 42 && data[k + 1] === 157 && data[k + 2] === 111) at.push([(k / 4) % width, Math.floor(k / 4 / width)]);
+  }
+  let most = 0;
+  for (let angle = 0; angle < Math.PI; angle += 0.1) {
+    const along = at.map(([x, y]) => x * Math.cos(angle) + y * Math.sin(angle));
+    most = Math.max(most, along.reduce((a, b) => Math.max(a, b), -1e9) - along.reduce((a, b) => Math.min(a, b), 1e9));
+  }
+  return most / devicePixelRatio;
+}"""  # noqa: E501
+
+
+COLORS = """() => {
+  const { width, height } = arena;
+  const pen = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+  pen.drawImage(arena, 0, 0);
+  const { data } = pen.getImageData(0, 0, width, height);
+  return [...new Set(Array.from({ length: data.length / 4 }, (_, k) => data.slice(4 * k, 4 * k + 3).join()))];
+}"""  # noqa: E501
+
+
+@pytest.fixture
+def page(only_page: tuple[Pages, Page]) -> Any:
+    pages, found = only_page
+    found.bring_to_front()
+    found.set_viewport_size({"width": 1366, "height": 768})
+    speak(found, "en")
+    if found.locator("html[data-screen=start]").count():
+        found.click("#start_write")
+    found.click("#side_virtual")
+    found.click("#view_text")
+    yield found
+    found.keyboard.press("Escape")
+    hears(found, lambda: found.evaluate("!document.fullscreenElement"), "no full screen")
+    wrong, pages.wrong[:] = pages.wrong[:], []
+    assert not wrong
+
+
+def choose(page: Page, camera: str) -> None:
+    for _ in range(3):
+        if camera in (page.locator("#camera").get_attribute("aria-label") or ""):
+            return
+        page.click("#camera")
+    raise AssertionError(camera)
+
+
+@pytest.mark.parametrize("world", ["obstacles", "light", "delivery", "free"])
+def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -> None:
+    page.select_option("#world", world)
+    write(page, FOREVER)
+    small = page.evaluate(AREA)
+    page.click("#run")
+    in_phase(page, "running")
+    hears(page, lambda: page.evaluate(AREA) >= 1366 * 768 / 3, "a third of the page")
+    hears(page, lambda: page.evaluate(LONG) >= 65, "a robot of 70 pixels, its edge apart")
+    page.keyboard.press("Escape")
+    in_phase(page, "ended")
+    assert page.evaluate(AREA) >= 1366 * 768 / 3  # until somebody goes on writing
+    page.hover("#editor")
+    hears(page, lambda: page.evaluate(AREA) == small, "as before")
+
+
+def test_full_screen_comes_with_a_key_and_goes_with_it(page: Page) -> None:
+    """And with the button; whoever types an F types it. STOP stays in reach, Escape leaves it."""
+    write(page, FOREVER)
+    page.locator(".cm-content").focus()
+    page.keyboard.type("f")
+    assert page.locator("html[data-full]").count() == 0
+    page.keyboard.press("Backspace")
+    page.locator("#run").focus()
+    for way in ("f", "F", "click"):
+        for is_full in (True, False):
+            page.click("#full") if way == "click" else page.keyboard.press(way)
+            page.locator("html[data-full]" if is_full else "html:not([data-full])").wait_for(
+                state="attached"
+            )
+            assert page.locator("#writing").is_visible() != is_full
+            assert page.locator("#stop").is_visible() and page.locator("#run").is_visible()
+            assert not is_full or page.evaluate(AREA) > 1366 * 768 / 2
+            assert page.locator("#full").get_attribute("aria-pressed") == str(is_full).lower()
+    page.click("#full")
+    page.click("#run")
+    in_phase(page, "running")
+    assert axe(page, within="#driving") == []
+    page.keyboard.press("Escape")
+    page.locator("html:not([data-full])").wait_for(state="attached")
+    in_phase(page, "ended")
+
+
+def test_a_camera_follows_from_above_and_from_behind(page: Page) -> None:
+    page.select_option("#world", "free")
+    write(page, "SI|F(0.1, 20);\nS;\n")
+    page.click("#run")
+    in_phase(page, "ended")
+    lengths = {}
+    for camera in ("whole", "above", "behind"):
+        choose(page, camera)
+        lengths[camera] = page.evaluate(LONG)
+        assert page.locator("#arena.behind").count() == (camera == "behind")
+    assert lengths["whole"] < 60 < lengths["above"] < lengths["behind"]
+    page.click("#world_draw:enabled")  # all of the floor is seen to be changed
+    assert page.evaluate(LONG) < lengths["behind"]
+    page.click("#world_done")
+    choose(page, "whole")
+
+
+def test_each_start_picture_leads_to_its_world(page: Page) -> None:
+    """A dance floor has tiles that light, and lamps shine in the dark."""
+    for begin, world in (
+        ("dance", "dance"), ("light", "light"), ("line", "line"), ("obstacle", "obstacles"),
+        ("square", "free"),
+    ):  # fmt: skip
+        page.click("#home")
+        page.click(f"[data-begin={begin}]")
+        in_phase(page, "running")
+        assert page.input_value("#world") == world
+        if begin == "dance":
+            assert {"251,238,252", "227,240,253", "255,243,207"} <= set(page.evaluate(COLORS))
+        if begin == "light":
+            assert "39,50,75" in set(page.evaluate(COLORS))
+            assert "255,253,246" not in set(page.evaluate(COLORS))
+        page.click("#stop")
+        in_phase(page, "ended")
+
+
+@pytest.mark.parametrize("size", [(1024, 600), (390, 844)], ids=str)
+def test_cameras_and_the_whole_page_are_there_on_small_screens(
+    page: Page, size: tuple[int, int]
+) -> None:
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    turn(page, "robot")
+    small = page.evaluate(AREA)
+    for button in ("#camera", "#full"):
+        box = page.locator(button).bounding_box()
+        assert box is not None and min(box["width"], box["height"]) >= 44
+    page.click("#full")
+    hears(page, lambda: page.evaluate(AREA) > small, "more of the robot")
+    page.click("#full")
+    turn(page, "program")
