@@ -70,7 +70,7 @@ def test_a_benchmark_fills_in_the_rows_of_its_tables(name: str) -> None:
     module = import_module(f"tools.bench.{name}")
     known = module.page_rows() if name == "firmware_size" else module.ROWS
     rows = [*(known.values() if isinstance(known, dict) else known)]
-    rows += module.OTHERS.values() if name == "link" else ()
+    rows += module.OTHER_BOARDS.values() if name == "link" else ()
     tables = page.tables(name)
     shown = [page.cells(row)[0] for table in tables for row in table.rows]
     assert shown[: len(rows)] == rows
