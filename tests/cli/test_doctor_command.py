@@ -167,7 +167,7 @@ def test_a_board_that_is_not_ours_at_a_real_port(
     (boards.BrownoutBoard, "voltage drops, and it restarts"),
     (boards.MbotBoard, "the firmware of an mBot"),
     (boards.SnekBoard, "The board runs Snek"),
-    (boards.Esp32Board, "An ESP32 starts here"),
+    (boards.Esp32Board, "An ESP32 is starting up here"),
 ])  # fmt: skip
 def test_an_upload_says_what_is_there_instead_of_a_robot(
     tsc: Tsc, hasty: None, board: type[boards.Board], said: str

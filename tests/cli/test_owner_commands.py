@@ -103,7 +103,7 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
         on(pty_robot, "doctor").gives(0, "claimed the robot again.", "10 s")
     assert "lo hizo suyo" in on(pty_robot, "doctor", "--identify", "--lang", "es").err
     assert [key.is_stale for key in KeyFile().all()] == [True]
-    on(pty_robot, "upload", "-e", DRIVES).gives(3, "a different key")
+    on(pty_robot, "upload", "-e", DRIVES).gives(3, "is not the one that this computer has")
     as_another(monkeypatch, tmp_path)
     done = on(pty_robot, "upload", "-e", DRIVES)
     assert done.code == 0 and "claimed the robot again." not in done.err

@@ -244,7 +244,7 @@ def test_another_world_or_robot_begins_again(page: Page) -> None:
     page.click("#run")
     page.locator(".cm-running").first.wait_for()
     page.select_option("#world", "line")
-    page.locator("#doing").filter(has_text="Collect the flags").wait_for()
+    page.locator("#doing").filter(has_text="collect the flags").wait_for()
     page.click("#run")
     page.locator(".cm-running").first.wait_for()
     page.select_option("#robot", "liner")
