@@ -167,7 +167,7 @@ def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None
 @pytest.mark.parametrize(
     ("words", "code", "said"),
     [
-        (["--break", "9"], 1, "from line 9 on"),
+        (["--break", "9"], 1, "on line 9 or after it"),
         (["--break", "0"], 2, "--break"),
         (["--break", "one"], 2, "--break"),
         ([word for line in "12467" for word in ("--break", line)], 2, "at most 4"),

@@ -153,8 +153,31 @@ class Store {
   removeItem(key) { this.#kept.delete(key); }
 }
 
+/** A matrix of the plane, with what the page asks of one. */
+class Matrix {
+  constructor([a, b, c, d, e, f] = [1, 0, 0, 1, 0, 0]) { Object.assign(this, { a, b, c, d, e, f }); }
+  multiply({ a, b, c, d, e, f }) {
+    return new Matrix([
+      this.a * a + this.c * b, this.b * a + this.d * b, this.a * c + this.c * d, this.b * c + this.d * d,
+      this.a * e + this.c * f + this.e, this.b * e + this.d * f + this.f,
+    ]);
+  }
+  translate(x, y) { return this.multiply(new Matrix([1, 0, 0, 1, x, y])); }
+  scale(x, y) { return this.multiply(new Matrix([x, 0, 0, y, 0, 0])); }
+  rotate(degrees) {
+    const [sin, cos] = [Math.sin, Math.cos].map((of) => of(degrees * Math.PI / 180));
+    return this.multiply(new Matrix([cos, sin, -sin, cos, 0, 0]));
+  }
+  inverse() {
+    const { a, b, c, d, e, f } = this, all = a * d - b * c;
+    return new Matrix([d / all, -b / all, -c / all, a / all, (c * f - d * e) / all, (b * e - a * f) / all]);
+  }
+  transformPoint({ x, y }) { return { x: this.a * x + this.c * y + this.e, y: this.b * x + this.d * y + this.f }; }
+}
+
 const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
 for (const kind of ['', 'Button', 'Canvas', 'Input', 'Select', 'Progress', 'Details', 'Form', 'Dialog', 'TextArea']) stands(`HTML${kind}Element`, Part);
+stands('DOMMatrix', Matrix);
 stands('setTimeout', setLater);
 stands('clearTimeout', clearLater);
 stands('performance', { now });

@@ -234,7 +234,7 @@ const PARTS = {
     const page = freshPage({ Blocks });
     await learns(page);
     URL.createObjectURL = (text) => `picture of ${text}`;
-    const { Pictures } = await page.load('class/pictures.js');
+    const { Pictures } = await page.load('blocks/drawn.js');
     const python = {
       get ready() { return story.breaks() ? Promise.reject(new Broken()) : Promise.resolve(); },
       async ask(request, data) {
@@ -243,7 +243,7 @@ const PARTS = {
         return { text: new TextDecoder().decode(data) };
       },
     };
-    const pictures = new Pictures(python);
+    const pictures = new Pictures(python, 'class_blocks');
     let stories = 0;
     return async (chance, isGood) => {
       story = { breaks: () => !isGood && chance() < 0.3 };

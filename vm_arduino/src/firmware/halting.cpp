@@ -18,7 +18,6 @@ namespace tiniscript {
 namespace {
 
 Breakpoints breakpoints;
-Machine* machine;         // of the run
 uint32_t places_program;  // the checksum of the program that has them
 uint32_t held_ms;         // for how long the run has been halted
 uint16_t halted_ms;       // when that was counted last
@@ -30,9 +29,6 @@ struct {
 uint8_t* code_of(const uint8_t* image) {
   return const_cast<uint8_t*>(image) + image[kHeaderLengthAt];
 }
-
-// The time of the machine, which stands while it is halted.
-uint32_t time_ms() { return now_ms - held_ms; }
 
 // Whether the machine runs now: time stands for one that is halted.
 bool runs_on() {
@@ -48,8 +44,7 @@ bool runs_on() {
 }  // namespace
 
 // Places are those of one program.
-void begin_halting(Machine* of_run, const uint8_t* image, uint16_t length) {
-  machine = of_run;
+void begin_halting(const uint8_t* image, uint16_t length) {
   held_ms = 0;
   resuming.goes_on = false;
   if (breakpoints.has_places()) link.write_checksum();
@@ -61,20 +56,21 @@ void begin_halting(Machine* of_run, const uint8_t* image, uint16_t length) {
 
 void end_halting() { breakpoints.end(); }
 
-bool begin_tick(uint32_t* machine_ms) {
+uint32_t machine_ms() { return now_ms - held_ms; }
+
+bool begin_tick() {
   if (!runs_on()) return false;
   if (breakpoints.is_halted()) {
-    breakpoints.go_on(*machine, resuming.is_step);
-    machine->resume();
-    machine->set_motors_again();
+    breakpoints.go_on(machine_of_run(), resuming.is_step);
+    machine_of_run().resume();
+    machine_of_run().set_motors_again();
   }
-  if (breakpoints.are_on()) breakpoints.put_in(*machine);
-  *machine_ms = time_ms();
+  if (breakpoints.are_on()) breakpoints.put_in(machine_of_run());
   return true;
 }
 
 void end_tick(Status status) {
-  if (!breakpoints.are_on() || !breakpoints.take_out(machine, status, link.may_halt())) return;
+  if (!breakpoints.are_on() || !breakpoints.take_out(&machine_of_run(), status, link.may_halt())) return;
   halted_ms = static_cast<uint16_t>(now_ms);
   robot_motors(0, 0);
   link.halted();
@@ -98,20 +94,20 @@ void port_forget_breakpoints() { breakpoints.forget_places(); }
 
 bool port_is_halted() { return is_running() && breakpoints.is_halted(); }
 
-uint8_t port_halted_task() { return machine->turn(); }
+uint8_t port_halted_task() { return machine_of_run().turn(); }
 
 void port_resume(ResumeHow how) {
   resuming.goes_on = port_is_halted();
   resuming.is_step = how == ResumeHow::kStep;
 }
 
-const int32_t* port_variables() { return machine->task().variables; }
+const int32_t* port_variables() { return machine_of_run().task().variables; }
 
 bool port_report_task(uint8_t task, TaskReport* report) {
   if (task > kTasks) return false;
-  const TaskRecord& record = machine->task().records[task];
-  const int32_t left_ms = static_cast<int32_t>(record.clock_ms - time_ms());
-  report->at = machine->place_of(task);
+  const TaskRecord& record = machine_of_run().task().records[task];
+  const int32_t left_ms = static_cast<int32_t>(record.clock_ms - machine_ms());
+  report->at = machine_of_run().place_of(task);
   report->left_ms = left_ms > 0 ? static_cast<uint32_t>(left_ms) : 0;
   report->state = record.state == 0       ? TaskState::kEnded
                   : record.is(kDrives)    ? TaskState::kDriving

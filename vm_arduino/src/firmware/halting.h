@@ -8,14 +8,20 @@
 
 namespace tiniscript {
 
-// The run of an image begins, in this machine, or ends.
-void begin_halting(Machine* of_run, const uint8_t* image, uint16_t length);
+// The machine of what runs, or ran last: `run.cpp`.
+typedef Machine MachineOfRun;
+MachineOfRun& machine_of_run();
+
+// The run of an image begins, or ends.
+void begin_halting(const uint8_t* image, uint16_t length);
 void end_halting();
 
-// Before a tick of the machine: what its time is then, or false: it is halted. After it: halts it, if it
-// is at a place.
-bool begin_tick(uint32_t* machine_ms);
+// Before a tick of the machine: whether it is not halted. After it: halts it, if it is at a place.
+bool begin_tick();
 void end_tick(Status status);
+
+// The time of the machine, which stands while it is halted.
+uint32_t machine_ms();
 
 // Whether traps are in the code.
 bool are_traps_in();

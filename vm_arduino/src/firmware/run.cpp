@@ -31,9 +31,8 @@ Flag<Bit::kPrepared> is_prepared;  // machine and board are reset for a program
 
 Status tick_machine() {
   if (!kHasBreakpoints) return machine.tick(now_ms, kTickBudget);
-  uint32_t machine_ms;
-  if (!begin_tick(&machine_ms)) return Status::kHalted;
-  const Status status = machine.tick(machine_ms, kTickBudget);
+  if (!begin_tick()) return Status::kHalted;
+  const Status status = machine.tick(machine_ms(), kTickBudget);
   end_tick(status);
   return status;
 }
@@ -87,7 +86,7 @@ void begin_run(const uint8_t* image) {
   machine.start_prepared(code, length, board_readings(), readings_of(board_sensors()),
                          (time_ms ^ port_identity().nonce) | 1, time_ms);
   run_image = image;
-  if (kHasBreakpoints) begin_halting(&machine, image, length);
+  if (kHasBreakpoints) begin_halting(image, length);
   is_start_due = false;
   may_start = false;
   link.let_go();
@@ -177,6 +176,8 @@ void firmware_on_disconnect() {
   end_run(State::kStopped);
   link.stopped(Cause::kCable);
 }
+
+MachineOfRun& machine_of_run() { return machine; }
 
 uint16_t port_run_at() { return machine.at(); }
 

@@ -67,12 +67,13 @@ Status Machine::tick(uint32_t now_ms, uint8_t budget) {
   } else if (!is_stuck()) {
     return Status::kWaiting;
   }
-  if (fault_ != Fault::kNone) {
-    if (is_trapped()) return status_ = Status::kHalted;
-    robot_off();
-    status_ = Status::kFault;
-  }
-  return status_;
+  return fault_ == Fault::kNone ? status_ : end_in_fault();
+}
+
+Status Machine::end_in_fault() {
+  if (is_trapped()) return status_ = Status::kHalted;
+  robot_off();
+  return status_ = Status::kFault;
 }
 
 }  // namespace tiniscript

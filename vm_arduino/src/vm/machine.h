@@ -89,6 +89,9 @@ class Machine : public Scheduler {
   bool wake(uint32_t now_ms);
   bool is_due() const;
 
+  // The program has a fault, or halts at a trap.
+  tini_noinline Status end_in_fault();
+
   // Whether it has faulted at a kTrap.
   bool is_trapped() const {
     return kHasBreakpoints && fault_ == Fault::kBadCode && at_ < length_ && code_[at_] == kTrap;
