@@ -71,8 +71,8 @@ def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> Non
 def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
     """Whoever writes a file elsewhere adds its option to `WRITES`, and then its line here."""
     places = {
-        "outputs.put(target,": "output",  # of compile
-        "outputs.put(options.output,": "output",
+        "outputs.write_output(target,": "output",  # of compile
+        "outputs.write_output(options.output,": "output",
         "outputs.write(Path(options.output),": "output",
         "outputs.write(Path(options.map),": "map",
         "outputs.write(path,": "export",  # of keys
@@ -89,9 +89,9 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
     found = set()
     for file in sorted((HERE / "cli").rglob("*.py")):
         for line in file.read_text(encoding="utf-8").splitlines():
-            words = ("outputs.write(", "outputs.put(", '.open("w', '.open("a', "write_text(",
+            words = ("outputs.write(", "outputs.write_output(", '.open("w', '.open("a', "write_text(",
                      "write_bytes(")  # fmt: skip
-            is_file = "outputs.put(None," not in line  # that is standard output
+            is_file = "outputs.write_output(None," not in line  # that is standard output
             if is_file and any(word in line for word in words):
                 known = [place for place in places if place in line]
                 assert known, f"{file.name}: {line.strip()}"

@@ -210,6 +210,8 @@ export class Debugging {
   #show() {
     this.#step.disabled = this.#isRunning && !this.#halt;
     this.#goOn.disabled = !this.#halt;
+    hide(this.#step, !this.#can && !pageState.breakpoints.value.length); // it says why the robot cannot
+    hide(this.#goOn, !this.#can);
     const many = this.#wanted.length > LINK.most_breakpoints;
     const said = element('link_breakpoints', HTMLElement);
     const isDeaf = this.#about !== null && !this.#can && pageState.breakpoints.value.length > 0;

@@ -461,7 +461,6 @@ export class SimulatorPanel {
     this.#shown.clear();
     this.#program = program;
     this.#isAlone = alone !== null;
-    if (!alone && !judged) this.#stage.begin();
     this.#places = alone ? [] : program.places; // which are those of another text
     this.#variables = program.variables;
     this.#findStops();
@@ -471,7 +470,9 @@ export class SimulatorPanel {
     run.isJudged = judged !== null;
     this.#timeLine.begin(run);
     const stops = judged || played || alone ? [] : this.#stops.offsets;
-    await this.#simulator.begin(program, pageState.robotName.value, world, stops, isPaused, least, played !== null);
+    const begins = this.#simulator.begin(program, pageState.robotName.value, world, stops, isPaused, least, played !== null);
+    if (!alone && !judged) this.#stage.begin(); // it sees nothing of the run before
+    await begins;
   }
 
   /**
