@@ -1065,7 +1065,7 @@ const PARTS = {
           const link = await linkOf({ text: `B(${(count += 1)});`, robot: 'tinibot' }, location.href);
           location.hash = link.slice(link.indexOf('#'));
           dispatchEvent(new Event('hashchange'));
-          for (let k = 0; work.text !== `B(${count});` && k < 2000; k += 1) await settles(); // it waits for the real clock
+          for (let k = 0; work.text !== `B(${count});` && k < 50_000; k += 1) await settles(); // it waits for the real clock
           if (work.text !== `B(${count});`) throw new Error('the program of a link is not seen');
         },
       };
