@@ -16,7 +16,7 @@ def test_a_picture_has_words_of_the_page_alone_and_is_shown(language: str, scene
     assert screenshot.why_stale(language, scene) == ""
     with Image.open(screenshot.picture(language, scene)) as image:
         assert image.size == (screenshot.SIZE["width"], screenshot.SIZE["height"])
-        assert len(json.loads(image.info[screenshot.WORDS_SCENE])) > 12
+        assert len(json.loads(image.info[screenshot.WORDS_SCENE])) > 6
     assert screenshot.picture(language, scene).stat().st_size < 80_000
     name = screenshot.picture(language, scene).name
     assert f"](../pictures/{name})" in screenshot.GUIDES[language]
