@@ -89,8 +89,8 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
     found = set()
     for file in sorted((HERE / "cli").rglob("*.py")):
         for line in file.read_text(encoding="utf-8").splitlines():
-            words = ("outputs.write(", "outputs.write_output(", '.open("w', '.open("a', "write_text(",
-                     "write_bytes(")  # fmt: skip
+            words = ("outputs.write(", "outputs.write_output(", '.open("w', '.open("a',
+                     "write_text(", "write_bytes(")  # fmt: skip
             is_file = "outputs.write_output(None," not in line  # that is standard output
             if is_file and any(word in line for word in words):
                 known = [place for place in places if place in line]
