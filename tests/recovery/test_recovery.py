@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import random
 import re
 from functools import partial
 from itertools import count
 
 import pytest
 
+from tests.oracle import programs as written
+from tests.oracle.words import PAPER_KIT
+from tests.oracle.words import Kit as OracleKit
 from tests.pupils.corpus import entries
 from tests.pupils.test_damage import programs
 from tests.support.rows import each_row
@@ -18,7 +22,7 @@ from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.lessons import catalogue
-from tiniscript.library.compiling import analyze
+from tiniscript.library.compiling import analyze, check_text
 from tiniscript.recovery import lines, rewrites, rows, slips
 from tiniscript.recovery.explanation import explained
 from tiniscript.recovery.meanings import Lexeme, Names, lexemes
@@ -218,3 +222,11 @@ def test_a_row_that_is_made_without_asking_loses_no_number(
     line = rewrites.Encoded(lexemes("S 5"), Names([], KIT))
     (match,) = line.matches(row.pattern)
     assert (line.rewritten(row, match) is not None) is is_made
+
+
+@pytest.mark.parametrize("kit", [PAPER_KIT, written.WIDE_KIT], ids=["paper", "wide"])
+def test_a_program_for_another_robot_gets_messages(kit: OracleKit) -> None:
+    """Its words are unknown wherever they are, at the begin of a line within brackets too."""
+    for seed in range(40, 60):
+        text = written.program(random.Random(seed), kit)
+        assert any(check_text(text, each).diagnostics for each in KITS), seed

@@ -886,8 +886,9 @@ def _worded_header(gaps: Gaps) -> str:
     """The header of a name that asks something in words: DARK of `X > 5 OR DARK`."""
     usage = _usage_at(gaps)
     name = plain(usage.source[usage.found.span])
-    is_asked = bool(lexicon_meaning(name, "light", "ahead"))
-    return usage.header() if is_asked and usage.before()[-1].text not in COMPARISONS else ""
+    before = usage.before()  # in its line
+    is_compared = bool(before) and before[-1].text in COMPARISONS
+    return usage.header() if lexicon_meaning(name, "light", "ahead") and not is_compared else ""
 
 
 def _endless_move(gaps: Gaps) -> str:
