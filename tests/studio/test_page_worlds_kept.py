@@ -167,7 +167,7 @@ def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
     page.select_option("#world", "light")
     assert read_start(page) == (40, 40)
     assert page.locator("#values dd").first.inner_text() == "–"
-    said(page, "collect the flags (1) in order")
+    said(page, "Collect the flags in order (1)")
 
 
 def test_the_robot_stays_on_a_floor_of_any_size(page: Page) -> None:
