@@ -84,11 +84,5 @@ def _side_of(name: str) -> str:
 
 
 def _side(part: str) -> str:
-    said = (
-        "left"
-        if lexicon_meaning(part, "left")
-        else "right"
-        if lexicon_meaning(part, "right")
-        else ""
-    )
-    return said or _SIDES.get(lexicon_concept(part) or part, "")
+    said = (side for side in _SIDES.values() if lexicon_meaning(part, side))
+    return next(said, _SIDES.get(lexicon_concept(part) or part, ""))
