@@ -215,6 +215,15 @@ def test_paths_in_sources_exist() -> None:
     assert not wrong, "\n".join(wrong)
 
 
+@each_row("document", DOCUMENTS)
+def test_a_row_of_a_table_has_the_cells_of_its_heading(document: Path) -> None:
+    cells = 0
+    for line in re.sub(r"(?ms)^```.*?^```", "", document.read_text(encoding="utf-8")).split("\n"):
+        bars = len(re.findall(r"(?<!\\)\|", line)) if line.startswith("|") else 0
+        assert not cells or bars in (0, cells), line
+        cells = bars
+
+
 def test_a_version_of_the_changelog_has_each_heading_once() -> None:
     """Where two lines of work meet, each with a heading of its own, one of them is left over."""
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
