@@ -260,7 +260,7 @@ def test_everything_is_seen_and_axe_finds_nothing(page: Page, robot: PtyRobot) -
 
 
 def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -> None:
-    page.evaluate("window.before = document.querySelectorAll('*').length")
+    page.evaluate("window.before = document.querySelectorAll('script, b, img').length")
     robot.say(b"<script>window.taken = 1</script>\r\n<b>\x1b[2J\xe2\x80\xae\r\n")
     page.locator("#link_shown").filter(has_text="<script>").wait_for()
     assert "\x1b" not in page.locator("#link_shown").inner_text()
@@ -268,7 +268,7 @@ def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -
     page.fill("#link_rename_to", "<b>x</b>")
     page.click("#link_rename")
     said(page, "The robot is now called <b>x</b>.")
-    assert page.evaluate("document.querySelectorAll('*').length === window.before")
+    assert page.evaluate("document.querySelectorAll('script, b, img').length === window.before")
     assert not page.evaluate("'taken' in window")
     page.click("#link_leave")
     known_ports.remember(robot.port, "<img src=x onerror=1>")
@@ -501,8 +501,8 @@ def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> 
     unmarked(page)
 
 
-def upload_until_told(page: Page, at: int | None = None) -> None:
-    """Upload, and wait until the page was told a place of the robot, or `at` in its stead."""
+def upload_until_told(page: Page, at: int) -> None:
+    """Upload, and wait until the page was told `at` in place of where the robot is."""
     told: list[int] = []
 
     def changed(route: Route) -> None:
@@ -510,7 +510,7 @@ def upload_until_told(page: Page, at: int | None = None) -> None:
         answer = response.json()
         for each in answer.get("news", []):
             if each.get("event") == "PLACE":
-                each["at"] = each["at"] if at is None else at
+                each["at"] = at
                 told.append(each["at"])
         route.fulfill(response=response, json=answer)
 
@@ -527,17 +527,29 @@ def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:
     assert page.locator(".cm-running").count() == 0
 
 
-def test_a_breakpoint_keeps_its_mark_while_the_robot_runs(page: Page) -> None:
-    """The virtual robot waits at the first line; the real one is at the second one."""
-    write(page, "W(0.1);\nF(60, 80)")
+def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
+    """Both are held at the first line, then one goes on, then the other one."""
+    first, second = "W(0.1)", "F(60, 80)"
+    write(page, f"{first};\n{second}")
     page.click("#side_virtual")
-    page.locator(".cm-lineNumbers .cm-gutterElement").filter(has_text="1").last.click()
+    breakpoint = page.locator(".cm-lineNumbers .cm-gutterElement").filter(has_text="1").last
+    breakpoint.click()
     page.click("#run")
-    marked(page, "W(0.1)")
     page.locator("#doing").filter(has_text="Stopped before line 1.").wait_for()
     page.click("#side_real")
-    upload_until_told(page)
-    assert page.locator(".cm-running").all_inner_texts() == ["W(0.1)"]
+    page.click("#link_upload")
+    page.locator("html[data-halt='read']").wait_for()
+    marked(page, first)
+    page.click("#link_go_on")
+    marked(page, second)
     page.click("#side_virtual")
+    marked(page, first)
     page.click("#pause")  # goes on
-    marked(page, "F(60, 80)")
+    marked(page, second)
+    page.click("#stop")
+    breakpoint.click()  # no later program is to halt
+    page.click("#side_real")
+    page.click("#link_upload")
+    marked(page, second)
+    page.click("#link_leave")
+    unmarked(page)

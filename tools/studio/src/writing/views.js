@@ -84,6 +84,7 @@ export class Views {
     pageState.breakpoints.subscribe(() => this.#showBreakpoints());
     pageState.virtualRun.subscribe(() => this.#mark());
     pageState.robotRun.subscribe(() => this.#mark());
+    pageState.side.subscribe(() => this.#mark());
     pageState.fault.subscribe(({ range, said }) => {
       if (!range || !this.#isStale()) this.#blocks?.showFault(range, said);
     });
@@ -167,11 +168,11 @@ export class Views {
     if (!this.#isStale()) this.#blocks?.showBreakpoints(pageState.breakpoints.value);
   }
 
-  /** Where both robots run, the real one is seen, but where the virtual one alone is held. */
+  /** Where both robots run, that one is marked whose side is open. */
   #mark() {
     const { ranges, isHeld } = pageState.virtualRun.value;
     const there = pageState.robotRun.value;
-    const isThere = there.range && (there.isHeld || !isHeld);
+    const isThere = there.range && (!ranges.length || pageState.side.value === 'side_real');
     this.#running = isThere && there.range ? [there.range] : ranges;
     this.#page.editor.showRunning(this.#running, isThere ? there.isHeld : isHeld);
     if (!this.#isStale()) this.#blocks?.showRunning(this.#running);
