@@ -7,6 +7,7 @@ from itertools import product
 import pytest
 
 from tests.pupils.corpus import check
+from tiniscript import compile
 from tiniscript.base.source import Source, apply_edits
 from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
@@ -94,3 +95,54 @@ def test_values_without_a_word_get_those_that_take_them(
     for language in ("en", "es", "pt"):
         said = message(told, Source(text), language)
         assert f"({values})" in said.message and ("SB|" in said.message) is (place == "SB|{}")
+
+
+STARTS = ("start", "begin,", "empieza y", "comienza,", "comece e", "Start and")
+BUTTONS = (
+    "when the button is pressed", "wait for the button press, then", "press the button and",
+    "al apretar el botón", "cuando se pulse el botón", "espera el botón pulsado y luego",
+    "quando o botão for apertado", "ao apertar o botão",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("words", ORDERS)
+@pytest.mark.parametrize("head", STARTS + BUTTONS)
+def test_words_say_how_a_program_starts(head: str, words: str) -> None:
+    begun = "SB" if head in BUTTONS else "SI"
+    for text in (f"{head} {words}", f"{head} {words};", f"{head} {words}\nS"):
+        (told,) = check(text)
+        assert told.code.number == "TS036", text
+        assert told.values["fix"] == f"{begun}|{ORDERS[words]}", text
+        assert repair_program(text, check).text == text
+
+
+@pytest.mark.parametrize("head", BUTTONS[:2])
+def test_a_value_that_nobody_gave_is_called_an_example(head: str) -> None:
+    (told,) = check(f"{head} go forward")
+    said = message(told, Source(""), "en")
+    assert "SB|F(2, 80)" in said.fix
+    assert said.fix.endswith("examples: 2 s, 80 %")
+
+
+@pytest.mark.parametrize("text", ["si se aprieta el botón, para", "if the button is pressed, stop"])
+def test_a_button_that_stops_starts_nothing(text: str) -> None:
+    assert not any("SB|" in each.values.get("fix", "") for each in check(text))
+
+
+FRAMES = ("void setup()", "setup()", "int main(void)", "void  SETUP ( )", "def inicio()")
+BODIES = ("F(1, 80);", "SI|F(1, 80);", "SI\nF(1, 80)", "F(1, 80); // }", "SB", "", "W(1)\nS")
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize("body", BODIES)
+def test_what_a_sketch_has_in_its_setup_begins_the_program(body: str, frame: str) -> None:
+    begun, bare = ("SB", body[2:]) if body[:2] == "SB" else ("SI", body.removeprefix("SI"))
+    right = f"{begun}|{bare.lstrip('|').lstrip()}"
+    rests = {"": "", "void loop() {\n  R(1, 60);\n}": "LOOP(FOREVER);\n  R(1, 60);\nEND_LOOP"}
+    gaps = ("\n",) if "//" in body or not body else (" ", "\n  ")
+    for (rest, loop), gap, brace in product(rests.items(), gaps, (" {", "\n{")):
+        text = f"{frame}{brace}{gap}{body}{gap.rstrip(' ') or ' '}}}\n{rest}"
+        made = apply_edits(text, edits_of(check(text)[0]) or [])
+        made = repair_program(made, check).text
+        assert compile(made).code == compile(f"{right}\n{loop}").code, text
+        assert made.startswith(f"{begun}|"), text

@@ -62,3 +62,23 @@ def test_the_power_is_the_one_of_the_program(place: str) -> None:
 )
 def test_what_may_be_seconds_or_a_power_is_no_logo(text: str) -> None:
     assert not any("CM" in each.values.get("fix", "") for each in check(text))
+
+
+TAUGHT = (("TO SQUARE", "END"), ("para cuadrado", "fin"), ("aprenda quadrado", "fim"))
+
+
+@pytest.mark.parametrize(("head", "end"), TAUGHT)
+@pytest.mark.parametrize(("line", "right"), LINES)
+def test_a_word_that_is_taught_is_a_def(line: str, right: str, head: str, end: str) -> None:
+    words = {"o": "repeat", "f": "fd", "b": "bk", "r": "rt", "l": "lt"}
+    name = head.split()[1].upper()
+    wrong = f"{head}\n{line.format(**words)}\n{end}\n{name}"
+    edits = [edit for each in check(wrong) for edit in edits_of(each) or []]
+    assert apply_edits(wrong, edits) == f"DEF {name}\n{right.format(p=80)}\nEND_DEF\n{name}"
+
+
+@pytest.mark.parametrize(("head", "end"), [("para todo", "fin"), ("para robot", "fin")])
+def test_a_word_without_a_body_teaches_nothing(head: str, end: str) -> None:
+    assert not any(
+        "DEF" in each.values.get("fix", "") for each in check(f"F(2, 80)\n{head}\n{end}")
+    )

@@ -50,3 +50,25 @@ def test_a_name_that_a_program_defines_is_its_own(between: str) -> None:
     defs = (f"DEF MOTOR_{side}(X);M(X, X);END_DEF" for side in "LR")
     text = between.join((*defs, "MOTOR_L(60)", "MOTOR_R(30)", "F(2 80)"))
     assert [each.code.number for each in check(text)] == ["TS017"]
+
+
+ON = {"forward": "F", "robot.backward": "B", "mBot.turnLeft": "L", "derecha": "R", "F": "F"}
+WAITS = {"sleep(2)": "2", "time.sleep(0.5)": "0.5", "delay(1500)": "1.5", "espera(3)": "3"}
+OFF = ("stop()", "mBot.stop()", "S", "parar()")
+
+
+@pytest.mark.parametrize("place", [it for it in PLACES if it != "{}"])
+@pytest.mark.parametrize("off", OFF)
+def test_motors_on_and_off_after_a_wait_are_a_move(off: str, place: str) -> None:
+    for between, (on, word), (wait, time) in product(BETWEEN, ON.items(), WAITS.items()):
+        wrong = place.format(between.join((f"{on}(50)", wait, off)))
+        edits = [edit for each in check(wrong) for edit in edits_of(each) or []]
+        assert apply_edits(wrong, edits) == place.format(f"{word}({time}, 50)"), wrong
+        twice = place.format(between.join((f"{on}(50)", wait, "left(40)", wait, off)))
+        edits = [edit for each in check(twice) for edit in edits_of(each) or []]
+        assert apply_edits(twice, edits) == place.format(f"{word}({time}, 50);L({time}, 40)"), twice
+
+
+@pytest.mark.parametrize("text", ["F(2);W(2);S", "F(50);W(2)", "F(2, 50);W(2);S", "F(50);S;W(2)"])
+def test_no_motor_is_on_without_a_power_a_wait_and_an_end(text: str) -> None:
+    assert "F(2, 50)" not in [each.values.get("fix") for each in check(text) if each.repair]

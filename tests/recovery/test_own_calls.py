@@ -15,8 +15,9 @@ from tests.pupils.corpus import check
 from tests.support.rows import each_row
 from tiniscript.base.languages import languages
 from tiniscript.base.limits import PARAMETERS
-from tiniscript.base.source import Source
-from tiniscript.diagnostics.fixing import repair_program
+from tiniscript.base.source import Source, apply_edits
+from tiniscript.base.words import WORDS
+from tiniscript.diagnostics.fixing import edits_of, repair_program
 from tiniscript.diagnostics.rendering import message
 
 NAMES, NUMBERS = ("SIZE", "V", "ZOOM", "N2"), ("30", "2.5", "7", "0")
@@ -143,3 +144,38 @@ def test_a_comma_that_is_missing_in_a_def_is_shown_in_its_header(count: int) -> 
         wrong = right.replace(", ".join(names), head, 1)
         (found,) = check(wrong)
         assert (found.code.number, found.values["fix"]) == ("TS017", right.split("\n")[0]), wrong
+
+
+@pytest.mark.parametrize("word", sorted(word for word in WORDS if WORDS[word].is_call))
+@pytest.mark.parametrize("count", [0, *COUNTS])
+def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, count: int) -> None:
+    own = len(WORDS[word].arguments)
+    if count == own:
+        return  # nobody knows which of the two is called
+    head = f"({', '.join(NAMES[:count])})" if count else ""
+    call = f"({', '.join(NUMBERS[:count])})" if count else ""
+    inside = f"F({NAMES[0]} CM, 60)" if count else "F(30 CM, 60)"
+    program = f"DEF {{0}}{head}\n{inside}\nEND_DEF\nW(1)\n{{0}}{call}\n{{0}}{call}"
+    wrong = program.format(word)
+    (told,) = check(wrong)
+    assert told.code.number == "TS105"
+    made = apply_edits(wrong, edits_of(told) or [])
+    assert made == program.format(f"{word}_1")
+    assert not [each for each in check(made) if each.is_mistake]
+
+
+UNKNOWN = ("I", "FOO", "HACER", "XX")
+
+
+@pytest.mark.parametrize(
+    "place", ["{}", "SI|{}", "SI|W(1);{}", "{};S", "IF(DISTANCE < 9);{};ENDIF"]
+)
+def test_calls_in_a_row_are_instructions_also_of_unknown_words(place: str) -> None:
+    known = ("F(2, 80)", "W(1)", "BEEP(1, 440)")
+    for one, word, gap in product(known, UNKNOWN, (" ", "  ", "")):
+        calls = (one, f"{word}(1, 60)", known[0])
+        wrong = place.format(gap.join(calls))
+        told = check(wrong)
+        assert told[0].code.number == "TS013", wrong
+        assert apply_edits(wrong, edits_of(told[0]) or []) == place.format(";".join(calls)), wrong
+        assert [each.values.get("found") for each in told[1:]] == [word], wrong

@@ -37,6 +37,9 @@ ADVISED = [
     ("D = DISTANCE;LOOP(FOREVER);IF(D = 20);B(1, 60);ENDIF;W(1);END_LOOP", "TS823"),
     ("F(5, 60) UNTIL(DISTANCE > 0)", "TS824"),
     ("B(5, 60) UNTIL(DISTANCE < 400)", "TS824"),
+    ("WHILE(DISTANCE < 10);F(0.2, 60);END_WHILE", "TS824"),
+    ("IF(DISTANCE < 15);B(1, 70);ENDIF;F(10, 50)", "TS805"),
+    ("WHILE(TIME < 10000);F(1, 50);B(1, 50);END_WHILE", "TS811"),
     ("F(007, 60)", "TS831"),
     ("F(1, 80) // voy; W(2); S", "TS816"),
     ("F(1, 50) // voy; LOOP(2); F(1, 50); END_LOOP", "TS816"),
@@ -263,3 +266,57 @@ def test_a_loop_is_put_around_a_task_that_is_done_once(text: str, wanted: str) -
     assert diagnostic.repair is not None
     assert apply_edits(text, diagnostic.repair.edits) == wanted
     assert not check_text(wanted, KIT).diagnostics
+
+
+def warned(text: str) -> list[str]:
+    found = check_text(text, KIT)
+    assert found.is_right, text
+    return [each.code.number for each in found.diagnostics]
+
+
+@pytest.mark.parametrize("number", ["3", "20", "100", "250", "300", "500", "600", "1000", "10000"])
+@pytest.mark.parametrize("sign", ["<", "<=", ">", ">=", "="])
+def test_a_clock_counts_in_what_a_wait_does(number: str, sign: str) -> None:
+    is_long = "TS811" in warned(f"W({number})")
+    for compared in (f"TIME {sign} {number}", f"{number} {sign} TIME"):
+        for question in (compared, f"DISTANCE < 9 OR {compared}", f"NOT ({compared})"):
+            for text in (
+                "WHILE({});F(1, 50);B(1, 50);END_WHILE", "IF({});S;W(1);ENDIF;S", "SHOW({})",
+                "F(9, 60) UNTIL({})", "WHEN({});BEEP(1, 440);END_WHEN;F(3, 60)", "X = {};SHOW(X)",
+            ):  # fmt: skip
+                assert ("TS811" in warned(text.format(question))) is is_long, text
+
+
+@pytest.mark.parametrize("sign", ["<", "<=", ">", ">="])
+@pytest.mark.parametrize("word", ["F", "B", "L", "R", "W"])
+def test_a_while_that_its_moves_never_end_is_turned_round(word: str, sign: str) -> None:
+    move = f"{word}(0.2{', 60' if word != 'W' else ''})"
+    is_turned = (word, sign[0]) in (("F", "<"), ("B", ">"))
+    for body in (move, f"{move};{move}", f"SHOW(DISTANCE);{move}", f"BEEP(0.1, 440);{move}"):
+        text = f"WHILE(DISTANCE {sign} 20);{body};END_WHILE"
+        found = [it for it in check_text(text, KIT).diagnostics if it.code is codes.TURNED_ROUND]
+        assert bool(found) is is_turned, text
+        for each in found:
+            right = text.replace(f"WHILE(DISTANCE {sign} 20)", each.values["fix"])
+            assert "TS824" not in warned(right), right
+        for other in (f"{move};R(0.2, 60)", f"IF(LIGHT_L > 9);S;ENDIF;{move}", f"{move};BREAK"):
+            assert "TS824" not in warned(f"WHILE(DISTANCE {sign} 20);{other};END_WHILE"), other
+        assert "TS824" not in warned(f"IF(DISTANCE < 50);{text};ENDIF")
+
+
+@pytest.mark.parametrize("seconds", ["0.5", "4.9", "5", "10"])
+def test_a_long_move_after_a_look_that_is_over_is_told(seconds: str) -> None:
+    look, move = "IF(DISTANCE < 15);B(1, 70);ENDIF", f"F({seconds}, 50)"
+    is_long = float(seconds) >= 5
+    for text in (
+        f"{look};{move}",
+        f"W(1);{look};X = 2;{move};SHOW(X)",
+        f"{look};BEEP(1, 440);{move}",
+    ):
+        assert ("TS805" in warned(text)) is is_long, text
+    for text in (
+        f"LOOP(3);{look};{move};END_LOOP", f"WHEN(DISTANCE < 9);S;END_WHEN;{look};{move}",
+        f"{look};{move} UNTIL(DISTANCE < 9)", f"{look.replace('<', '>')};{move}",
+        f"{look.replace('ENDIF', 'ELSE;W(1);ENDIF')};{move}",
+    ):  # fmt: skip
+        assert "TS805" not in warned(text), text

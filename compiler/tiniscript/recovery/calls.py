@@ -1,13 +1,15 @@
 """Calls whose values are all there, but in another form: each gets all of them where it has them.
 
 `F(20, CM, 60)` has its unit as a value of its own, `BEEP(1, 1,000)` a comma between thousands, and
-`M(50, 80, 3)` the seconds of a W.
+`M(50, 80, 3)` the seconds of a W. Of calls in a row each is an instruction, also of a word that
+nobody knows: `F(2, 80) I(1, 60)`.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Source, Span
@@ -23,7 +25,7 @@ from tiniscript.base.words import (
 )
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.meanings import CALLED, LONG_S, MOST_POWER, heard_as, plain
+from tiniscript.recovery.meanings import ASKING, CALLED, LONG_S, MOST_POWER, Names, heard_as, plain
 from tiniscript.recovery.writing import without_note
 
 _VALUE = r"[^(),;{}\n]*(?:\([^()\n]*\)[^(),;{}\n]*)*"
@@ -32,6 +34,7 @@ _COMMA = re.compile(r",(?![^()]*\))")  # outside of inner brackets
 _THOUSANDS = re.compile(r"([1-9]\d{0,2})((?:,\d{3})+)")
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 _ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
+_RUN_ON = re.compile(rf"(?:\b\w+[ \t]*\({_VALUE}(?:,{_VALUE})*\)[ \t]*){{2,}}(?=[;}}|]|$)")
 _PERCENT = re.compile(r"[ \t]*%$")
 _TIMED = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
 _SHORT = 3  # letters: a phone may have added some to one
@@ -58,8 +61,36 @@ def misplaced_values(source: Source) -> list[Diagnostic]:
     start = 0
     for line in source.text.split("\n"):
         for call in _calls(without_note(line)[0], start):
+            if re.search(rf"(?i)\bDEF\s+{call.word.text}\b", source.text):
+                continue  # its values may be those of the DEF
             readings = _unit_apart(call), _thousands(call), _seconds_of_motors(call, source.text)
             diagnostics += [reading for reading in readings if reading][:1]
+        start += len(line) + 1
+    return diagnostics
+
+
+def run_on(source: Source, names: Names) -> list[Diagnostic]:
+    """Return what is told of calls with nothing between them, of which one has an unknown word.
+
+    Where all are known, a search reads the line.
+    """
+    diagnostics = []
+    start = 0
+    for line in source.text.split("\n"):
+        for piece in _RUN_ON.finditer(without_note(line)[0]):
+            calls = [*_ANY_CALL.finditer(piece[0])]
+            words = [plain(re.match(r"\w+", call[0])[0]) for call in calls]  # type: ignore[index]
+            known = [word if names.is_name(word) else names.meant(word) for word in words]
+            are_calls = {*known} <= {*CALLED, *words, ""} and not {*words} & {*ASKING, "UNTIL"}
+            if len(calls) > 1 and are_calls and not all(known):
+                begin = start + piece.start()
+                ends = [(it.end(), other.start()) for it, other in pairwise(calls)]
+                edits = tuple(Edit(Span(begin + a, begin + b), ";") for a, b in ends)
+                values = {"before": calls[0][0], "fix": ";".join(call[0] for call in calls)}
+                place = Span(begin, begin + len(piece[0]))
+                at = Span(begin + ends[0][0] - 1, begin + ends[0][0])
+                repair = Repair(edits, False)
+                diagnostics.append(Diagnostic(codes.MISSING_SEPARATOR, at, values, place, repair))
         start += len(line) + 1
     return diagnostics
 

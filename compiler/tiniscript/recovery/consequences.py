@@ -55,13 +55,19 @@ def _ends_of_an_unread_if(diagnostics: Sequence[Diagnostic], _: Source) -> Itera
             yield diagnostic
 
 
-def _uses_of_a_reserved_word(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
-    """What another name for a word of the language mends, too."""
+def _uses_of_a_reserved_word(
+    diagnostics: Sequence[Diagnostic], source: Source
+) -> Iterator[Diagnostic]:
+    """What another name for a word of the language mends, too, as in the calls of its DEF."""
     reserved = [diagnostic for diagnostic in diagnostics if diagnostic.code is codes.RESERVED]
     words = {diagnostic.values["word"] for diagnostic in reserved}
     edits = [diagnostic.repair.edits[1:] for diagnostic in reserved if diagnostic.repair]
     renamed = {edit.span for its in edits for edit in its}
+    starts = {span.start for span in renamed}
     for diagnostic in diagnostics:
+        if starts and instruction_at(diagnostic.span, source)[0] in starts:
+            yield diagnostic
+            continue
         is_of_word = diagnostic.code is codes.NO_VALUE and diagnostic.values.get("word") in words
         if is_of_word or diagnostic.span in renamed:
             yield diagnostic

@@ -1,7 +1,8 @@
-"""Logo in one line, `REPEAT 4 [FD 30 RT 90]`: each word has one number, and no separator follows.
+"""Logo: lines as `REPEAT 4 [FD 30 RT 90]`, and words that it is taught, `TO SQUARE` up to `END`.
 
-A turtle goes steps and turns degrees, and has no power: what is read gets centimetres, DEG and a
-power, which is the program's own where it has one, and else an example. It is only shown.
+Each word has one number, and no separator follows. A turtle goes steps and turns degrees, and has
+no power: what is read gets centimetres, DEG and a power, which is the program's own where it has
+one, and else an example. It is only shown.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ _TOKEN = re.compile(
     r"(?P<word>[^\W\d]\w*)|(?P<number>\d+(?:\.\d+)?)|(?P<sign>[\[\]])"
     r"|(?P<apart>[ \t]*[;|][ \t;]*)|[ \t,]+"
 )
+_TAUGHT = re.compile(r"\s*(?P<to>[^\W\d]\w*)[ \t]+(?P<name>[^\W\d]\w*)[ \t]*")
+_ALONE = re.compile(r"\s*([^\W\d]\w*)[ \t]*")
 _LEAST_STEPS = 5  # fewer are rather seconds
 _DEEPEST = 4  # loops
 _MOST = 12  # instructions that are read as one
@@ -36,7 +39,7 @@ class _Token(NamedTuple):
 def turtle(source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is told of each line of Logo."""
     names = Names([lexemes(line) for line in source.text.split("\n")], kit)
-    diagnostics: list[Diagnostic] = []
+    diagnostics = _taught(source)
     start = 0
     for line in source.text.split("\n"):
         pieces = _pieces(without_note(line)[0], start)
@@ -49,6 +52,38 @@ def turtle(source: Source, kit: Kit) -> list[Diagnostic]:
             pieces = pieces[end:]
         start += len(line) + 1
     return diagnostics
+
+
+def _taught(source: Source) -> list[Diagnostic]:
+    """Return what is told of words that are taught: each is a DEF."""
+    diagnostics: list[Diagnostic] = []
+    head: Diagnostic | None = None
+    is_empty = True
+    start = 0
+    for line in source.text.split("\n"):
+        body = without_note(line)[0]
+        taught, alone = _TAUGHT.fullmatch(body), _ALONE.fullmatch(body)
+        if taught and lexicon_meaning(plain(taught["to"]), "teach"):
+            span = Span(start + taught.start("to"), start + taught.end("name"))
+            name = plain(taught["name"])
+            fix = f"DEF {name}" if name.isidentifier() and name not in WORDS else ""
+            head = _taught_part(source, span, taught["to"], fix) if fix else None
+            is_empty = True
+        elif head and alone and lexicon_meaning(plain(alone[1]), "end"):
+            span = Span(start + alone.start(1), start + alone.end(1))
+            end = _taught_part(source, span, alone[1], BLOCK_ENDS["DEF"])
+            diagnostics += [] if is_empty else [head, end]  # `para todo` stops
+            head = None
+        else:
+            is_empty = is_empty and not body.strip()
+        start += len(line) + 1
+    return diagnostics
+
+
+def _taught_part(source: Source, span: Span, found: str, fix: str) -> Diagnostic:
+    values = {"found": found, "right": fix.split()[0], "fix": fix}
+    repair = Repair((Edit(span, fix),), False)
+    return Diagnostic(codes.OTHER_LANGUAGE, span, values, span, repair)
 
 
 def _pieces(body: str, start: int) -> list[list[_Token]]:

@@ -1,7 +1,8 @@
-"""Motors that a program sets one by one, `motorLeft.run(60)`: one M sets both.
+"""Motors that a program switches: one by one, `motorLeft.run(60)`, or on, and after a wait off.
 
 A pair that stands together is one M with both powers, in whichever order. Of one alone it is said
-that M has both, since nobody knows what the other wheel does.
+that M has both, since nobody knows what the other wheel does. `forward(50); sleep(2); stop()` is
+F(2, 50).
 """
 
 from __future__ import annotations
@@ -12,17 +13,23 @@ from itertools import zip_longest
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import WORDS, foreign_word_hints, lexicon_concept, lexicon_meaning
+from tiniscript.base.words import MOVES, WORDS, foreign_word_hints, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.meanings import plain
+from tiniscript.recovery.meanings import meanings, number_text, plain
 from tiniscript.recovery.writing import without_note
 
 _SET = re.compile(r"(?P<name>[^\W\d][\w.]*)[ \t]*\([ \t]*(?P<power>-?\d+)[ \t]*%?[ \t]*\)")
+_SWITCHED = re.compile(
+    r"(?P<name>[^\W\d][\w.]*)[ \t]*(?:\([ \t]*(?P<number>\d*\.?\d*)[ \t]*%?[ \t]*\))?"
+)
+_LEAST_MS = 100  # of a wait: less are seconds
+_POWERS = range(10, 101)  # of a motor that is switched on: less is rather a time
 _PIECE = re.compile(r"[^;{}|\n]+")
 _PART = re.compile(r"[^\W\d_]+?(?=[A-Z](?:[a-z]|$)|[_.\d]|$)|[^\W\d_]+")
 _SEPARATORS = " \t\r\n;"
 _SIDES = {"L": "left", "R": "right"}
+_OFF = ("S", "STOP")
 
 
 class _Motor(NamedTuple):
@@ -32,6 +39,83 @@ class _Motor(NamedTuple):
     power: str
     name: str
     span: Span
+
+
+class _Switch(NamedTuple):
+    """A call with one number or none, and what it means: a move, W, or a stop."""
+
+    meant: str
+    number: str
+    name: str
+    span: Span
+
+
+def switched(source: Source) -> list[Diagnostic]:
+    """Return what is told of motors that are switched on, and off or to another way after a wait.
+
+    Each with its wait is one move, and the stop after the last one needs no word.
+    """
+    result: list[Diagnostic] = []
+    text, calls = source.text, [*_switches(source.text)]
+    k = 0
+    while k < len(calls):
+        end, moves = k, list[str]()
+        while end + 1 < len(calls) and _is_on(calls[end]) and _is_wait(calls[end + 1]):
+            if moves and not _are_together(text, calls[end - 1], calls[end]):
+                break
+            if not _are_together(text, calls[end], calls[end + 1]):
+                break
+            seconds = _seconds(calls[end + 1].number)
+            moves.append(f"{calls[end].meant}({seconds}, {calls[end].number})")
+            end += 2
+        is_ended = moves and end < len(calls) and calls[end].meant in _OFF
+        is_ended = is_ended and _are_together(text, calls[end - 1], calls[end])
+        if is_ended or len(moves) > 1:
+            whole = Span(calls[k].span.start, calls[end - (not is_ended)].span.end)
+            fix = ";".join(moves)
+            word, name = calls[k].meant, calls[k].name
+            said = {"found": name, "right": word, "takes": WORDS[word].usage, "fix": fix}
+            code = codes.OTHER_LANGUAGE
+            if plain(name) == word:
+                said = {"word": word, "wanted": "2", "found": "1", "fix": fix}
+                said["usage"] = WORDS[word].usage
+                code = codes.ARGUMENT_COUNT
+            repair = Repair((Edit(whole, fix),), False)
+            result.append(Diagnostic(code, whole, said, whole, repair))
+        k = max(k + 1, end)
+    return result
+
+
+def _is_on(call: _Switch) -> bool:
+    is_whole = call.number.isdecimal()
+    return call.meant in MOVES and call.meant != "W" and is_whole and int(call.number) in _POWERS
+
+
+def _is_wait(call: _Switch) -> bool:
+    return call.meant == "W" and bool(call.number.strip("."))
+
+
+def _are_together(text: str, one: _Switch, other: _Switch) -> bool:
+    return not text[one.span.end : other.span.start].strip(_SEPARATORS)
+
+
+def _seconds(number: str) -> str:
+    """Return how long a wait lasts: 500 are milliseconds."""
+    return number_text(float(number) / 1000) if float(number) >= _LEAST_MS else number
+
+
+def _switches(text: str) -> Iterator[_Switch]:
+    start = 0
+    for line in text.split("\n"):
+        for piece in _PIECE.finditer(without_note(line)[0]):
+            match = _SWITCHED.fullmatch(piece[0].strip())
+            if match:
+                begin = start + piece.start() + piece[0].index(match[0])
+                word = plain(match["name"].rpartition(".")[2])
+                meant = word if word in WORDS else next((it.concept for it in meanings(word)), "")
+                span = Span(begin, begin + len(match[0]))
+                yield _Switch(meant, match["number"] or "", match["name"], span)
+        start += len(line) + 1
 
 
 def one_by_one(source: Source) -> list[tuple[Diagnostic, Edit]]:

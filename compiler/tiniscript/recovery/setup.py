@@ -7,21 +7,24 @@ from collections.abc import Callable, Sequence
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, apply_edits
-from tiniscript.base.words import WORDS, lexicon_meaning
+from tiniscript.base.words import WORDS, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
-from tiniscript.recovery.meanings import Names, lexemes, made, plain, texts
-from tiniscript.recovery.orders import block, orders, written
+from tiniscript.recovery.meanings import CALLED, Lexeme, Names, lexemes, made, plain, texts
+from tiniscript.recovery.orders import block, made_up, orders, written
 from tiniscript.recovery.writing import without_note
 from tiniscript.syntax.operators import COMPARISONS
 
 SEAL = "~"  # begins a checksum: what has one is copied again
 _LONGEST = 4_000  # characters of a first line that are read
+_LONGEST_START = 8  # words that say how a program starts
 _CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
 _BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
 _HEAD_IN_WORDS = re.compile(r"(?i)(s[ií]|sb)[ \t]*[,.:!]?[ \t]+(?=[^\W\d])")
+_FRAME = re.compile(r"\s*((?:\w+[ \t]+)?(\w+)[ \t]*\([ \t]*(?:void)?[ \t]*\))\s*\{")
+_BEGUN_INSIDE = re.compile(r"(?i)\s*(S[IB])\b[ \t]*\|?[ \t]*")
 _INSIDE = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that are open before it
 
 
@@ -38,6 +41,8 @@ def beginning(
         is_call = _CALL.match(source.text, text.repair.edits[0].span.end) is not None
         if is_call or is_better(after, diagnostics, text.repair.edits):
             return [text]
+    if framed := _framed(source):
+        return [framed]
     if orders := _spoken(source, kit):
         return [orders]
     return _set_before(source, kit) or _titles(source, kit)
@@ -79,29 +84,85 @@ def setup(text: str) -> Diagnostic | None:
     return Diagnostic(codes.SETUP_NEEDS_BAR, span, said, None, Repair(tuple(edits), is_sure))
 
 
-def _spoken(source: Source, kit: Kit) -> Diagnostic | None:
-    """Return what is told of a first line that says `SI` and then orders in words, and asks none.
+def _framed(source: Source) -> Diagnostic | None:
+    """Return what is told of `void setup() { … }`, in which a sketch has its beginning.
 
-    `SI go forward 2 seconds, then stop` is `SI|F(2, 80);S`: after SI comes the bar.
+    What is in its brackets begins the program; `void loop()` after it is a loop.
+    """
+    head = _FRAME.match(source.text)
+    if head is None or not (head[2] == "main" or lexicon_concept(plain(head[2])) == "START"):
+        return None
+    depth = at = 0
+    for line in source.text[head.end() - 1 :].splitlines(keepends=True):
+        for k, sign in enumerate(without_note(line)[0]):
+            depth += (sign == "{") - (sign == "}")
+            if not depth:
+                return _unframed(source, head, head.end() - 1 + at + k)
+        at += len(line)
+    return None
+
+
+def _unframed(source: Source, head: re.Match[str], close: int) -> Diagnostic:
+    inside = source.text[head.end() : close]
+    begun = _BEGUN_INSIDE.match(inside)
+    setup_text = f"{begun[1].upper()}|" if begun else "SI|"
+    start = head.end() + (begun.end() if begun else len(inside) - len(inside.lstrip()))
+    end = close if start >= close else head.end() + len(inside.rstrip(" \t"))
+    name = Span(head.start(1), head.end(1))
+    edits = (Edit(Span(name.start, min(start, close)), setup_text), Edit(Span(end, close + 1), ""))
+    values = {"begun": source[name], "fix": setup_text}
+    repair = Repair(edits, True)
+    return Diagnostic(codes.SETUP_NEEDS_BAR, name, values, None, repair)
+
+
+def _spoken(source: Source, kit: Kit) -> Diagnostic | None:
+    """Return what is told of a first line that says how it starts and then orders, all in words.
+
+    `SI go forward 2 seconds, then stop` is `SI|F(2, 80);S`: after SI comes the bar. `start and go`
+    is SI, too, and `when the button is pressed` is SB.
     """
     row = _ROW.search(source.text)
     body = without_note(row[0])[0].rstrip(" ;\t\r") if row else ""
-    match = _HEAD_IN_WORDS.match(body)
-    if row is None or match is None or "(" in body or any(it in body for it in COMPARISONS):
+    if row is None or "(" in body or any(it in body for it in COMPARISONS):
         return None
-    words = lexemes(body[match.end() :])
     names = Names([lexemes(line) for line in source.text.split("\n")], kit)
-    said = orders(words, names)
-    if not said or block([made("IF"), *words], names, is_open=False):
+    if match := _HEAD_IN_WORDS.match(body):
+        head, words = plain(match[1]), lexemes(body[match.end() :])
+        begun, values = match[1], {"found": head}
+        if block([made("IF"), *words], names, is_open=False):
+            return None
+    else:
+        words = lexemes(body)
+        head, count = _start_in_words(words, names)
+        begun = "".join((it.space or "") + (it.source or "") for it in words[:count]).strip()
+        values = {"button": "SB|"} if head == "SB" else {"begun": begun}
+        words = words[count:]
+    said = orders(words, names) if head else []
+    if not said or (head == "SB" and said[0].word in ("S", "STOP")):
         return None
-    head = plain(match[1])
     fix = f"{head}|{written(said)}"
+    sample = made_up(said)
+    values |= {"whole": fix, "example": sample} if sample else {"fix": fix}
     place = Span(row.start(), row.start() + len(body))
-    values = {"found": head, "fix": fix}
-    span = Span(place.start, place.start + len(match[1]))
+    start = place.start + body.index(begun)
     return Diagnostic(
-        codes.SETUP_NEEDS_BAR, span, values, place, Repair((Edit(place, fix),), False)
-    )
+        codes.SETUP_NEEDS_BAR, Span(start, start + len(begun)), values, place,
+        Repair((Edit(place, fix),), False),
+    )  # fmt: skip
+
+
+def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
+    """Return the start that the first words of a line say, and how many they are."""
+    if names.meant(words[0].text) == "START":
+        return "SI", 1
+    first = words[:_LONGEST_START]
+    said = [k for k, it in enumerate(first) if lexicon_concept(it.text) == "BUTTON"]
+    pressed = [k for k, it in enumerate(first) if lexicon_meaning(it.text, "pressed")]
+    if not said or not pressed or "BUTTON" in names.sensors:
+        return "", 0
+    end = max(said[0], pressed[0]) + 1
+    does = {names.meant(it.text) for it in first[:end]} & {*CALLED, "UNTIL", "S", "STOP"}
+    return ("SB", end) if does in (set(), {"W"}, {"W", "UNTIL"}) else ("", 0)
 
 
 def _begins_instruction(rest: str, sign: str, is_apart: bool) -> bool:

@@ -20,7 +20,7 @@ from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, drop_wrong_offers
 from tiniscript.recovery import slips
 from tiniscript.recovery.bracketed import answered, bracketed
-from tiniscript.recovery.calls import misplaced_values
+from tiniscript.recovery.calls import misplaced_values, run_on
 from tiniscript.recovery.conserved import conserving, with_sample
 from tiniscript.recovery.counters import counters
 from tiniscript.recovery.dedupe import dedupe
@@ -30,8 +30,9 @@ from tiniscript.recovery.keys import KEYS, asked_keys
 from tiniscript.recovery.labels import labelled
 from tiniscript.recovery.leftovers import leftovers, setup_and_end_leftovers
 from tiniscript.recovery.logo import turtle
+from tiniscript.recovery.meanings import Names, lexemes
 from tiniscript.recovery.meant import meant_in
-from tiniscript.recovery.motors import one_by_one
+from tiniscript.recovery.motors import one_by_one, switched
 from tiniscript.recovery.notes import noted
 from tiniscript.recovery.pointing import pointed
 from tiniscript.recovery.search import Recovery
@@ -150,11 +151,14 @@ def _beginning(wrong: Wrong) -> Findings:
 
 def _calls(wrong: Wrong) -> Findings:
     """Return what is wrong with calls that have all their values in another form (`calls`)."""
-    return _with_edits(misplaced_values(wrong.source))
+    names = Names([lexemes(line) for line in wrong.source.text.split("\n")], wrong.kit)
+    return _with_edits(misplaced_values(wrong.source) or run_on(wrong.source, names))
 
 
 def _motors(wrong: Wrong) -> Findings:
-    """Return what is wrong with motors that are set one by one (`motors`)."""
+    """Return what is wrong with motors that are switched on and off, or one by one (`motors`)."""
+    if moves := switched(wrong.source):
+        return _with_edits(moves)
     found = one_by_one(wrong.source)
     return Findings([message for message, _ in found], [edit for _, edit in found])
 

@@ -653,9 +653,10 @@ class _OtherName(NamedTuple):
 def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterator[int]:
     """Give the places where a word of the language is meant as the name of a DEF, or a variable.
 
-    A DEF is called where its name stands alone, but not in its own body.
+    A DEF is called where its name stands alone, or with as many values as the DEF has and the word
+    has not, but not in its own body.
     """
-    depth = 0
+    depth = parameters = 0
     is_inside = is_value = False
     for k, (before, token, after) in enumerate(
         zip([None, *tokens], tokens, tokens[1:], strict=False)
@@ -671,11 +672,24 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
             if is_set or ((depth or is_value) and after.kind != "("):
                 yield k
         elif before is not None and before.text == "DEF":
+            parameters = max(0, _value_count(tokens, k + 1))
             yield k
         elif is_begun and not is_inside:
-            has_values = after.kind == "(" and not WORDS[word].arguments
-            if has_values or after.kind in (*_BEGINS, "end"):
+            count = _value_count(tokens, k + 1)
+            is_own = count == parameters and count != (len(WORDS[word].arguments) or -1)
+            if is_own or after.kind in (*_BEGINS, "end"):
                 yield k
+
+
+def _value_count(tokens: Sequence[Token], k: int) -> int:
+    """Return how many values the brackets have that open there, -1 where none open."""
+    depth = commas = 0
+    for at in range(k, len(tokens)):
+        depth += (tokens[at].kind == "(") - (tokens[at].kind == ")")
+        commas += tokens[at].kind == "," and depth == 1
+        if not depth:
+            return -1 if at == k else commas + (at > k + 1)
+    return -1
 
 
 def _is_over(token: Lexeme) -> bool:

@@ -127,7 +127,7 @@ def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | Non
     """
     left = sum(term.op == "SENSOR" and is_distance(kit.readings[term.value]) for term in condition)
     is_sure = all(term.op != "NOT" for term in condition)
-    for part in _parts(condition, kit):
+    for part in comparisons_in(condition, kit):
         if answer_of(part) or (part.op == "EQ" and is_between(*part[::2])):
             return False
         if is_distance(part.device):
@@ -140,10 +140,12 @@ def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | Non
 
 def asks_if_near(condition: Expression, kit: Kit) -> bool:
     """Whether a part of a condition is `DISTANCE < 20`, of a sensor that looks ahead."""
-    return any(looks_ahead(part.device) and part.op in _LESS for part in _parts(condition, kit))
+    return any(
+        looks_ahead(part.device) and part.op in _LESS for part in comparisons_in(condition, kit)
+    )
 
 
-def _parts(condition: Expression, kit: Kit) -> Iterator[Comparison]:
+def comparisons_in(condition: Expression, kit: Kit) -> Iterator[Comparison]:
     """Yield the comparisons within a condition; a variable is taken for a number amid the range."""
     for k in range(len(condition) - 2):
         part = condition[k : k + 3]

@@ -6,7 +6,7 @@ Knows how to look around and how to go on. Knows no grammar and reports nothing.
 from __future__ import annotations
 
 from tiniscript.base.source import Source, Span
-from tiniscript.syntax.lexer import END, NEWLINE, Token
+from tiniscript.syntax.lexer import END, NEWLINE, WORD, Token
 
 INSTRUCTION_ENDS = frozenset((";", NEWLINE, END))  # where an instruction ends
 VALUE_ENDS = frozenset((",", ")", *INSTRUCTION_ENDS))  # where a value does
@@ -60,6 +60,15 @@ class Cursor:
             self.to_inner()
             self.i += 1
         return is_next
+
+    def has_names(self) -> bool:
+        """Return whether brackets with names come next, or none."""
+        k = self.i
+        sign = self.tokens[k].kind
+        while sign in ("(", ",") and self.tokens[k + 1].kind is WORD:
+            k += 2
+            sign = self.tokens[k].kind
+        return sign == ")" or self.tokens[self.i].kind != "("
 
     def before(self, k: int) -> int:
         """Return the place of the last token before `k` that is no line end."""

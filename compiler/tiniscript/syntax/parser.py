@@ -223,11 +223,13 @@ class Parser:
             self.blocks.begin("DEF", word.span)
             self.reporter.fail(codes.DEF_NEEDS_NAME, word.span)
         cursor.i += 1
-        self.defs.add(name.text)
         parameters: list[Parameter] = []
         try:
             if name.text in WORDS:
-                self.reporter.fail(codes.RESERVED, name.span, word=name.text)
+                report = self.reporter.report if cursor.has_names() else self.reporter.fail
+                report(codes.RESERVED, name.span, word=name.text)
+            else:
+                self.defs.add(name.text)
             if cursor.token.kind == "(":
                 self.parameters(name, parameters)
         finally:

@@ -24,9 +24,9 @@ from tiniscript.semantics.comparisons import (
     is_between,
     looks_ahead,
 )
-from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.lint.look import STANDING_STATEMENTS, Around, Look
 from tiniscript.semantics.optimizer import known_value
-from tiniscript.syntax.operators import SIGN_OF
+from tiniscript.syntax.operators import BINARY, OPPOSITES, SIGN_OF
 
 SHORT_MS = 1000  # ms: a loop looks again after so long
 _CHANGING_OPS = frozenset(("SENSOR", "TIME", "RANDOM"))
@@ -52,7 +52,7 @@ def check_until(move: ir.Move, around: Around, look: Look) -> None:
 
 def check_while(loop: ir.While, around: Around, look: Look) -> None:
     if not look.program.tasks:
-        _Conditions(look).check_while(loop)
+        _Conditions(look).check_while(loop, around)
 
 
 def check_if(statement: ir.If, around: Around, look: Look) -> None:
@@ -133,11 +133,13 @@ class _Conditions:
 
     # -- WHILE and IF -------------------------------------------------------------------------
 
-    def check_while(self, loop: ir.While) -> None:
+    def check_while(self, loop: ir.While, around: Around) -> None:
         self._report_frozen_while(loop)
         head = Span(loop.span.start, loop.span.start + len("WHILE"))
-        if compared := self._comparison(loop.condition):
-            self._report_known(compared, head)
+        compared = self._comparison(loop.condition)
+        if compared and not self._report_known(compared, head):
+            if not around.asked & _sensors(loop.condition):
+                self._report_turned_while(loop, compared, head)
         self._report_known_of_both(loop.condition, head)
 
     def check_if(self, statement: ir.If, outermost: ir.Loop | ir.While | None) -> None:
@@ -150,6 +152,22 @@ class _Conditions:
                 self._report_exact(compared, arm.span, "IF", "")
             if outermost is not None and _is_endless(outermost):
                 self._report_frozen_if(arm, outermost)
+
+    def _report_turned_while(self, loop: ir.While, compared: Comparison, head: Span) -> None:
+        """`WHILE(DISTANCE < 10); F(0.2, 60); END_WHILE`: what ends it does not come that way."""
+        moves = [item for item in loop.body if not isinstance(item, STANDING_STATEMENTS)]
+        ways = {item.direction if isinstance(item, ir.Move) else "" for item in moves}
+        if len(ways) != 1 or any(isinstance(it, ir.Move) and it.until for it in moves):
+            return
+        (way,) = ways
+        device, op, number = compared
+        end = _REVERSED_COMPARATORS.get(way, {}).get(_opposite(op))
+        if end and looks_ahead(device):
+            turned = compared._replace(op=_opposite(end))
+            number_is = "near" if way == "F" else "beyond"
+            fix = "" if answer_of(turned) else f"WHILE({turned})"
+            values = {"sensor": device.name, number_is: as_text(number), "fix": fix}
+            self._look.report(codes.TURNED_ROUND, head, **values)
 
     def _report_frozen_while(self, loop: ir.While) -> None:
         condition = loop.condition
@@ -315,6 +333,11 @@ class _Conditions:
         if not comes and (comes is not None or direction):
             return ""
         return re.sub(r"[A-Za-z_]\w*", lambda match: held.get(match[0].upper(), match[0]), text)
+
+
+def _opposite(op: str) -> str:
+    """Return what is TRUE where a comparison is not."""
+    return BINARY[OPPOSITES[SIGN_OF[op]]][1]
 
 
 def _runs_once(loop: ir.Loop | ir.While) -> bool:

@@ -12,13 +12,13 @@ from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import asks_if_near, can_come_true, is_distance, looks_ahead
-from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.lint.look import STANDING_STATEMENTS, Around, Look
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
 LONG_MOVE_MS = 500  # ms: a robot goes a hand's breadth in this time
 LONG_STEP_MS = 1000  # ms: in a WHILE it is looked at again after so long
-_STANDING_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Beep)  # they leave the robot where it is
+LONG_AFTER_MS = 5000  # ms: it was looked at once before so long a move
 _GREATER_COMPARATORS = ("GT", "GE")
 _INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set)
 _LIKELY_TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
@@ -27,7 +27,7 @@ _LIKELY_POWERS = range(20_000, 100_001)  # and a power
 
 def report_late_conditions(body: ir.Body, around: Around, look: Look) -> None:
     """Look at the statements of a body, not at those within them."""
-    _LateConditions(look).look_at(body, around.loop)
+    _LateConditions(look).look_at(body, around.loop, around.is_repeated)
 
 
 class _LateConditions:
@@ -36,7 +36,7 @@ class _LateConditions:
         self._kit = look.kit
         self._source = look.source
 
-    def look_at(self, body: ir.Body, loop: ir.Loop | ir.While | None) -> None:
+    def look_at(self, body: ir.Body, loop: ir.Loop | ir.While | None, is_repeated: bool) -> None:
         """Look at the statements of a body, which `loop` repeats."""
         late = self._in_loop(body) if loop is not None else set()
         if isinstance(loop, ir.While):
@@ -44,6 +44,8 @@ class _LateConditions:
         for k, statement in enumerate(body):
             if isinstance(statement, ir.If) and k not in late:
                 self._report_idle_stop(body, k, statement, loop)
+                if not (is_repeated or self._look.program.tasks):
+                    self._report_looked_before(body, k, statement)
 
     def _in_loop(self, body: ir.Body) -> set[int]:
         """Find a long move, then a look at a distance: the robot drives blind in between.
@@ -68,9 +70,22 @@ class _LateConditions:
                 late.add(place)
         return late
 
+    def _report_looked_before(self, body: ir.Body, k: int, branch: ir.If) -> None:
+        """`IF(DISTANCE < 15); B(1, 70); ENDIF; F(10, 50)`: it looks once, and then drives on."""
+        condition = branch.arms[0].condition
+        sensor = self._distance_in(condition)
+        move = _nearest(body, range(k + 1, len(body)))
+        if sensor is None or branch.has_else or not asks_if_near(condition, self._kit):
+            return
+        if _only_stop(branch) or not isinstance(move, ir.Move):
+            return
+        is_blind = self._is_blind(move, LONG_AFTER_MS)
+        if is_blind and can_come_true(condition, move.direction, self._kit):
+            self._report_late_check(move, sensor, self._look.condition(branch.arms[0].span, "IF"))
+
     def _in_while(self, loop: ir.While) -> None:
         """`WHILE(DISTANCE > 20); F(5, 60); END_WHILE`: it looks every 5 s."""
-        body = [item for item in loop.body if not isinstance(item, _STANDING_STATEMENTS)]
+        body = [item for item in loop.body if not isinstance(item, STANDING_STATEMENTS)]
         condition = loop.condition
         if len(body) != 1 or len(condition) != 3 or condition[2].op not in _GREATER_COMPARATORS:
             return
@@ -188,7 +203,7 @@ class _LateConditions:
 
 def _nearest(body: ir.Body, places: range) -> ir.Statement | None:
     """Return the first statement there that may move the robot."""
-    return next((body[at] for at in places if not isinstance(body[at], _STANDING_STATEMENTS)), None)
+    return next((body[at] for at in places if not isinstance(body[at], STANDING_STATEMENTS)), None)
 
 
 def _time(move: ir.Move) -> int | None:

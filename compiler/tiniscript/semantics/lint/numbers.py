@@ -14,12 +14,14 @@ from tiniscript.base.words import HERTZ, POWER, UNIT_OF, Argument
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
+from tiniscript.semantics.comparisons import TIME, comparisons_in
 from tiniscript.semantics.ir import Beep, Expression, Move
 from tiniscript.semantics.lint.look import Around, Look
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import fold, known_value, sure_fault
 from tiniscript.semantics.ways import way_ms
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD
+from tiniscript.syntax.operators import SIGN_OF
 
 SECOND = 1000  # ms
 LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
@@ -51,6 +53,23 @@ def report_will_fault(statement: ir.Statement | ir.Task, around: Around, look: L
         if fault:
             look.report(codes.WILL_FAULT, statement.span, fault=fault)
             return
+
+
+def check_clock(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
+    """`TIME < 10000`: the clock counts seconds."""
+    for expression in ir.expressions(statement):
+        for device, op, number in comparisons_in(expression, look.kit):
+            if device is TIME and _is_milliseconds(number):
+                limit, right = as_text(number), as_text(number // 1000)
+                values = {"limit": limit, "fix": f"TIME {SIGN_OF[op]} {right}"}
+                look.report(codes.LONG_TIME, _clock_span(statement, limit, look), **values)
+
+
+def _clock_span(statement: ir.Statement | ir.Task, limit: str, look: Look) -> Span:
+    """Return the place of a comparison of the clock as it is written, or else its statement."""
+    pattern = rf"(?i)\bTIME\b[ \t]*[<>=]+[ \t]*{limit}\b|\b{limit}[ \t]*[<>=]+[ \t]*TIME\b"
+    found = re.compile(pattern).search(look.source.text, *statement.span)
+    return Span(*found.span()) if found else statement.span
 
 
 def check_times(loop: ir.Loop, around: Around, look: Look) -> None:
