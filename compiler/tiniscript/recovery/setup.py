@@ -153,6 +153,8 @@ def _spoken(source: Source, kit: Kit) -> Diagnostic | None:
 
 def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
     """Return the start that the first words of a line say, and how many they are."""
+    if not words:
+        return "", 0
     if names.meant(words[0].text) == "START":
         return "SI", 1
     first = words[:_LONGEST_START]
