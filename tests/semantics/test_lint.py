@@ -38,6 +38,9 @@ ADVISED = [
     ("F(5, 60) UNTIL(DISTANCE > 0)", "TS824"),
     ("B(5, 60) UNTIL(DISTANCE < 400)", "TS824"),
     ("WHILE(DISTANCE < 10);F(0.2, 60);END_WHILE", "TS824"),
+    ("SHOW(RANDOM(1, 6));LOOP(RANDOM(1, 6));W(1);END_LOOP", "TS843"),
+    ("D = LIGHT_L;IF(D > 50);S;W(1);ELSEIF(D < 50);W(1);ELSE;W(2);ENDIF", "TS825"),
+    ("W(9);WHILE(TIME < 5);BEEP(1, 440);END_WHILE", "TS827"),
     ("IF(DISTANCE < 15);B(1, 70);ENDIF;F(10, 50)", "TS805"),
     ("WHILE(TIME < 10000);F(1, 50);B(1, 50);END_WHILE", "TS811"),
     ("F(007, 60)", "TS831"),
@@ -320,3 +323,62 @@ def test_a_long_move_after_a_look_that_is_over_is_told(seconds: str) -> None:
         f"{look.replace('ENDIF', 'ELSE;W(1);ENDIF')};{move}",
     ):  # fmt: skip
         assert "TS805" not in warned(text), text
+
+
+@pytest.mark.parametrize("low", [1, 20, 80, 100])
+@pytest.mark.parametrize("high", [1, 20, 80, 100])
+def test_what_min_and_max_leave_is_one_number_or_many(low: int, high: int) -> None:
+    for outer, inner, is_known in (("MAX", "MIN", high < low), ("MIN", "MAX", high > low)):
+        for text in (
+            f"{outer}({low}, {inner}({high}, DISTANCE))",
+            f"{outer}({inner}(DISTANCE, {high}), {low})",
+            f"{outer}({inner}({high}, X), {low})",
+        ):  # fmt: skip
+            program = f"X = DISTANCE;F(1, {text});SHOW(X)"
+            found = [
+                it for it in check_text(program, KIT).diagnostics if it.code is codes.KNOWN_ANSWER
+            ]
+            assert bool(found) is is_known, text
+            assert all(it.values["number"] == str(low) for it in found)
+
+
+@pytest.mark.parametrize("past", ["W(9)", "F(4, 60);B(5, 60)", "WHILE(TIME < 9);W(1);END_WHILE"])
+@pytest.mark.parametrize("limit", [5, 9, 10])
+def test_a_clock_that_is_past_is_told_with_what_comes_later(past: str, limit: int) -> None:
+    text = f"{past};WHILE(TIME < {limit});BEEP(1, 440);END_WHILE"
+    found = [it for it in check_text(text, KIT).diagnostics if it.code is codes.KNOWN_ANSWER]
+    assert bool(found) is (limit <= 9), text
+    assert [it.values["later"] for it in found] == [f"WHILE(TIME < {9 + limit})"] * (limit <= 9)
+    for other in (
+        f"WHEN(DISTANCE < 9);S;END_WHEN;{text}",
+        text.replace("W(9)", "W(9) UNTIL(KEY_A)"),
+    ):
+        if other != text:
+            assert "TS827" not in warned(other), other
+
+
+@pytest.mark.parametrize("value", ["DISTANCE", "D", "DISTANCE - LIGHT_L"])
+@pytest.mark.parametrize(("first", "second"), [(50, 50), (50, 40), (50, -50)])
+def test_an_else_between_two_numbers_has_room(value: str, first: int, second: int) -> None:
+    arms = f"IF({value} > {first});F(1, 60);ELSEIF({value} < {second});L(1, 60)"
+    text = f"LOOP(3);D = DISTANCE;{arms};ELSE;R(1, 60);ENDIF;END_LOOP;SHOW(D)"
+    assert ("TS825" in warned(text)) is (first == second), text
+    assert "TS825" not in warned(text.replace(";ELSE;R(1, 60)", ""))
+
+
+@pytest.mark.parametrize("throw", ["RANDOM(1, 3)", "RANDOM(0, 10)"])
+def test_a_number_is_thrown_anew_at_each_random(throw: str) -> None:
+    arms = f"IF({throw} = 1);F(1, 60);ELSEIF({throw} = 2);L(1, 60);ENDIF"
+    assert "TS843" in warned(arms)
+    assert "TS843" in warned(f"LOOP(2);SHOW({throw});LOOP({throw});W(1);END_LOOP;END_LOOP")
+    assert "TS843" not in warned(f"N = {throw};SHOW(N);{arms.replace(throw, 'N')}")
+    assert "TS843" not in warned(f"SHOW({throw});W(1);LOOP({throw});W(1);END_LOOP")
+
+
+@pytest.mark.parametrize("call", ["SIDE(30)", "SIDE(15);SIDE(40)", "SIDE(90)"])
+def test_the_values_of_a_def_are_times_as_its_own_numbers_are(call: str) -> None:
+    for word, unit in (("F", "CM"), ("B", "CM"), ("R", "DEG")):
+        text = f"DEF SIDE(SIZE);{word}(SIZE, 60);END_DEF;{call}"
+        assert "TS811" in warned(text), text
+        assert "TS811" not in warned(text.replace("SIZE, 60", f"SIZE {unit}, 60")), text
+        assert "TS811" not in warned(text.replace("SIZE", "SECONDS")), text

@@ -229,6 +229,7 @@ ASKED_ONCE = _warning("TS836")
 UNUSED_READING = _warning("TS840")
 CUT_VALUE = _warning("TS841")
 GIVES_WAY = _warning("TS842")
+NEW_THROW = _warning("TS843")
 
 
 def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:

@@ -86,6 +86,7 @@ _LETTERS = str.maketrans("oOlI", "0011")
 _WITH_UNIT = re.compile(r"[\d.]+\s*([^\W\d]+|[%°])")
 _SEPARATORS = ";\n"
 _LONGEST = 3  # parts of a number
+_THOUSANDS = 3  # digits of the last part of `1,000`
 # What is written, as far as a change may cut it out; and which messages name what they do.
 _WRITTEN = re.compile(r"\d[\d.]*|[^\W\d]\w*|[<>≤≥≠]=?|[=!]=")
 _NAMING = (
@@ -785,13 +786,17 @@ def _runs(text: str) -> Iterator[tuple[float, list[float]]]:
             digits = [match[0].translate(_LETTERS) for match in run]
             sentence = text[run[0].start() : run[-1].end()]
             parts = [float(item) for item in re.findall(r"\d+(?:\.\d+)?|\.\d+", sentence)]
-            yield from ((value, parts) for value in _values(digits, ":" in sentence))
+            is_thousands = len(digits[-1]) == _THOUSANDS
+            is_decimal = not is_thousands and all("," in gap or "." in gap for gap in gaps)
+            values = _values(digits, is_decimal, ":" in sentence)
+            yield from ((value, parts) for value in values)
 
 
-def _values(digits: Sequence[str], is_time: bool) -> Iterator[float]:
-    yield float("".join(digits))
-    for k in range(1, len(digits)):
-        yield float(f"{''.join(digits[:k])}.{''.join(digits[k:])}")
+def _values(digits: Sequence[str], is_decimal: bool, is_time: bool) -> Iterator[float]:
+    """Give what parts of a number may be, the likeliest first: `2,5` is rather no 25."""
+    points = [f"{''.join(digits[:k])}.{''.join(digits[k:])}" for k in range(1, len(digits))]
+    joined = "".join(digits)
+    yield from map(float, (*points, joined) if is_decimal else (joined, *points))
     if is_time and len(digits) > 1:
         yield 60 * float(digits[0]) + float(digits[1])
 

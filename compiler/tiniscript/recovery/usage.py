@@ -1067,8 +1067,10 @@ def _unaccented_name(gaps: Gaps) -> str:
 
 def _called_name(gaps: Gaps) -> str:
     usage = _usage_at(gaps)
+    word = usage.source[usage.found.span].upper()
     is_call = usage.behind_it.lstrip(" ").startswith("(")
-    return usage.source[usage.found.span].upper() if is_call else ""
+    is_taught = re.search(rf"(?i)\bDEF\s+{re.escape(word)}(?!\w)", usage.text)
+    return word if is_call and not is_taught else ""  # a DEF's calls go by its name
 
 
 def _lamp_here(gaps: Gaps) -> str:

@@ -52,6 +52,7 @@ TABLE = (
         ir.If, conditions.check_if),
     Row((codes.FROZEN_WHILE,), ir.Show, conditions.check_show),
     Row((codes.ASKED_ONCE,), PROGRAM, conditions.report_asked_once),
+    Row((codes.KNOWN_ANSWER, codes.EXACT, codes.NEW_THROW), PROGRAM, conditions.report_known),
     # what comes of a move
     Row((codes.LATE_CHECK, codes.IDLE_STOP), BODY, moves.report_late_conditions),
     Row((codes.UNSEEN_MOTORS,), BODY, moves.report_unseen_motors),

@@ -83,7 +83,24 @@ def check_times(loop: ir.Loop, around: Around, look: Look) -> None:
 
 
 def check_move(move: Move, around: Around, look: Look) -> None:
-    look.found += _check_way(move, look.kit) if move.unit else _check_time(move, look)
+    found = _check_way(move, look.kit) if move.unit else _check_time(move, look)
+    look.found += found or _check_named_time(move, look)
+
+
+def _check_named_time(move: Move, look: Look) -> list[Diagnostic]:
+    """`DEF SIDE(SIZE); F(SIZE, 60)`, called with 30: the values of its calls are looked at."""
+    time = move.time or ()
+    if move.unit or move.until is not None or [term.op for term in time] != ["VARIABLE"]:
+        return []
+    variable = time[0].value
+    if not any(variable in procedure.values for procedure in look.program.procedures):
+        return []
+    values = [known_value(each) for each in look.variables.set_to.get(variable, ())]
+    if not values or None in values or is_time(look.program.variables[variable]):
+        return []
+    longest, text = max(value or 0 for value in values), look.source[move.span]
+    found = _warn_of_long_time(move, longest, known_value(move.power), look.kit, text)
+    return [it._replace(values={**it.values, "fix": ""}) for it in found]
 
 
 def _check_time(move: Move, look: Look) -> list[Diagnostic]:

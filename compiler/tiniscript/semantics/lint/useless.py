@@ -199,10 +199,9 @@ def _is_empty(statement: ir.Statement) -> bool:
 
 def _leading_instructions(statements: Sequence[ir.Statement], source: Source) -> list[str]:
     """Return the instructions at the beginning of a row that are no blocks, as written."""
-    plain = takewhile(
-        lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While, ir.Break)), statements
-    )
-    return [source[each.span] for each in plain if not isinstance(each, ir.Read)]
+    plain = [*takewhile(lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While)), statements)]
+    end = next((k + 1 for k, each in enumerate(plain) if isinstance(each, ir.Break)), len(plain))
+    return [source[each.span] for each in plain[:end] if not isinstance(each, ir.Read)]
 
 
 # -- what nobody uses ------------------------------------------------------------------------

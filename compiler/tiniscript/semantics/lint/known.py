@@ -1,0 +1,179 @@
+"""Warns of what is the same whatever the robot meets, where something else was meant.
+
+A clock that is past a number, MIN and MAX the wrong way round, an ELSE that its questions leave no
+room, and a RANDOM that is thrown again. Only programs with such words load this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.source import Span
+from tiniscript.diagnostics import codes
+from tiniscript.semantics import ir
+from tiniscript.semantics.comparisons import TIME, Comparison, comparison, is_between
+from tiniscript.semantics.lint.look import Look
+from tiniscript.semantics.optimizer import known_value
+
+_LESS = ("LT", "LE")
+_NARROWS = ("MIN", "MAX")
+_SIDES = ({"LT", "GT"},)  # of one number: it alone is left for ELSE
+_THROW = ("NUMBER", "NUMBER", "RANDOM")
+
+Bounds = tuple[int, int]
+
+
+def report_known(look: Look) -> None:
+    """Report all of a program; of one with tasks nobody knows what is first."""
+    program = look.program
+    for statement in look.statements:
+        for value in ir.expressions(statement):
+            _report_narrowed(value, statement, look)
+        if isinstance(statement, ir.If):
+            _report_no_room(statement, look)
+            _report_thrown_arms(statement, look)
+    inner = (each for it in ir.all_statements(program) for each in ir.bodies(it))
+    for body in (program.body, *inner):
+        _report_thrown_again(body, look)
+    if not program.tasks:
+        _report_past_clock(program.body, look)
+
+
+# -- the clock ------------------------------------------------------------------------------------
+
+
+def _report_past_clock(body: ir.Body, look: Look) -> None:
+    """`WHILE(TIME < 10) … END_WHILE`, then `WHILE(TIME < 5)`: the clock does not begin again."""
+    past = 0
+    for statement in body:
+        if isinstance(statement, ir.While):
+            asked = comparison(statement.condition, look.kit)
+            if asked is None or asked.device is not TIME or asked.op not in _LESS:
+                continue
+            if past and _is_over(asked, past):
+                _report_over(statement, asked, past, look)
+            elif not ir.breaks_out(statement.body):
+                past = max(past, asked.number)
+        else:
+            past += _lasts(statement)
+
+
+def _lasts(statement: ir.Statement) -> int:
+    """Return how long a statement surely lasts, in thousandths of a second."""
+    if isinstance(statement, ir.Move) and (statement.unit or statement.until is not None):
+        return 0
+    time = statement.time if isinstance(statement, (ir.Beep, ir.Move)) else None
+    return max(0, known_value(time) or 0)
+
+
+def _report_over(loop: ir.While, asked: Comparison, past: int, look: Look) -> None:
+    later = asked._replace(number=past + asked.number)
+    head = Span(loop.span.start, loop.span.start + len("WHILE"))
+    values = {"already": as_text(past), "answer": "answer_no"}
+    values |= {"more": as_text(asked.number), "later": f"WHILE({later})"}
+    look.report(codes.KNOWN_ANSWER, head, **values)
+
+
+def _is_over(asked: Comparison, past: int) -> bool:
+    return past >= asked.number if asked.op == "LT" else past > asked.number
+
+
+# -- MIN and MAX ----------------------------------------------------------------------------------
+
+
+def _report_narrowed(value: ir.Expression, statement: ir.Statement | ir.Task, look: Look) -> None:
+    """`MAX(80, MIN(20, DISTANCE))` is 80 at each distance."""
+    for outer, inner, numbers in _nested(value):
+        if outer == inner:
+            continue
+        limit, other = numbers
+        if (other <= limit) if outer == "MAX" else (other >= limit):
+            found = f"{outer}({as_text(limit)}, {inner}({as_text(other)}, …))"
+            fix = f"{outer}({as_text(other)}, {inner}({as_text(limit)}, …))"
+            if limit != other:
+                look.report(
+                    codes.KNOWN_ANSWER, statement.span, found=found, number=as_text(limit),
+                    narrow=fix,
+                )  # fmt: skip
+
+
+def _nested(value: ir.Expression) -> Iterator[tuple[str, str, Bounds]]:
+    """Give each MIN or MAX of a number and of one with a number: both words, both numbers."""
+    stack: list[tuple[str, int | None]] = []  # what made a value, and the number that it has
+    for op, number in value:
+        if op == "NUMBER":
+            stack.append((op, number))
+        elif op in _NARROWS and len(stack) > 1:
+            right, left = stack.pop(), stack.pop()
+            numbers = [it[1] for it in (left, right) if it[0] == "NUMBER"]
+            inner = next((it for it in (left, right) if it[0] in _NARROWS), None)
+            if len(numbers) == 1 and numbers[0] is not None and inner and inner[1] is not None:
+                yield op, inner[0], (numbers[0], inner[1])
+            stack.append((op, numbers[0] if len(numbers) == 1 else None))
+        else:
+            if op not in ("SENSOR", "VARIABLE", "TIME", "YES_NO"):
+                return  # what else is calculated is none of these
+            stack.append((op, None))
+
+
+# -- ELSE -----------------------------------------------------------------------------------------
+
+
+def _report_no_room(statement: ir.If, look: Look) -> None:
+    """`IF(D > 50) … ELSEIF(D < 50) … ELSE`: D is hardly ever 50."""
+    for one, other in pairwise(statement.arms) if statement.has_else else ():
+        first, second = one.condition, other.condition
+        is_same = first[:-1] == second[:-1] and {first[-1].op, second[-1].op} in _SIDES
+        if is_same and first[-2].op == "NUMBER" and _is_fine(first[:-2], first[-2].value, look):
+            text = look.condition(other.span, "ELSEIF")
+            name = text.partition("<")[0].partition(">")[0].strip()
+            if name:
+                values = {"value": name, "number": as_text(first[-2].value)}
+                look.report(codes.EXACT, other.span, **values)
+
+
+def _is_fine(value: ir.Expression, number: int, look: Look) -> bool:
+    """Whether a value comes from a sensor that has very many."""
+    for op, at in value:
+        if op == "SENSOR" and is_between(look.kit.readings[at], max(number, 1)):
+            return True
+        if op == "VARIABLE":
+            its = look.variables.set_to.get(at, ())
+            if any(term.op == "SENSOR" and is_between(look.kit.readings[term.value], 1)
+                   for each in its for term in each):  # fmt: skip
+                return True
+    return False
+
+
+# -- RANDOM ---------------------------------------------------------------------------------------
+
+
+def _report_thrown_arms(statement: ir.If, look: Look) -> None:
+    """`IF(RANDOM(1, 3) = 1) … ELSEIF(RANDOM(1, 3) = 2)`: it may be that none is TRUE."""
+    for one, other in pairwise(statement.arms):
+        thrown = _thrown(one.condition)
+        if thrown and thrown == _thrown(other.condition) and other.condition[-1].op == "EQ":
+            _report_throw(thrown, other.span, look)
+            return
+
+
+def _report_thrown_again(body: ir.Body, look: Look) -> None:
+    """`SHOW(RANDOM(1, 6))`, then `LOOP(RANDOM(1, 6))`: no number is shown that counts."""
+    for one, other in pairwise(body):
+        thrown = one.value if isinstance(one, ir.Show) and len(one.value) == len(_THROW) else ()
+        if thrown and _thrown(thrown) and isinstance(other, ir.Loop) and other.times == thrown:
+            head = Span(other.span.start, other.span.start + len("LOOP"))
+            _report_throw(thrown, head, look)
+
+
+def _report_throw(thrown: ir.Expression, span: Span, look: Look) -> None:
+    low, high = (as_text(term.value) for term in thrown[:2])
+    look.report(codes.NEW_THROW, span, random=f"RANDOM({low}, {high})")
+
+
+def _thrown(value: ir.Expression) -> ir.Expression:
+    """Return the throw that a value begins with."""
+    is_throw = tuple(term.op for term in value[: len(_THROW)]) == _THROW
+    return value[: len(_THROW)] if is_throw else ()
