@@ -59,3 +59,23 @@ def test_one_that_is_not_used_says_how_often(text: str, name: str) -> None:
 def test_what_counts_otherwise_is_left(text: str) -> None:
     made = [each.values.get("fix", "") for each in check(f"SI|{text}\nSHOW(I)\nEND_LOOP")]
     assert not any("+ 1" in each for each in made)
+
+
+STEPS = {
+    "FOR I = {a} TO {b} STEP {s}": "NEXT I", "para I de {a} hasta {b} paso {s}": "fin",
+    "for i in range({a}, {c}, {s}):": "END_LOOP",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("head", "end"), STEPS.items())
+@pytest.mark.parametrize(
+    ("first", "last", "step"), [(10, 100, 10), (0, 9, 2), (1, 5, 1), (5, 6, 3)]
+)
+def test_a_counter_that_goes_by_steps_shows_the_same_numbers(
+    head: str, end: str, first: int, last: int, step: int
+) -> None:
+    wrong = f"{head.format(a=first, b=last, c=last + 1, s=step)}\nSHOW(I)\n{end}"
+    (told, *_) = check(wrong)
+    numbers = range(first, last + 1, step)
+    assert told.values["fix"] == f"I = {first - step};LOOP({len(numbers)});I = I + {step}", wrong
+    assert "leaves out" not in " ".join(map(str, message(told, Source(wrong), "en")))

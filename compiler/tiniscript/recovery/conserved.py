@@ -148,7 +148,7 @@ def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[D
     """
     sure = [it for it in diagnostics if it.repair and it.repair.is_sure and it.repair.edits]
     lost = _losses_of_sure_repairs(sure, text, kit)
-    shown = [it for it in diagnostics if id(it) not in lost and not it.values.get("lost")
+    shown = [it for it in diagnostics if id(it) not in lost and "lost" not in it.values
              and not (it.repair and it.repair.is_sure) and edits_of(it)]  # fmt: skip
     gone = zip(shown, _losses(shown, text, kit), strict=True)
     left_out = {

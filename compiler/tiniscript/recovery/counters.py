@@ -25,7 +25,7 @@ _IN = ("IN", "EN", "EM")
 
 
 class _Counter(NamedTuple):
-    """A header: tokens from `start` up to `end` count `times` with `name`, from `first` on.
+    """A header: tokens `start` up to `end` count `times` with `name`, from `first` on, by `step`.
 
     The words before `begun` say that it is one: `for each`.
     """
@@ -36,6 +36,7 @@ class _Counter(NamedTuple):
     name: str
     first: int
     times: int
+    step: int
 
 
 def counters(source: Source) -> list[Diagnostic]:
@@ -76,7 +77,7 @@ def counters(source: Source) -> list[Diagnostic]:
 
 def _counter_diagnostic(span: Span, found: str, right: str, fix: str) -> Diagnostic:
     code: Code = codes.OTHER_LANGUAGE
-    values = {"found": found, "right": right, "fix": fix, "usage": WORDS[right].usage}
+    values = {"found": found, "right": right, "fix": fix, "usage": WORDS[right].usage, "lost": ""}
     return Diagnostic(code, span, values, span, Repair((Edit(span, fix),), False))
 
 
@@ -85,9 +86,9 @@ def _spans_text(source: Source, spans: Sequence[Span]) -> str:
 
 
 def _loop(counter: _Counter, is_used: bool) -> str:
-    name, before = counter.name, counter.first - 1
+    name, step, before = counter.name, counter.step, counter.first - counter.step
     loop = f"LOOP({counter.times})"
-    return f"{name} = {before};{loop};{name} = {name} + 1" if is_used else loop
+    return f"{name} = {before};{loop};{name} = {name} + {step}" if is_used else loop
 
 
 def _counter_spans(row: Sequence[Lexeme], start: int) -> list[Span]:
@@ -121,10 +122,12 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
     if name in WORDS or not name.isidentifier() or lexicon_concept(name):
         return None
     rest.k += 1
+    step: int | None = 1
     if rest.text() in _IN and rest.text(1) == "RANGE" and rest.text(2) == "(":
         rest.k += 3
         numbers = [rest.number()]
         numbers += [rest.number()] if rest.take(",") else []
+        step = rest.number() if rest.take(",") else step
         first, behind = (0, *numbers)[-2:]
         is_whole = rest.take(")")
     elif rest.take("=", ":=") or rest.says("from", "to"):
@@ -135,19 +138,26 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
             is_closed = rest.text() == "<="
             is_whole &= rest.take("<", "<=")
             behind = _plus(rest.number(), int(is_closed))
-            is_whole &= rest.take(";") and rest.take(name) and rest.take("++")
+            is_whole &= rest.take(";") and rest.take(name)
+            is_more = rest.text() == "+" and rest.text(1) == "="
+            rest.k += 2 * is_more
+            step = rest.number() if is_more or rest.take("+=") else step
+            is_whole &= is_more or step != 1 or rest.take("++")
         else:
             is_whole = rest.says("to", "until")
             while rest.says("to", "until"):
                 rest.k += 1
             behind = _plus(rest.number(), 1)
+            if lexicon_meaning(rest.text(), "unit")[:1] == ("steps",):
+                rest.k += 1
+                step = rest.number()
     else:
         return None
     is_whole = is_whole and (not is_open or rest.take(")"))
     rest.k += rest.text() == ":" or rest.says("do")
-    if not is_whole or first is None or behind is None or behind <= first:
+    if not is_whole or first is None or behind is None or behind <= first or not step:
         return None
-    return _Counter(start, begun, rest.k, name, first, behind - first)
+    return _Counter(start, begun, rest.k, name, first, -((first - behind) // step), step)
 
 
 def _plus(number: int | None, more: int) -> int | None:

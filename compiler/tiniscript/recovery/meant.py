@@ -158,7 +158,8 @@ def _moved_lines_diagnostic(
     result = _with_units(text, candidate.text)
     lost = [item for item in difference(text, result, kit).lost
             if (unit := _UNIT.search(item)) and _unit_word(unit[0])]  # fmt: skip
-    values = {**diagnostic.values, "whole": in_one_line(result), "lost": ", ".join(lost)}
+    values = {**diagnostic.values, "whole": in_one_line(result)}
+    values |= {"lost": ", ".join(lost)} if lost else {}
     if diagnostic.code is codes.WRONG_END:
         values |= {"swapped": diagnostic.values["right"], "apart": ""}
     elif (move := candidate.move) is not None:

@@ -310,6 +310,8 @@ def right_of(slip: Slip) -> str:
     now = shown if now == SOME_END and shown in ENDED else now  # of a block, whose end is known
     if slip.code is codes.OTHER_LANGUAGE:
         now = _word_in(now)
+    if slip.code is codes.OTHER_SIGN and now.split()[-1:] in (["AND"], ["OR"]):
+        now = now.split()[-1]  # `A O B > 5`: what A lacks before it is no part of the sign
     return f"{now} )" if now.endswith("(") else now
 
 
