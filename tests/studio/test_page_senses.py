@@ -136,15 +136,21 @@ def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRob
     assert set(page.locator("#link_shown").inner_text().split()) == {"7"}
 
 
+@pytest.mark.parametrize("runs_before", [False, True])
 @pytest.mark.parametrize("way", ["waits for it", "is sent only"])
 def test_a_program_that_waits_for_the_robots_button_gets_it(
-    page: Page, robot: PtyRobot, way: str
+    page: Page, robot: PtyRobot, way: str, runs_before: bool
 ) -> None:
-    """The first press starts it, though the sensors were read before."""
+    """The first press starts it, though the sensors were read before, or another one ran, of which
+    it tells the end."""
     watch(page)
+    if runs_before:
+        write(page, FOREVER_SHOW)
+        upload_until_it_runs(page)
+        does(page, "own")
     write(page, "SB|LOOP(FOREVER);F(9, 80);END_LOOP" if way == "waits for it" else "F(9, 80)")
     page.click("#link_upload" if way == "waits for it" else "#link_send")
-    said(page, "The robot has it.")
+    said(page, re.compile("The robot has it.|Done."))
     rests(page)
     page.wait_for_timeout(1500)  # in which nothing begins by itself
     robot.push()

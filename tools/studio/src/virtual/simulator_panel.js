@@ -173,6 +173,9 @@ export class SimulatorPanel {
       this.#arena.eraseWays();
       this.#show();
     });
+    pageState.ownRobot.subscribe(() => {
+      if (pageState.language.value) this.#show();
+    });
     new ResizeObserver(() => this.#showReadings()).observe(element('plot_place', HTMLElement));
     new ResizeObserver(() => {
       this.#arena.resize();
@@ -497,6 +500,13 @@ export class SimulatorPanel {
     return run;
   }
 
+  /** Its task is solved: it is glad, and that is heard. */
+  cheer() {
+    this.#arena.cheer();
+    this.#sounds.cheer();
+    this.#arena.draw(this.#state);
+  }
+
   stop() {
     this.#starts += 1;
     if (this.#isWaiting) {
@@ -543,7 +553,7 @@ export class SimulatorPanel {
     this.#pause.disabled = !this.#isDriving;
     say(this.#pause, text(phase === 'paused' ? 'go_on' : 'pause'));
     hide(this.#push, !state?.is_waiting || phase !== 'running');
-    say(element('doing', HTMLElement), this.#note || this.#drawing.said || this.#doing());
+    say(element('doing', HTMLElement), this.#note || this.#drawing.said || [pageState.ownRobot.value.name, this.#doing()].filter(Boolean).join(': '));
     const told = trace.slice(-SHOWN).join('\n');
     if (told !== this.#told) element('trace', HTMLElement).textContent = this.#told = told;
     this.#showScore(state?.score ?? null);
