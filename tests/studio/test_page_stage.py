@@ -166,6 +166,16 @@ def test_each_start_picture_leads_to_its_world(page: Page) -> None:
         in_phase(page, "ended")
 
 
+def test_a_city_has_lawns_and_streets_with_a_line_in_the_middle(page: Page) -> None:
+    lawn, street = "207,227,194", "223,226,230"
+    for world in ("delivery", "free"):
+        page.select_option("#world", world)
+        in_phase(page, "off")
+        found = set(page.evaluate(COLORS))
+        assert ({lawn, street} <= found) == (world == "delivery")
+        assert (lawn in found or street in found) == (world == "delivery")
+
+
 @pytest.mark.parametrize("size", [(1024, 600), (390, 844)], ids=str)
 def test_cameras_and_the_whole_page_are_there_on_small_screens(
     page: Page, size: tuple[int, int]
