@@ -409,6 +409,18 @@ def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
     ):  # fmt: skip
         with pytest.raises(BadRequest):
             room.here(eve, **wrong)
+    own = {"name": "Pip\u202e" * 20, "colour": 3}
+    room.here(eve, own_robot=own)
+    found = room.teaches("class")["pupils"][0]["own_robot"]
+    assert found["colour"] == 3 and found["name"].isprintable() and len(found["name"]) <= 17
+    wrong_robots: tuple[object, ...] = (
+        5, [], {}, {"name": 5, "colour": 1}, {"name": "x", "colour": -1},
+        {"name": "x", "colour": 10**9}, {"name": "x", "colour": "red"}, {"name": "x"},
+    )  # fmt: skip
+    for wrong_robot in wrong_robots:
+        with pytest.raises(BadRequest):
+            room.here(eve, own_robot=wrong_robot)
+    assert room.teaches("class")["pupils"][0]["own_robot"] == found
     assert room.here(eve, is_right="x", hand="x")["hand"]
     assert not room.here(eve, hand=False)["hand"]
     room.here(eve, hand=True)

@@ -84,6 +84,25 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
     hears(page, lambda: page.evaluate(AREA) == small, "as before")
 
 
+@pytest.mark.parametrize("language", ["en", "es", "pt"])
+def test_what_chooses_blocks_has_its_arrow_in_one_row_beside_a_large_robot(
+    page: Page, language: str
+) -> None:
+    page.set_viewport_size({"width": 1280, "height": 768})
+    speak(page, language)
+    page.click("#view_blocks")
+    page.click("#run")
+    page.locator("html[data-big]").wait_for(state="attached")
+    for level in ("few", "usual", "all"):
+        page.select_option("#level", level)
+        look = "getComputedStyle(document.querySelector('#level'), '::picker-icon').display"
+        assert page.evaluate(look) != "none"
+        rows = "new Set([...views.children].map((each) => each.getBoundingClientRect().top)).size"
+        assert page.evaluate(rows) == 1, (language, level)
+    page.click("#stop")
+    page.click("#view_text")
+
+
 def test_full_screen_comes_with_a_key_and_goes_with_it(page: Page) -> None:
     """And with the button; whoever types an F types it. STOP stays in reach, Escape leaves it."""
     write(page, FOREVER)
@@ -145,6 +164,16 @@ def test_each_start_picture_leads_to_its_world(page: Page) -> None:
             assert "255,253,246" not in set(page.evaluate(COLORS))
         page.click("#stop")
         in_phase(page, "ended")
+
+
+def test_a_city_has_lawns_and_streets_with_a_line_in_the_middle(page: Page) -> None:
+    lawn, street = "207,227,194", "223,226,230"
+    for world in ("delivery", "free"):
+        page.select_option("#world", world)
+        in_phase(page, "off")
+        found = set(page.evaluate(COLORS))
+        assert ({lawn, street} <= found) == (world == "delivery")
+        assert (lawn in found or street in found) == (world == "delivery")
 
 
 @pytest.mark.parametrize("size", [(1024, 600), (390, 844)], ids=str)

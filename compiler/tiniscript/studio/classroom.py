@@ -20,7 +20,9 @@ from dataclasses import dataclass, field
 from itertools import count
 from threading import RLock
 from time import monotonic
+from typing import NamedTuple
 
+from tiniscript.base.source import printable
 from tiniscript.lessons import catalogue
 from tiniscript.link.port_names import canonical_port
 from tiniscript.studio.class_keeping import (
@@ -38,6 +40,7 @@ from tiniscript.studio.names import are_alike, free_name, plain_name
 from tiniscript.studio.robot_link import BadRequest, Json, robot_of, whole_number
 from tiniscript.studio.serving import REQUEST_BYTES
 
+OWN_NAME_CHARACTERS, MOST_COLOUR = 16, 31  # of the robot that a pupil calls their own
 MOST_NAMES = 1000  # who has not been seen for longest is forgotten
 
 
@@ -68,6 +71,24 @@ class Rate:
         return min(self._burst, left + (now_s - when_s) * self._per_s)
 
 
+class OwnRobot(NamedTuple):
+    """What a pupil has made of the virtual robot: `colour` is a number of the page's colours."""
+
+    name: str = ""
+    colour: int = 0
+
+    @classmethod
+    def of(cls, found: object) -> OwnRobot:
+        """Return what a page says. Raises BadRequest."""
+        if not isinstance(found, dict) or not isinstance(found.get("name"), str):
+            raise BadRequest
+        name = printable(found["name"][:OWN_NAME_CHARACTERS])
+        return cls(name, whole_number(found, "colour", 0, MOST_COLOUR))
+
+
+NO_OWN_ROBOT = OwnRobot()
+
+
 @dataclass(eq=False)
 class Pupil:
     """`name` is another than the one that was `written` if somebody here has that.
@@ -84,6 +105,7 @@ class Pupil:
     work: Work = NOTHING
     version: int = 0  # of the work
     is_right: bool = True  # a program without mistakes
+    own_robot: OwnRobot = NO_OWN_ROBOT
     waits: int | None = None
     hand: int | None = None
     knows_end: bool = False
@@ -352,6 +374,8 @@ class Classroom:
             pupil.version += 1
         if isinstance(request.get("is_right"), bool):
             pupil.is_right = request["is_right"]
+        if request.get("own_robot") is not None:
+            pupil.own_robot = OwnRobot.of(request["own_robot"])
         self._hear_taken(pupil, request.get("took"))
 
     def _hear_taken(self, pupil: Pupil, took: object) -> None:
@@ -664,6 +688,7 @@ class Classroom:
                     "left_s": self._remaining_s(turn) if turn else 0,
                     "version": pupil.version,
                     "is_right": pupil.is_right,
+                    "own_robot": pupil.own_robot._asdict(),
                     "hand": pupil.hand or 0,
                     "lessons": pupil.work.lessons,
                 }

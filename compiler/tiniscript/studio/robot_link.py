@@ -41,7 +41,9 @@ from tiniscript.link.messages import (
     REMOTE_KEYS,
     RESUME_GO,
     RESUME_STEP,
+    STATE_IDLE,
     STATE_RUNNING,
+    STATE_STOPPED,
     TASK_STATES,
 )
 from tiniscript.link.names import cause_name, fault_name, saved_name
@@ -281,6 +283,7 @@ def about(robot: DeviceInfo) -> Json:
         "owner": ownership_of(robot),
         "room": robot.room,
         "is_running": robot.values.state == STATE_RUNNING,
+        "is_idle": robot.values.state in (STATE_IDLE, STATE_STOPPED),
         "has_remote": has_remote(robot),
         "has_breakpoints": bool(robot.values.features & BREAKPOINTS),
     }

@@ -13,6 +13,7 @@ import { Programs } from './programs/programs.js';
 import { Python } from './python.js';
 import { pictured, robotPicture } from './page/pictures.js';
 import { pageState } from './page/page_state.js';
+import { beginOwnRobot } from './page/own_robot.js';
 import { bringsProgram } from './programs/links.js';
 import { called, currentLanguage, known, languageOf, LANGUAGES, setLanguage, text } from './page/texts.js';
 import { isRun } from './virtual/runs_window.js';
@@ -26,6 +27,7 @@ import { chooseSide } from './page/sides.js';
 import { beginTwice } from './page/twice.js';
 import { FIRST_PROGRAM } from './start/beginnings.js';
 import { beginScreens, isStart, show as showScreen } from './start/screens.js';
+import { OwnWindow } from './start/own_window.js';
 import { Start } from './start/start.js';
 import { beginTheme } from './page/theme.js';
 import { Views } from './writing/views.js';
@@ -45,6 +47,7 @@ const note = element('note', HTMLElement);
 const list = element('messages', HTMLElement);
 
 beginTheme();
+beginOwnRobot();
 beginTwice();
 const kept = keptWork();
 const work = kept ?? {
@@ -79,6 +82,7 @@ pageState.programText.subscribe((program) => {
   remember();
 });
 pageState.areWordsShown.set(work.words);
+pageState.ownRobot.subscribe(showRobots);
 showRobots();
 pageState.robotName.set(work.robot);
 
@@ -130,6 +134,7 @@ const checking = new Checking(python, (why) => {
 const phone = new Phone(() => panel.run());
 beginScreens(whyOutside !== '' || bringsProgram(location.hash), !('class' in document.documentElement.dataset));
 if (kept) programs.keep();
+new OwnWindow();
 new Start({
   put: (program) => programs.replace(program),
   run: (world) => {

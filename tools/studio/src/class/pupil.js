@@ -11,6 +11,7 @@ import { shown } from '../robot/plain_text.js';
 import { Failed } from '../robot/transport.js';
 import { sign } from './signs.js';
 import { clock } from './wall.js';
+import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { CLASS, isRobot } from '../page/words.js';
 import { forgetAll, keepAt, kept } from '../page/kept.js';
@@ -47,6 +48,8 @@ export class Pupil {
   #quit = button('class_quit', () => this.#want(false));
   /** In the own turn, where the page has not come to its robot by itself. */
   #connect = button('link_connect', () => this.#panel.byHost());
+  /** There is no first screen in a class. */
+  #own = button('own_robot', () => element('start_own', HTMLButtonElement).click());
   #hands = button('', () => {
     this.#stay.hand = !this.#isUp;
     this.#look();
@@ -79,7 +82,7 @@ export class Pupil {
       event.preventDefault();
       this.#enter();
     });
-    this.#box.append(this.#join, this.#said, made('p', '', this.#ask, this.#quit, this.#connect));
+    this.#box.append(this.#join, this.#said, made('p', '', this.#ask, this.#quit, this.#connect, this.#own));
     this.#box.hidden = false;
     const token = kept(PLACE, 'sessionStorage');
     if (token) this.#begin(token);
@@ -172,6 +175,7 @@ export class Pupil {
       text: JSON.stringify(this.#work.text.slice(0, CLASS.text_characters)),
       robot: JSON.stringify(this.#work.robot),
       lessons: JSON.stringify([...lessonsDone()].slice(0, CLASS.most_lessons)),
+      own_robot: JSON.stringify(pageState.ownRobot.value),
       ...(state === 'checked' && { is_right: JSON.stringify(Boolean(image) || !this.#work.text.trim()) }),
     };
   }

@@ -16,7 +16,7 @@ import { pageState } from '../page/page_state.js';
 import { known, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
 
-/** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[]}} PupilRow */
+/** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[], own_robot: import('../page/own_robot.js').OwnRobot}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
 /** @typedef {{key: string, name: string, lessons: string[], given: number, alike: number[]}} KeptRow `given` and `alike` are pupils: whose page is to have it, who may be who made it */
 /** @typedef {{code: string, turn_s: number, places: number, over: string, goes_on: boolean, lessons: number, kept: KeptRow[], pupils: PupilRow[], robots: RobotRow[]}} State */

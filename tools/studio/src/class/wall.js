@@ -3,7 +3,8 @@
 // Names and robots are put there as text, never as markup.
 
 import { say } from '../page/elements.js';
-import { button, made } from '../page/made.js';
+import { button, drawn, made } from '../page/made.js';
+import { COLOURS } from '../page/own_robot.js';
 import { sign } from './signs.js';
 import { shown } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
@@ -17,7 +18,7 @@ import { text } from '../page/texts.js';
  * @property {PupilRow | null} pupil null of who is not here
  */
 /** @typedef {{see: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void}} Told */
-/** @typedef {{item: HTMLElement, see: HTMLButtonElement, name: HTMLElement, hand: HTMLButtonElement, out: HTMLButtonElement, picture: HTMLImageElement, empty: HTMLElement, badge: HTMLElement, pips: HTMLElement, said: HTMLElement}} Tile */
+/** @typedef {{item: HTMLElement, see: HTMLButtonElement, own: SVGElement, name: HTMLElement, hand: HTMLButtonElement, out: HTMLButtonElement, picture: HTMLImageElement, empty: HTMLElement, badge: HTMLElement, pips: HTMLElement, said: HTMLElement}} Tile */
 
 const SILENT_S = 5;
 const WIDE = 1.75; // of a tile's picture: what suits most programs
@@ -85,8 +86,9 @@ export class Wall {
     picture.alt = '';
     picture.hidden = true;
     empty.hidden = true; // until its program is known
-    const item = made('li', '', name, made('div', '', picture, empty), made('p', '', pips, said), badge, see, hand, out);
-    return { item, see, name, hand, out, picture, empty, badge, pips, said };
+    const own = drawn('svg', { class: 'own_robot', viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, drawn('use', { href: '#drawn_robot' }));
+    const item = made('li', '', own, name, made('div', '', picture, empty), made('p', '', pips, said), badge, see, hand, out);
+    return { item, see, own, name, hand, out, picture, empty, badge, pips, said };
   }
 
   /** @param {Tile} tile @param {Seen} seen @param {number} lessons */
@@ -95,7 +97,11 @@ export class Wall {
     const state = !pupil ? 'gone' : pupil.silent_s > SILENT_S ? 'away' : pupil.is_right ? 'right' : 'wrong';
     const drives = pupil?.robot ? shown(pupil.robot) : '';
     if (tile.item.dataset['state'] !== state) tile.item.dataset['state'] = state;
-    say(tile.name, plain);
+    const { name: own_name = '', colour = 0 } = pupil?.own_robot ?? {};
+    const [body, edge] = COLOURS[colour] ?? COLOURS[0];
+    tile.own.style.setProperty('--robot', body);
+    tile.own.style.setProperty('--robot-edge', edge);
+    say(tile.name, [plain, shown(own_name)].filter(Boolean).join(' · '));
     say(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
     tile.hand.hidden = !pupil?.hand;
     const badge = drives ? `${drives} ${clock(pupil?.left_s ?? 0)}` : pupil?.place ? text('class_place_short', { place: pupil.place }) : '';

@@ -9,7 +9,8 @@ import { bugSaid } from '../page/faults.js';
 import { labelOfBlock, labelOfWord } from '../blocks/said.js';
 import { Pictures } from '../blocks/drawn.js';
 import { elementOf, filled } from './page.js';
-import { keepDone, lessonsDone } from './progress.js';
+import { celebrate } from './celebration.js';
+import { keepDone, keepStars, lessonsDone, starsInAll } from './progress.js';
 import { offer, pictured, worldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage, text } from '../page/texts.js';
@@ -308,7 +309,9 @@ export class Lessons {
   #tell({ verdict, seed, worlds, said }) {
     const hadFocus = document.activeElement === this.#end;
     const lesson = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
-    const isKept = verdict !== 'passed' || keepDone(lesson.name);
+    const stars = verdict === 'passed' ? worlds : verdict === 'failed' ? Math.max(0, seed - 1) : 0;
+    const areKept = keepStars(lesson.name, stars); // first: one that is done has a star
+    const isKept = (verdict !== 'passed' || keepDone(lesson.name)) && areKept;
     this.#forget();
     this.#hasPassed = verdict === 'passed';
     if (this.#hasPassed) this.#list();
@@ -316,15 +319,19 @@ export class Lessons {
     this.#said.dataset['verdict'] = verdict;
     const [alone, inWorlds] = SAID[verdict];
     const isInWorlds = worlds > 1 && (seed > 0 || verdict === 'passed');
-    this.#said.textContent = text(isInWorlds ? inWorlds : alone, { number: this.#number, worlds, seed });
+    const found = text(isInWorlds ? inWorlds : alone, { number: this.#number, worlds, seed });
+    this.#said.textContent = this.#hasPassed ? `${found} ${text('lesson_total', { count: starsInAll() })}` : found;
     if (verdict !== 'mistakes') { // one for each world where it did its task
-      const stars = verdict === 'passed' ? worlds : Math.max(0, seed - 1);
       element('lesson_stars', HTMLElement).textContent = '★'.repeat(stars) + '☆'.repeat(worlds - stars);
     }
     this.#findings.replaceChildren(...said.map((sentence) => made('li', '', sentence)));
     this.#hint.open = false;
     element('lesson_page', HTMLElement).scrollTop = 0;
     if (!isKept) pageState.note.set(text('not_kept'));
+    if (this.#hasPassed) {
+      this.#page.driving.cheer();
+      celebrate();
+    }
     if (hadFocus) (this.#next.hidden ? this.#check : this.#next).focus();
   }
 }

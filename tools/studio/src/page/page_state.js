@@ -42,6 +42,7 @@ export const pageState = {
   screen: new Observable(/** @type {'' | 'start' | 'program'} */ ('')), // that is seen
   side: new Observable(''), // that is seen beside the program, by its button
   language: new Observable(''),
+  ownRobot: new Observable({ name: '', colour: 0 }), // what somebody has made of the virtual robot
   areWordsShown: new Observable(false), // of the text, on blocks and at readings
   robotName: new Observable(''),
   view: new Observable(/** @type {'blocks' | 'text'} */ ('blocks')), // of the program

@@ -1,6 +1,8 @@
 // Small pictures of worlds and robots, for who chooses one.
 
 import { drawn, made } from './made.js';
+import { COLOURS } from './own_robot.js';
+import { pageState } from './page_state.js';
 import { drawRobot } from '../virtual/robot_drawing.js';
 import { cornersOf } from '../world/parts.js';
 
@@ -32,7 +34,7 @@ export function robotPicture(robot) {
   const pen = picture.getContext('2d');
   const scale = WIDE / ROBOT_CM;
   pen?.setTransform(scale, 0, 0, -scale, WIDE / 2 - 2 * scale, HIGH / 2);
-  if (pen) drawRobot(pen, robot, null, { rolled: [0, 0], isBeeping: false });
+  if (pen) drawRobot(pen, robot, null, { rolled: [0, 0], isBeeping: false, colours: COLOURS[pageState.ownRobot.value.colour] ?? COLOURS[0] });
   return picture;
 }
 

@@ -6,6 +6,7 @@ import { faultSaid } from '../page/faults.js';
 import { bytesOf, whenChosen } from '../page/files.js';
 import { chosenDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
 import { Debugging } from './debugging.js';
+import { Doing } from './doing.js';
 import { DirectRobot } from './direct.js';
 import { hasHost, hostPorts, HostRobot, isPupil, isTeacher } from './host.js';
 import { Flashing } from './flashing.js';
@@ -16,6 +17,7 @@ import { stopAll } from './stops.js';
 import { Stopping } from './stopping.js';
 import { Speech } from './speech.js';
 import { Failed } from './transport.js';
+import { Watching } from './watching.js';
 import { keepAt, kept } from '../page/kept.js';
 import { drawnPicture, offer, pictured } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
@@ -41,6 +43,7 @@ import { nameOfShow, showAt } from '../writing/shows.js';
 // this browser uses them; the page gives them to no one but the robot's session.
 const KEYS = 'tiniscript.link.keys';
 const KNOWN = 20;
+const PORT_MS = 2500; // after which it is said that nothing answers at a port yet
 const WORD_MS = 2000; // after which it is said that the robot has not answered yet
 
 export class RobotPanel {
@@ -63,18 +66,30 @@ export class RobotPanel {
   #speech = new Speech();
   #stopping = new Stopping(this.#speech);
   #debugging;
+  #doing = new Doing();
+  #watching;
+  #line = ''; // the checksum of the newest line
   #list = element('link_port', HTMLSelectElement);
-  #line = element('link_line', HTMLInputElement);
+  #typed = element('link_line', HTMLInputElement);
 
   /** @param {Page} page */
   constructor(page) {
     this.#page = page;
     this.#debugging = new Debugging({
-      ask: (request, done, isQuiet) => this.#ask(request, done, isQuiet),
+      ask: (request, done, isQuiet) => {
+        if (request['do'] === 'resume') this.#doing.goesOn();
+        return this.#ask(request, done, isQuiet);
+      },
       uploadPaused: () => this.#upload(true, true),
       say: (key, values) => this.#speech.say(key, values),
       place: page.place,
       recorder: page.recorder,
+    });
+    this.#watching = new Watching({
+      python: page.python,
+      ask: (request, isQuiet) => this.#askNow(request, () => {}, isQuiet),
+      say: (key) => this.#speech.say(key),
+      tell: (isOn) => this.#doing.watch(isOn),
     });
     for (const [id, act] of /** @type {[string, () => void][]} */ ([
       ['link_look', () => this.#look()],
@@ -94,7 +109,7 @@ export class RobotPanel {
     ])) element(id, HTMLButtonElement).addEventListener('click', act);
     element('link_live', HTMLFormElement).addEventListener('submit', (event) => {
       event.preventDefault();
-      this.#live(this.#line.value);
+      this.#live(this.#typed.value);
     });
     whenChosen('keys_file', (file) => this.#import(file));
     new Flashing({
@@ -145,6 +160,7 @@ export class RobotPanel {
   #stop(confirmed = '') {
     if (!this.#way) return;
     this.#debugging.stop();
+    this.#watching.stop();
     this.#way.stop();
     this.#stopping.begin(confirmed);
   }
@@ -221,10 +237,11 @@ export class RobotPanel {
     this.#isBusy = true;
     this.#speech.say('say_connecting');
     this.#show();
+    const word = setTimeout(() => this.#speech.say('say_nothing_yet'), PORT_MS);
     /** @type {Transport | null} */
     let way = null;
     const heard = {
-      event: (/** @type {RobotEvent} */ event) => (this.#page.recorder.onEvent(event), this.#page.place.onEvent(event), this.#onEvent(event), this.#debugging.onEvent(event)),
+      event: (/** @type {RobotEvent} */ event) => this.#hear(event),
       over: (/** @type {Failed} */ why) => {
         if (this.#way && this.#way === way) this.#end(why);
       },
@@ -234,11 +251,13 @@ export class RobotPanel {
       way = this.#way = opened.way; // STOP reaches it from now on
       this.#show();
       const about = await opened.met;
+      clearTimeout(word);
       this.#about = about;
       this.#begin(about);
     } catch (why) {
       if (this.#way === way) this.#end(why instanceof Failed ? why : new Failed('bug', String(why))); // else it was told
     } finally {
+      clearTimeout(word);
       this.#isBusy = false;
       this.#show();
     }
@@ -248,12 +267,14 @@ export class RobotPanel {
   #begin(about) {
     this.#speech.clear();
     this.#debugging.meet(about);
+    this.#doing.meet(about);
     const isOther = about.robot !== null && about.robot !== pageState.robotName.value;
     if (about.robot !== null && isOther) pageState.robotName.set(about.robot);
     if (about.owner === 'other') this.#speech.say('say_owned', { name: this.#name });
     else if (isOther) this.#speech.say('say_other_kit', { name: this.#name, robot: String(about.robot) });
     else this.#speech.say('say_connected', { name: this.#name });
     element('link_rename_to', HTMLInputElement).value = shown(about.name);
+    this.#watching.meet(about);
     this.#way?.ask({ do: 'trim' }).then(({ trim }) => trim && showTrim(trim)).catch(() => {});
   }
 
@@ -266,6 +287,8 @@ export class RobotPanel {
     this.#page.recorder.end('LOST');
     this.#page.place.end();
     this.#debugging.meet(null);
+    this.#doing.meet(null);
+    this.#watching.meet(null);
     const unconfirmed = this.#stopping.end();
     this.#speech.fail(why, unconfirmed);
     this.#show();
@@ -280,6 +303,20 @@ export class RobotPanel {
    * @returns {Promise<Answer | null>} null if it failed
    */
   async #ask(request, done = () => {}, isQuiet = false) {
+    const makesWay = this.#about && this.#watching.before(request);
+    if (makesWay) await makesWay;
+    const answer = await this.#askNow(request, done, isQuiet);
+    this.#watching.after(request);
+    return answer;
+  }
+
+  /**
+   * @param {Record<string, unknown>} request
+   * @param {(answer: Answer) => void} done
+   * @param {boolean} isQuiet
+   * @returns {Promise<Answer | null>}
+   */
+  async #askNow(request, done, isQuiet) {
     if (!this.#way || !this.#about) return null;
     const isSaid = isQuiet || request['do'] === 'upload' || request['do'] === 'claim'; // what it waits for
     const word = isSaid ? 0 : setTimeout(() => this.#speech.say('say_waits'), WORD_MS);
@@ -314,7 +351,8 @@ export class RobotPanel {
       this.#sent = { program: sum, places: program.places, of: program };
       this.#offer();
       if (runs && program.start === 'SB') this.#page.recorder.wait(sum);
-      this.#speech.say('say_receipt', { program: sum, bytes: program.bytes }, `saved_${saved}`);
+      if (program.start === 'SB') this.#doing.waits();
+      this.#speech.say('say_receipt', {}, `saved_${saved}`);
       start?.(runs && program.start === 'SI');
     });
   }
@@ -352,6 +390,7 @@ export class RobotPanel {
       return;
     }
     this.#know(found);
+    this.#line = found.program;
     await this.#ask({ do: 'live', image: found.image, robot }, () => this.#speech.say('say_line'));
   }
 
@@ -394,6 +433,17 @@ export class RobotPanel {
   }
 
   // -- what the robot says ------------------------------------------------------------------------
+
+  /** @param {RobotEvent} event */
+  #hear(event) {
+    const isTyped = event.program === this.#line;
+    if (this.#watching.onEvent(event, isTyped)) return;
+    this.#page.recorder.onEvent(event);
+    this.#page.place.onEvent(event);
+    this.#doing.onEvent(event, isTyped, this.#textOf(event.program) !== undefined);
+    this.#onEvent(event);
+    this.#debugging.onEvent(event);
+  }
 
   /** @param {RobotEvent} event */
   #onEvent(event) {

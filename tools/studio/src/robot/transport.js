@@ -8,6 +8,7 @@
  * @property {'free' | 'yours' | 'other'} owner
  * @property {number} room
  * @property {boolean} is_running
+ * @property {boolean} is_idle nothing runs, and no fault has ended it
  * @property {boolean} has_remote its programs can read a remote control
  * @property {boolean} has_breakpoints its programs can halt
  */

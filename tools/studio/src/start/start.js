@@ -2,6 +2,7 @@
 
 import { element } from '../page/elements.js';
 import { button, made } from '../page/made.js';
+import { lessonsDone, starsInAll } from '../lesson/progress.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage, known, text } from '../page/texts.js';
 import { titleOf, versions } from '../programs/versions.js';
@@ -66,9 +67,20 @@ export class Start {
     }
   }
 
+  /** Shows beside the lessons what they have brought. */
+  #showProgress() {
+    const badge = element('start_badge', HTMLElement), done = lessonsDone().size, stars = starsInAll();
+    badge.hidden = !stars;
+    const seen = made('span', '', `${done ? `✓ ${done}  ` : ''}★ ${stars}`), heard = made('span', '', text('lesson_progress', { done, stars }));
+    seen.ariaHidden = 'true';
+    heard.className = 'heard';
+    badge.replaceChildren(seen, heard);
+  }
+
   /** Shows the earlier programs as they are now, in the page's language. */
   #showPrograms() {
     if (!isStart()) return;
+    this.#showProgress();
     const time = new Intl.DateTimeFormat(currentLanguage(), { dateStyle: 'short', timeStyle: 'short' });
     const rows = versions().slice(0, MOST).map((version) => {
       const title = made('strong', '', titleOf(version)), when = made('time', '', time.format(new Date(version.at_ms)));

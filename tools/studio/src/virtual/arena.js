@@ -1,6 +1,9 @@
 // Draws a world and the robot in it. Knows shapes; what a robot does, the firmware decides.
 
+import { Moods } from './moods.js';
 import { drawRobot } from './robot_drawing.js';
+import { COLOURS } from '../page/own_robot.js';
+import { pageState } from '../page/page_state.js';
 import { dot, path } from '../page/shapes.js';
 import { robotOf, ROBOTS, WORLDS } from '../page/words.js';
 import { drawWorld, lightTile } from '../world/floor.js';
@@ -41,6 +44,7 @@ export class Arena {
   /** From when to when it beeps. @type {[number, number]} */
   #beep = [0, 0];
   #taken = 0; // flags
+  #moods = new Moods();
   /** What it has shown last, and when. @type {[string, number]} */
   #said = ['', 0];
   /** @type {Camera} */
@@ -86,8 +90,14 @@ export class Arena {
     this.#seen_ms = 0;
     this.#beep = [0, 0];
     this.#taken = 0;
+    this.#moods.begin();
     this.#said = ['', 0];
     this.#isFloorDrawn = false;
+  }
+
+  /** Its robot is glad, until the next run. */
+  cheer() {
+    this.#moods.cheer();
   }
 
   /** Takes what its pen has drawn off the floor. */
@@ -101,6 +111,7 @@ export class Arena {
    * @param {RobotState} state
    */
   follow(state) {
+    this.#moods.follow(state);
     const [x, y] = state.pose;
     const way = this.#ways.at(-1) ?? [];
     const last = way.at(-1);
@@ -242,11 +253,31 @@ export class Arena {
     pen.rotate((heading * Math.PI) / 180);
     const [from_ms, until_ms] = this.#beep;
     const isBeeping = state !== null && state.is_running && from_ms <= state.now_ms && state.now_ms < until_ms;
-    drawRobot(pen, robot, state, { rolled: this.#rolled, isBeeping });
+    const face = this.#moods.faceOf(state);
+    const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    const { name, colour } = pageState.ownRobot.value;
+    drawRobot(pen, robot, state, { rolled: this.#rolled, isBeeping, face: isStill ? { ...face, isBlinking: false } : face, colours: COLOURS[colour] ?? COLOURS[0] });
     pen.restore();
+    if (name && !state?.is_running) this.#drawName(x, y, name);
     if (state?.touches) this.#drawStar(...state.touches);
     const [what, at_ms] = this.#said;
     if (what && state && (!state.is_running || state.now_ms - at_ms < SAID_MS)) this.#drawSaid(x, y, what);
+  }
+
+  /** Below a robot that stands. @param {number} x @param {number} y @param {string} name */
+  #drawName(x, y, name) {
+    const pen = this.#pen, size = 13 * (window.devicePixelRatio || 1);
+    const { x: robot_x, y: robot_y } = this.#place.transformPoint({ x, y });
+    pen.save();
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.font = `600 ${size}px system-ui, sans-serif`;
+    const width = pen.measureText(name).width;
+    const from_x = Math.max(2, Math.min(robot_x - width / 2, this.#canvas.width - width - 2));
+    const at_y = Math.min(robot_y + 12 * this.#scale + size, this.#canvas.height - 4);
+    Object.assign(pen, { strokeStyle: '#fff', fillStyle: '#123b63', lineWidth: size / 4, lineJoin: 'round' });
+    pen.strokeText(name, from_x, at_y);
+    pen.fillText(name, from_x, at_y);
+    pen.restore();
   }
 
   /** A bubble beside the robot, inside the picture. @param {number} x @param {number} y @param {string} what */

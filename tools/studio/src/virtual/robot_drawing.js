@@ -3,6 +3,7 @@
 // x is ahead of the middle between its wheels, y to its left. Knows no world.
 
 import { dot, path } from '../page/shapes.js';
+import { CALM } from './moods.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
 /** @typedef {typeof import('../page/words.js').ROBOTS[number]} Robot */
@@ -11,11 +12,15 @@ import { dot, path } from '../page/shapes.js';
  * @typedef {object} Seen what a robot does that its state does not say
  * @property {[number, number]} rolled how far each wheel has turned, in cm
  * @property {boolean} isBeeping
+ * @property {import('./moods.js').Face} [face]
+ * @property {readonly string[]} [colours] of its body and its edge
  */
 
 const CONE = (15 * Math.PI) / 180; // of an ultrasonic sensor, to both sides
 const WHEEL = { length: 8, width: 3, tread: 1.6 };
 const LOOK_CM = 14; // of a ray of light
+const GREEN = ['#2a9d6f', '#0d4f38'];
+const EYE = { back: 4.6, apart: 3.1, radius: 2.6, pupil: 1.4, room: 1.05, stroke: 0.8, wide: 7.5 }; // in cm, of a robot that is so wide to each side
 
 /**
  * @param {Pen} pen at the robot, turned as it is
@@ -28,13 +33,14 @@ export function drawRobot(pen, robot, state, seen) {
   actuatorsOf(robot).forEach((device, k) => {
     if (!device.is_yes_no && !carriesSensor(robot, device.text)) drawJaws(pen, robot, (state?.actuators[k] ?? 0) / (device.arguments[0]?.high || 1));
   });
-  path(pen, robot.outline, '#0d4f38', 0.8, state?.fault ? '#c8372a' : '#2a9d6f');
+  const [body = '', edge = ''] = state?.fault ? ['#c8372a', '#5c130c'] : seen.colours ?? GREEN;
+  path(pen, robot.outline, edge, 0.8, body);
   const side = robot.wheel_base_cm / 2;
   drawWheel(pen, side, seen.rolled[0]);
   drawWheel(pen, -side, seen.rolled[1]);
-  drawEyes(pen, robot);
-  path(pen, [[6, 0], [1.5, 2.6], [1.5, -2.6]], '#fff', 0.4, '#fff');
-  drawLamps(pen, robot, state);
+  drawFace(pen, robot, seen.face ?? CALM, body, edge);
+  path(pen, [[4.2, 0], [0.6, 2], [0.6, -2]], '#fff', 0.4, '#fff');
+  drawLamps(pen, robot, state, edge);
   drawBuzzer(pen, seen.isBeeping);
 }
 
@@ -57,25 +63,53 @@ function drawWheel(pen, y, rolled) {
   }
 }
 
-/** The two round ends of each ultrasonic sensor. @param {Pen} pen @param {Robot} robot */
-function drawEyes(pen, robot) {
-  for (const place of Object.values(robot.places)) {
-    if (place.sees !== 'distance') continue;
-    for (const across of [-1.9, 1.9]) {
-      dot(pen, place.x_cm - 2.6, place.y_cm + across, 1.7, '#e9eef2');
-      dot(pen, place.x_cm - 2.1, place.y_cm + across, 0.9, '#20242a');
+/** Its eyes, which are the ends of an ultrasonic sensor where it has one. @param {Pen} pen @param {Robot} robot @param {import('./moods.js').Face} face @param {string} body colour @param {string} edge */
+function drawFace(pen, robot, { mood, ahead, aside, isBlinking }, body, edge) {
+  const size = Math.max(...robot.outline.map(([, each = 0]) => each)) / EYE.wide;
+  const [back = 0, apart = 0, radius = 0, pupil = 0, room = 0, stroke = 0] = [EYE.back, EYE.apart, EYE.radius, EYE.pupil, EYE.room, EYE.stroke].map((each) => each * size);
+  const x = Math.max(...robot.outline.map(([each = 0]) => each)) - back;
+  for (const side of [-1, 1]) {
+    const y = side * apart;
+    const isClosed = isBlinking && mood === 'calm';
+    dot(pen, x, y, radius + 0.35, edge);
+    dot(pen, x, y, radius, isClosed || mood === 'glad' ? body : '#fff');
+    if (isClosed) path(pen, [[x, y - radius], [x, y + radius]], edge, stroke);
+    else if (mood === 'glad') arc(pen, x - radius / 2, y, radius * 0.75, -Math.PI / 2, Math.PI / 2, '#fff', 1.3 * stroke);
+    else if (mood === 'dizzy') {
+      for (const way of [-1, 1]) path(pen, [[x - pupil, y - pupil * way], [x + pupil, y + pupil * way]], '#20242a', stroke);
+    } else {
+      dot(pen, x + room * (mood === 'tired' ? -0.5 : ahead), y + room * aside, pupil, '#20242a');
+      if (mood === 'tired') lid(pen, x, y, radius, body, edge);
     }
   }
 }
 
-/** Its own light, which is on where its button would start it, and those that a program turns on. @param {Pen} pen @param {Robot} robot @param {RobotState | null} state */
-function drawLamps(pen, robot, state) {
-  dot(pen, -7.5, 0, 0.9, state?.is_waiting ? '#ffd84d' : '#0d4f38');
+/** The half of an eye that is shut. @param {Pen} pen @param {number} x @param {number} y @param {number} radius @param {string} body @param {string} edge */
+function lid(pen, x, y, radius, body, edge) {
+  pen.beginPath();
+  pen.arc(x, y, radius, -Math.PI / 2, Math.PI / 2);
+  pen.fillStyle = body;
+  pen.fill();
+  path(pen, [[x, y - radius], [x, y + radius]], edge, 0.6);
+}
+
+/** @param {Pen} pen @param {number} x @param {number} y @param {number} radius @param {number} from @param {number} until @param {string} color @param {number} width */
+function arc(pen, x, y, radius, from, until, color, width) {
+  pen.beginPath();
+  pen.arc(x, y, radius, from, until);
+  pen.strokeStyle = color;
+  pen.lineWidth = width;
+  pen.stroke();
+}
+
+/** Its own light, which is on where its button would start it, and those that a program turns on. @param {Pen} pen @param {Robot} robot @param {RobotState | null} state @param {string} edge */
+function drawLamps(pen, robot, state, edge) {
+  dot(pen, -7.5, 0, 0.9, state?.is_waiting ? '#ffd84d' : edge);
   actuatorsOf(robot).forEach((device, k) => {
     if (!device.is_yes_no) return;
     const isLit = Boolean(state?.actuators[k]);
     if (isLit) dot(pen, -1.2, 0, 5, '#ffe14d77');
-    dot(pen, -1.2, 0, 1.9, '#0d4f38');
+    dot(pen, -1.2, 0, 1.9, edge);
     dot(pen, -1.2, 0, 1.4, isLit ? '#fff3a8' : '#7c8894');
   });
 }
@@ -87,11 +121,7 @@ function drawBuzzer(pen, isBeeping) {
   if (!isBeeping) return;
   for (const radius of [4, 6.5, 9]) {
     for (const middle of [Math.PI / 2, -Math.PI / 2]) {
-      pen.beginPath();
-      pen.arc(-4.6, 0, radius, middle - 0.6, middle + 0.6);
-      pen.strokeStyle = '#7a2fb8';
-      pen.lineWidth = 0.9;
-      pen.stroke();
+      arc(pen, -4.6, 0, radius, middle - 0.6, middle + 0.6, '#7a2fb8', 0.9);
     }
   }
 }

@@ -15,9 +15,10 @@ import { Run, Runs } from './runs.js';
 import { RunsWindow } from './runs_window.js';
 import { TimeLine } from './time_line.js';
 import { pageState } from '../page/page_state.js';
-import { hasText, known, text } from '../page/texts.js';
+import { measured, numberOf, partOf } from '../page/readings.js';
+import { known, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
-import { devicesOf, nameOf, onBlock } from '../page/words.js';
+import { devicesOf, nameOf } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
 import { WorldChoice } from '../world/choice.js';
 import { showRows, written } from '../page/rows.js';
@@ -171,6 +172,9 @@ export class SimulatorPanel {
     element('erase_ways', HTMLButtonElement).addEventListener('click', () => {
       this.#arena.eraseWays();
       this.#show();
+    });
+    pageState.ownRobot.subscribe(() => {
+      if (pageState.language.value) this.#show();
     });
     new ResizeObserver(() => this.#showReadings()).observe(element('plot_place', HTMLElement));
     new ResizeObserver(() => {
@@ -496,6 +500,13 @@ export class SimulatorPanel {
     return run;
   }
 
+  /** Its task is solved: it is glad, and that is heard. */
+  cheer() {
+    this.#arena.cheer();
+    this.#sounds.cheer();
+    this.#arena.draw(this.#state);
+  }
+
   stop() {
     this.#starts += 1;
     if (this.#isWaiting) {
@@ -542,7 +553,7 @@ export class SimulatorPanel {
     this.#pause.disabled = !this.#isDriving;
     say(this.#pause, text(phase === 'paused' ? 'go_on' : 'pause'));
     hide(this.#push, !state?.is_waiting || phase !== 'running');
-    say(element('doing', HTMLElement), this.#note || this.#drawing.said || this.#doing());
+    say(element('doing', HTMLElement), this.#note || this.#drawing.said || [pageState.ownRobot.value.name, this.#doing()].filter(Boolean).join(': '));
     const told = trace.slice(-SHOWN).join('\n');
     if (told !== this.#told) element('trace', HTMLElement).textContent = this.#told = told;
     this.#showScore(state?.score ?? null);
@@ -695,26 +706,4 @@ function partingSaid({ what, agreed, line, robot, virtual, sensor, began_ms }) {
 /** How long the program has run. @param {import('../python.js').RobotState} state */
 function secondsOf({ now_ms, began_ms }) {
   return ((now_ms - (began_ms ?? now_ms)) / 1000).toFixed(1);
-}
-
-/** How much of its range a reading is, for a bar. @param {ReturnType<typeof devicesOf>[number]} device @param {number} [value] */
-function partOf({ arguments: [range] }, value) {
-  if (!range || value === undefined || range.high <= range.low) return '0%';
-  return `${Math.round((100 * (value - range.low)) / (range.high - range.low))}%`;
-}
-
-/**
- * A reading with its unit, or with the most that it can be.
- * @param {ReturnType<typeof devicesOf>[number]} device
- * @param {string} value
- */
-function measured({ unit, arguments: [range] }, value) {
-  if (hasText(`block/${value}`)) return onBlock(value); // TRUE or FALSE
-  return unit || !range ? `${value} ${unit}` : text('of', { value, most: range.high });
-}
-
-/** @param {string | undefined} said a value as SHOW says it, or nothing */
-function numberOf(said) {
-  if (!said) return undefined;
-  return { TRUE: 1, FALSE: 0 }[said] ?? Number(said);
 }

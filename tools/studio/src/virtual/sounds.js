@@ -4,6 +4,8 @@ const VOLUME = 0.06;
 const EDGE_S = 0.005; // in which a tone begins and ends: without it, it clicks
 const LATE_S = 0.5; // a tone that would come later is left out: the robot runs faster than it plays
 const OPEN_MS = 3000; // after a sound, until the computer's sound is closed: the page has to wait for it
+const CHEER_HZ = [523, 659, 784, 1047]; // C E G C
+const CHEER_S = 0.12;
 const LOWEST_HZ = 20;
 const HIGHEST_HZ = 16_000;
 
@@ -40,6 +42,12 @@ export class Sounds {
     const tone = this.#tone(context, 'triangle', context.currentTime, 0.18, 4 * VOLUME);
     tone.frequency.setValueAtTime(170, context.currentTime);
     tone.frequency.exponentialRampToValueAtTime(45, context.currentTime + 0.18);
+  }
+
+  /** A task is solved. */
+  cheer() {
+    this.silence();
+    for (const hertz of CHEER_HZ) this.beep(hertz, CHEER_S);
   }
 
   silence() {

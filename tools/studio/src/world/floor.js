@@ -11,10 +11,12 @@ import { cornersOf } from './parts.js';
 
 const GRID_CM = 10; // while a world is changed
 const TILE_CM = 25;
+const LAWN_CM = 7; // around a house
+const DASH_CM = 6; // of the white line in the middle of a street
 const PAPER = '#fffdf6', NIGHT = '#27324b';
 const TILES = ['#fbeefc', '#e3f0fd', '#fff3cf'], LIT = ['#f3b8f7', '#a9d3fb', '#ffe08a']; // as on the picture of a dance
-/** What the floor of a world is. @type {Record<string, 'night' | 'tiles' | 'kitchen' | 'grass' | 'ring'>} */
-const THEMES = { light: 'night', dance: 'tiles', obstacles: 'kitchen', delivery: 'grass', ring: 'ring' };
+/** What the floor of a world is. @type {Record<string, 'night' | 'tiles' | 'kitchen' | 'city' | 'ring'>} */
+const THEMES = { light: 'night', dance: 'tiles', obstacles: 'kitchen', delivery: 'city', ring: 'ring' };
 
 /**
  * @param {Pen} pen
@@ -47,7 +49,7 @@ export function drawWorld(pen, world, goals, taken, isChanged) {
 /** @param {Pen} pen @param {World} world */
 function drawTheme(pen, world) {
   const { width_cm: width, height_cm: height } = world, theme = THEMES[world.name];
-  pen.fillStyle = theme === 'night' ? NIGHT : theme === 'grass' ? '#e4efdc' : theme === 'ring' ? '#e9eef2' : PAPER;
+  pen.fillStyle = theme === 'night' ? NIGHT : theme === 'city' ? '#dfe2e6' : theme === 'ring' ? '#e9eef2' : PAPER;
   pen.fillRect(0, 0, width, height);
   if (theme === 'tiles') {
     for (let x = 0; x < width; x += TILE_CM) for (let y = 0; y < height; y += TILE_CM) fillTile(pen, world, x, y, TILES);
@@ -58,7 +60,30 @@ function drawTheme(pen, world) {
       if (at < height) path(pen, [[0, at], [width, at]], '#efe6d2', 0.5);
     }
   }
+  if (theme === 'city') drawStreets(pen, world);
   if (theme === 'ring') for (const { points } of world.lines) path(pen, points, 'transparent', 0, '#f6e3bd');
+}
+
+/** Lawns around the houses, and in the middle of each street a line. @param {Pen} pen @param {World} world */
+function drawStreets(pen, { boxes, width_cm, height_cm }) {
+  const lawns = boxes.map((box) => cornersOf({ ...box, length_cm: box.length_cm + 2 * LAWN_CM, width_cm: box.width_cm + 2 * LAWN_CM }));
+  pen.setLineDash([DASH_CM, DASH_CM]);
+  for (const x of gaps(lawns.map((corners) => corners.map(([each]) => each)), width_cm)) path(pen, [[x, 0], [x, height_cm]], '#fff', 1.2);
+  for (const y of gaps(lawns.map((corners) => corners.map(([, each]) => each)), height_cm)) path(pen, [[0, y], [width_cm, y]], '#fff', 1.2);
+  pen.setLineDash([]);
+  for (const lawn of lawns) path(pen, lawn, '#b7d3a6', 1, '#cfe3c2');
+}
+
+/** The middles of what lies between things, from one edge of the floor to the other. @param {number[][]} things the coordinates of each @param {number} size of the floor */
+function gaps(things, size) {
+  const rows = things.map((each) => [Math.min(...each), Math.max(...each)]).sort(([a = 0], [b = 0]) => a - b);
+  const found = [];
+  let until = 0;
+  for (const [from = 0, to = 0] of [...rows, [size, size]]) {
+    if (from > until) found.push((until + from) / 2);
+    until = Math.max(until, to);
+  }
+  return found;
 }
 
 /** @param {Pen} pen @param {World} world @param {number} x @param {number} y @param {string[]} colors */

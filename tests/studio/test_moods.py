@@ -1,0 +1,117 @@
+"""How the virtual robot looks says what happens in its run: the page's own code, in node."""
+
+from __future__ import annotations
+
+import json
+import random
+from pathlib import Path
+from typing import Any
+
+from tests.studio.test_robot_drawing import STILL, of, pictures
+from tests.support.node import in_node
+from tiniscript import compile
+from tiniscript.studio.simulation import Simulation
+from tiniscript.virtual import worlds
+
+SCRIPT = Path(__file__).with_name("moods_in_node.mjs")
+STEP_MS = 50
+MOODS = ("calm", "glad", "dizzy", "tired")
+State = dict[str, Any]
+Face = dict[str, Any]
+
+
+def faces(*runs: list[State]) -> list[tuple[list[Face], list[Face]]]:
+    """Return how a robot looks in each state of its runs, and when one looks back at it."""
+    found = json.loads(in_node(SCRIPT, given=json.dumps(runs))[0])
+    return [(each["seen"], each["again"]) for each in found]
+
+
+def run(text: str, world: str, ms: int) -> list[State]:
+    simulation = Simulation("tinibot", worlds.load(world), compile(text).image)
+    states = []
+    for _ in range(ms // STEP_MS):
+        simulation.go(STEP_MS)
+        states.append(json.loads(json.dumps(simulation.state())))
+    return states
+
+
+def made(rng: random.Random) -> list[State]:
+    """Return states of a run that no robot has driven."""
+    state: State = {"now_ms": 0, "bumps": 0, "score": {"taken": 0}, "motors": [0, 0], "fault": None,
+                    "touches": None, "is_running": True, "is_waiting": False}  # fmt: skip
+    states = []
+    for _ in range(200):
+        state = {**state, "now_ms": state["now_ms"] + rng.choice((20, 100, 700))}
+        event = rng.random()
+        if event < 0.1:
+            state["motors"] = [rng.randint(-100, 100), rng.randint(-100, 100)]
+        elif event < 0.2:
+            state["motors"] = [0, 0]
+        elif event < 0.23:
+            state["bumps"] += 1
+        elif event < 0.26:
+            state["score"] = {"taken": state["score"]["taken"] + 1}
+        states.append(state)
+    return states
+
+
+def sign(number: float) -> int:
+    return (number > 0) - (number < 0)
+
+
+def test_it_looks_where_it_drives_and_the_same_when_somebody_looks_back() -> None:
+    runs = [made(random.Random(seed)) for seed in range(20)]
+    moods = set()
+    for states, (seen, again) in zip(runs, faces(*runs), strict=True):
+        assert again == seen
+        for state, face in zip(states, seen, strict=True):
+            left, right = state["motors"]
+            assert sign(face["ahead"]) == sign(left + right), state
+            assert sign(face["aside"]) == sign(right - left), state
+            assert abs(face["ahead"]) <= 1 and abs(face["aside"]) <= 1
+        moods |= {face["mood"] for face in seen}
+    assert moods == set(MOODS)
+
+
+def test_it_is_as_what_happens_to_it() -> None:
+    """Dizzy after a crash, glad at a flag, tired while it waits, and calm again."""
+    crash, flag, wait, pause, drive = (
+        run("F(9, 80)", "obstacles", 4500),
+        run("F(9, 60)", "delivery", 6000),
+        run("SB|F(1, 80)", "free", 500),
+        run("W(9);F(2, 80)", "free", 10_000),
+        run("F(1, 80)", "free", 800),
+    )
+    found = [seen for seen, _ in faces(crash, flag, wait, pause, drive)]
+    for states, seen in zip((crash, flag), found, strict=False):
+        for state, face in zip(states, seen, strict=True):
+            if not state["bumps"] and not state["score"]:
+                assert face["mood"] == "calm", state
+            if state["touches"]:
+                assert face["mood"] == "dizzy", state
+    assert "dizzy" in {face["mood"] for face in found[0]}
+    assert {face["mood"] for face in found[2]} == {"tired"}
+    resting = [face["mood"] for face in found[3]]
+    assert resting[0] == resting[-1] == "calm" and "tired" in resting
+    assert {face["mood"] for face in found[4]} == {"calm"}
+    assert any(face["isBlinking"] for face in found[3])
+    assert not all(face["isBlinking"] for face in found[3])
+
+
+def test_each_mood_is_drawn_in_its_own_way_and_in_the_chosen_colour() -> None:
+    """Also on robots without a sensor of distance, whose face is theirs alone."""
+    calm = {"mood": "calm", "ahead": 0, "aside": 0, "isBlinking": False}
+    looks = [*({**calm, "mood": mood} for mood in MOODS), {**calm, "isBlinking": True}]
+    for name in ("tinibot", "liner", "grabber"):
+        drawn = pictures(*((name, None, {**STILL, "face": face}) for face in looks))
+        assert len({json.dumps(each) for each in drawn}) == len(looks), name
+        ahead, left = pictures(
+            (name, None, {**STILL, "face": {**calm, "ahead": 1}}),
+            (name, None, {**STILL, "face": {**calm, "aside": 1}}),
+        )
+        pupils = [of(each, "fill", "#20242a") for each in (drawn[0], ahead, left)]
+        still, to_front, to_left = ([row for row in each if len(row) == 5] for each in pupils)
+        assert [a[0] > b[0] for a, b in zip(to_front, still, strict=True)].count(True) == 2
+        assert [a[1] > b[1] for a, b in zip(to_left, still, strict=True)].count(True) == 2
+        (own,) = pictures((name, None, {**STILL, "colours": ["#123456", "#654321"]}))
+        assert of(own, "fill", "#123456") and of(own, "stroke", "#654321")

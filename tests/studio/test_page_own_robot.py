@@ -1,0 +1,145 @@
+"""The robot that somebody calls their own: its colour and its name, and what its lessons bring."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_class import joined, teaches
+from tests.studio.test_page_lessons import FOLDERS, check, choose
+from tests.studio.test_page_watching import NOTING
+from tests.support import studio
+from tests.support.studio import Pages, axe, colors_of, enter, hears, in_phase, write
+from tiniscript.lessons import catalogue
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+PLACE, STARS, DONE = "tiniscript.own_robot", "tiniscript.stars", "tiniscript.lessons"
+GREEN, PINK = "42,157,111", "208,70,143"  # the first colour, and the fourth
+CONFETTI = "window.fell = 0; new MutationObserver((all) => { for (const {addedNodes} of all)" \
+    " for (const each of addedNodes) if (each.className === 'confetti') window.fell += 1; })" \
+    ".observe(document.body, {childList: true})"  # fmt: skip
+
+
+def names(page: Page, name: str, colour: int) -> None:
+    """Give the robot a name and a colour, as a person does."""
+    page.click("#home")
+    page.click("#start_own")
+    page.fill("#own_name", name)
+    page.locator("#own [role=radiogroup] label").nth(colour).click()
+    page.get_by_role("button", name="Close").click()
+
+
+def kept(page: Page, place: str, what: object) -> None:
+    page.evaluate("([place, what]) => localStorage.setItem(place, what)", [place, json.dumps(what)])
+
+
+def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages) -> None:
+    page = pages.open()
+    assert GREEN in colors_of(page, "#arena")
+    before = page.inner_text("#doing")
+    names(page, "  Pip ", 3)
+    drawn = page.evaluate("getComputedStyle(document.querySelector('#drawn_robot path')).fill")
+    assert drawn == f"rgb({PINK.replace(',', ', ')})"
+    assert page.inner_text("#start_own").split() == ["Your", "robot", "Pip"]
+    page.click("#start_own")
+    assert axe(page, within="#own") == []
+    page.keyboard.press("ArrowRight")  # the choice is one of the keyboard, too
+    page.keyboard.press("Escape")
+    page.reload()
+    enter(page, page.url)
+    assert page.inner_text("#doing") == f"Pip: {before}"
+    found = colors_of(page, "#arena")
+    assert PINK in found and GREEN not in found
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        5,
+        "x",
+        None,
+        [1],
+        {"name": {}, "colour": "x"},
+        {"name": "\u202e\n", "colour": 999},
+        {"<b>": 1},
+    ],
+)
+def test_what_is_kept_may_be_damaged(pages: Pages, what: object) -> None:
+    page = pages.open("start")
+    for place in (PLACE, STARS):
+        kept(page, place, what)
+    kept(page, DONE, [])
+    page.reload()
+    enter(page, page.url)
+    assert GREEN in colors_of(page, "#arena")
+    assert ":" not in page.inner_text("#doing")
+    page.click("#home")
+    assert not page.locator("#start_badge").is_visible()
+
+
+def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
+    page = pages.open()
+    traces = []
+    for name in ("", "Pip"):
+        names(page, name, len(name))
+        enter(page, page.url)
+        page.click("#view_text")
+        write(page, "F(0.5, 80);R(0.3, 50);SHOW(DISTANCE)")
+        page.click("#run")
+        in_phase(page, "ended")
+        traces.append(page.locator("#trace").text_content())
+    assert traces[0] == traces[1] and "SHOW" in str(traces[0])
+
+
+@pytest.mark.parametrize("way", ["seen and heard", "muted", "still"])
+def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
+    """And its stars are added up, each lesson's once."""
+    page = pages.open(reduced_motion="reduce" if way == "still" else "no-preference")
+    kept(page, DONE, ["01_first_line"])
+    kept(page, STARS, {"01_first_line": 1, "04_none": 2})
+    page.evaluate(NOTING)
+    page.evaluate(CONFETTI)
+    if way == "muted":
+        page.click("#sound")
+    page.select_option("#speed", "20")
+    page.click("#side_lessons")
+    right, _ = catalogue.answers(FOLDERS[1])
+    worlds = catalogue.load(FOLDERS[1]).worlds
+    for _ in range(2):
+        choose(page, 2)
+        assert check(page, right[0].program)[0] == "passed"
+        assert f"You have {3 + worlds} stars." in page.inner_text("#lesson_said")
+    assert page.evaluate("window.fell") == (0 if way == "still" else 2)
+    tune = [523, 659, 784, 1047]
+    assert page.evaluate("window.heard").count(tune[-1]) == (0 if way == "muted" else 2)
+    page.locator(".confetti").wait_for(state="detached")
+    page.click("#home")
+    badge = page.locator("#start_badge")
+    badge.filter(has_text=f"★ {3 + worlds}").wait_for()
+    assert f"Lessons done: 2. Stars: {3 + worlds}." in (badge.text_content() or "")
+    assert axe(page, within="#start") == []
+    page.reload()
+    badge.filter(has_text=f"★ {3 + worlds}").wait_for()
+
+
+def test_the_teacher_sees_whose_robot_is_whose(browser: Browser) -> None:
+    with studio.taught([]) as taught:
+        pages = Pages(browser, taught.server.address)
+        teacher, pupil = teaches(pages, taught), joined(pages, taught, "Ana")
+        pupil.click("#class_pupil [data-text=own_robot]")
+        pupil.fill("#own_name", "<b>Pip")
+        pupil.locator("#own [role=radiogroup] label").nth(3).click()
+        tile = teacher.locator("#wall li").filter(has_text="Ana · <b>Pip")
+        tile.wait_for()
+        look = "getComputedStyle(document.querySelector('#wall .own_robot')).getPropertyValue"
+        hears(
+            teacher,
+            lambda: teacher.evaluate(f"{look}('--robot')") == "#d0468f",
+            "it has its colour",
+        )
+        assert tile.locator("b").count() == 0
+        pages.close()

@@ -1,0 +1,266 @@
+"""The page and a robot that is connected: what it senses without a program, and what it does."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_link import KIT, connect, said, upload_until_it_runs
+from tests.support.pty_robot import PtyRobot
+from tests.support.studio import Pages, axe, drives, write
+from tiniscript import robots
+from tiniscript.link import known_ports
+from tiniscript.link.frames import decode_frame
+from tiniscript.link.messages import BY_NAME
+from tiniscript.link.receiver import Receiver
+from tiniscript.studio import serving
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+SENSED = ((12, 1, 250), (1023, 0, 7), (512, 88, 0), (12, 1, 250))
+MEASURED = 40  # values
+FOREVER_SHOW = "LOOP(FOREVER);SHOW(7);W(0.1);END_LOOP"
+
+
+class MeteredRobot(PtyRobot):
+    """It notes when the values come that it sends, and how many bytes each takes."""
+
+    def __init__(self, name: str) -> None:
+        self.values: list[tuple[int, int]] = []
+        self._receiver = Receiver()
+        super().__init__(robots.load(name).kit, bytes_per_ms=1)  # 9600 baud
+
+    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+        sent = super().pass_ms(milliseconds, data)
+        for byte in sent:
+            self._receiver.put(byte, self.robot_ms)
+            packet = self._receiver.take()
+            frame = decode_frame(packet.data) if packet and not packet.is_text else None
+            if packet and frame and frame.number == BY_NAME["SHOW"].number:
+                self.values.append((self.robot_ms, len(packet.data) + 1))
+        return sent
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Page]]:
+    pages = Pages(browser, server.address, entrance=server.entrance)
+    yield pages, pages.open()
+    pages.close()
+
+
+@pytest.fixture
+def robot() -> Iterator[PtyRobot]:
+    with PtyRobot(KIT) as pty_robot:
+        known_ports.remember(pty_robot.port, "TINI")
+        yield pty_robot
+
+
+@pytest.fixture
+def page(opened: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
+    """A page of many tests that has met its robot, and has never read a sensor."""
+    pages, found = opened
+    found.evaluate("localStorage.removeItem('tiniscript.watches')")
+    connect(found, robot)
+    yield found
+    found.click("#side_real")
+    found.locator("#link_leave").dispatch_event("click")
+    found.locator("html:not([data-robot=connected])").wait_for(state="attached")
+    wrong, pages.wrong[:] = pages.wrong[:], []
+    assert not wrong
+
+
+def does(page: Page, what: str) -> None:
+    """Wait until the page says that the robot does so."""
+    page.locator(f"#link_doing[data-does={what}]").wait_for()
+
+
+def senses(page: Page, robot: PtyRobot, *values: int) -> None:
+    """Let the robot sense so much, and wait until the gauges say so."""
+    robot.ask(lambda made: made.sense(*(1000 * value for value in values)))
+    for row, value in enumerate(values):
+        said = page.locator(f"#gauges > div:nth-child({row + 1}) > dd")
+        said.filter(has_text=re.compile(rf"^{value}\b")).wait_for()
+
+
+def watch(page: Page) -> None:
+    page.click("#link_watch")
+    page.locator("#link_watch[aria-pressed=true]").wait_for()
+    page.locator("#senses:not(.past)").wait_for()
+    does(page, "senses")
+
+
+def rests(page: Page) -> None:
+    """Wait until no reading comes any more."""
+    page.locator("#link_watch[aria-pressed=false]").wait_for()
+    page.locator("#senses:not(.past):visible").wait_for(state="detached")
+
+
+def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
+    page: Page, robot: PtyRobot
+) -> None:
+    """No motor turns, no value is shown as a program's, and no run is kept."""
+    before = len(robot.did)
+    runs = page.evaluate("document.querySelectorAll('#runs_list li').length")
+    watch(page)
+    for values in SENSED:
+        senses(page, robot, *values)
+    assert not [line for line in robot.did[before:] if line.startswith(("BEEP", "SET"))]
+    assert not robot.moves
+    assert page.locator("#link_shown").inner_text() == ""
+    assert not page.locator("#record_play").is_visible()
+    assert page.evaluate("document.querySelectorAll('#runs_list li').length") == runs
+    said(page, "Connected: ")
+    assert page.locator("[aria-live], [role=status], [role=log]").locator("#gauges").count() == 0
+    assert axe(page, within="#link") == []
+
+
+def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRobot) -> None:
+    watch(page)
+    write(page, "SHOW(5);\nF(0.3, 80);\nSHOW(6)")
+    upload_until_it_runs(page)
+    said(page, "Done.")
+    assert page.locator("#link_shown").inner_text().split() == ["5", "6"]
+    does(page, "senses")
+    senses(page, robot, 3, 4, 5)
+    write(page, FOREVER_SHOW)
+    upload_until_it_runs(page)
+    does(page, "own")
+    rests(page)
+    page.locator("#link_shown").filter(has_text=re.compile(r"^(7\n){5}")).wait_for()
+    page.click("#link_watch")
+    said(page, "You will see the sensors when it has ended.")
+    assert set(page.locator("#link_shown").inner_text().split()) == {"7"}
+
+
+@pytest.mark.parametrize("runs_before", [False, True])
+@pytest.mark.parametrize("way", ["waits for it", "is sent only"])
+def test_a_program_that_waits_for_the_robots_button_gets_it(
+    page: Page, robot: PtyRobot, way: str, runs_before: bool
+) -> None:
+    """The first press starts it, though the sensors were read before, or another one ran, of which
+    it tells the end."""
+    watch(page)
+    if runs_before:
+        write(page, FOREVER_SHOW)
+        upload_until_it_runs(page)
+        does(page, "own")
+    write(page, "SB|LOOP(FOREVER);F(9, 80);END_LOOP" if way == "waits for it" else "F(9, 80)")
+    page.click("#link_upload" if way == "waits for it" else "#link_send")
+    said(page, re.compile("The robot has it.|Done."))
+    rests(page)
+    page.wait_for_timeout(1500)  # in which nothing begins by itself
+    robot.push()
+    robot.until(lambda: robot.moves, "it drives")
+    does(page, "own")
+
+
+def test_the_robots_button_ends_them_and_then_starts_its_program(
+    page: Page, robot: PtyRobot
+) -> None:
+    write(page, "LOOP(FOREVER);F(9, 80);END_LOOP")
+    page.click("#link_send")
+    said(page, "The robot has it.")
+    watch(page)
+    robot.push()
+    said(page, "The robot’s button stopped the sensors.")
+    rests(page)
+    robot.push()
+    robot.until(lambda: robot.moves, "it drives")
+
+
+def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot) -> None:
+    for begins in (watch, lambda page: drives(page, robot)):
+        begins(page)
+        page.click("#stop")
+        said(page, "Stopped: the robot has confirmed the stop.")
+        rests(page)
+        page.wait_for_timeout(1500)  # in which nothing begins by itself
+        does(page, "stopped")
+    watch(page)
+    senses(page, robot, 9, 8, 7)
+
+
+def test_they_come_by_themselves_where_somebody_has_wanted_them(
+    page: Page, robot: PtyRobot
+) -> None:
+    watch(page)
+    page.click("#link_leave")
+    page.locator("html:not([data-robot=connected])").wait_for(state="attached")
+    connect(page, robot)
+    senses(page, robot, 6, 5, 4)
+    for ask, word in (("#link_identify", "blinks and plays its tune"), ("#side_virtual", "")):
+        page.click(ask)
+        if word:
+            said(page, word)
+        else:
+            page.locator("#link_watch[aria-pressed=false]").wait_for(state="attached")
+            page.click("#side_real")
+        does(page, "senses")
+    page.click("#link_watch")
+    rests(page)
+    does(page, "still")
+    page.click("#link_leave")
+    page.locator("html:not([data-robot=connected])").wait_for(state="attached")
+    connect(page, robot)
+    page.wait_for_timeout(1500)
+    assert not page.locator("#senses").is_visible()
+
+
+def test_what_it_does_is_said_without_a_number(page: Page, robot: PtyRobot) -> None:
+    """And in the language that is chosen, whatever it does."""
+    does(page, "still")
+    drives(page, robot)
+    does(page, "own")
+    page.fill("#link_line", "W(9)")
+    page.press("#link_line", "Enter")
+    does(page, "line")
+    write(page, "X = 0; SHOW(1 / X)")
+    page.click("#link_upload")
+    does(page, "fault")
+    write(page, "SHOW(1)")
+    page.click("#link_upload")
+    does(page, "done")
+    assert not re.search(r"\d", page.locator("#link_doing").inner_text())
+    assert not re.search(r"\d", page.locator("#link_said").inner_text())
+
+
+def test_a_port_where_nothing_answers_says_so_within_three_seconds(
+    opened: tuple[Pages, Page], robot: PtyRobot
+) -> None:
+    page = opened[0].blank()
+    page.clock.install()
+    opened[0].watch(page)
+    page.goto(opened[0].entrance())
+    page.locator("html[data-state=checked]").wait_for(state="attached")
+    robot.switch_off()
+    page.click("#start_robot")
+    page.click("#link_look")
+    page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
+    page.click("#link_connect")
+    said(page, "Connecting")
+    page.clock.run_for(2900)
+    assert "Nothing answers at this port yet." in page.locator("#link_said").inner_text()
+    page.close()
+
+
+@pytest.mark.parametrize("name", ["tinibot", "liner"])
+def test_the_readings_take_a_third_of_the_line_at_most(
+    opened: tuple[Pages, Page], name: str
+) -> None:
+    """Of the slowest line that a robot has, at 9600 baud."""
+    page, robot = opened[0].open(), MeteredRobot(name)
+    with robot:
+        known_ports.remember(robot.port, "TINI")
+        connect(page, robot)
+        watch(page)
+        robot.until(lambda: len(robot.values) > MEASURED, "values have come")
+        (began_ms, _), *rest = robot.values
+        passed_ms = rest[-1][0] - began_ms
+        assert 3 * sum(size for _, size in rest) <= passed_ms
+        page.click("#link_leave")
+        page.locator("html:not([data-robot=connected])").wait_for(state="attached")
+    page.close()
