@@ -87,7 +87,7 @@ export class Wall {
     picture.hidden = true;
     empty.hidden = true; // until its program is known
     const own = drawn('svg', { class: 'own_robot', viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, drawn('use', { href: '#drawn_robot' }));
-    const item = made('li', '', own, name, made('div', '', picture, empty), made('p', '', pips, said), badge, see, hand, out);
+    const item = made('li', '', name, made('div', '', picture, empty), made('p', '', pips, said), badge, own, see, hand, out);
     return { item, see, own, name, hand, out, picture, empty, badge, pips, said };
   }
 
