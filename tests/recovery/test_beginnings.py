@@ -146,3 +146,12 @@ def test_what_a_sketch_has_in_its_setup_begins_the_program(body: str, frame: str
         made = repair_program(made, check).text
         assert compile(made).code == compile(f"{right}\n{loop}").code, text
         assert made.startswith(f"{begun}|"), text
+
+
+@pytest.mark.parametrize("marks", ["\u201c\u201d", '""', "''", "\u00ab\u00bb"])
+@pytest.mark.parametrize("line", ["SB|F(2, 80)", "SI|F(2, 80);S", "F(2, 80)"])
+def test_a_line_in_quotation_marks_is_shown_with_its_start(line: str, marks: str) -> None:
+    wrong = f"{marks[0]}{line}{marks[1]}"
+    (told,) = check(wrong)
+    assert told.values["fix"] == line, wrong
+    assert repair_program(wrong, check).text.replace(" ", "") == line.replace(" ", "")

@@ -179,3 +179,13 @@ def test_calls_in_a_row_are_instructions_also_of_unknown_words(place: str) -> No
         assert told[0].code.number == "TS013", wrong
         assert apply_edits(wrong, edits_of(told[0]) or []) == place.format(";".join(calls)), wrong
         assert [each.values.get("found") for each in told[1:]] == [word], wrong
+
+
+@pytest.mark.parametrize("point", [". ", " . ", ".  "])
+@pytest.mark.parametrize(
+    "right", ["F(2, 80)", "B(1, 60)", "L(0.5, 60)", "BEEP(1, 440)", "M(50, -30)"]
+)
+def test_a_point_before_a_space_is_a_comma(right: str, point: str) -> None:
+    for place in ("{}", "SI|{}", "W(1);{};S", "S\n{}\nS"):
+        wrong = place.format(right.replace(", ", point))
+        assert repair_program(wrong, check).text == place.format(right), wrong

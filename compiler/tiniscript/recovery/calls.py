@@ -35,6 +35,7 @@ _THOUSANDS = re.compile(r"([1-9]\d{0,2})((?:,\d{3})+)")
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 _ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
 _RUN_ON = re.compile(rf"(?:\b\w+[ \t]*\({_VALUE}(?:,{_VALUE})*\)[ \t]*){{2,}}(?=[;}}|]|$)")
+_POINT = re.compile(r"(?<=\d)[ \t]*\.[ \t]+(?=[-\d.])")
 _PERCENT = re.compile(r"[ \t]*%$")
 _TIMED = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
 _SHORT = 3  # letters: a phone may have added some to one
@@ -63,7 +64,12 @@ def misplaced_values(source: Source) -> list[Diagnostic]:
         for call in _calls(without_note(line)[0], start):
             if re.search(rf"(?i)\bDEF\s+{call.word.text}\b", source.text):
                 continue  # its values may be those of the DEF
-            readings = _unit_apart(call), _thousands(call), _seconds_of_motors(call, source.text)
+            readings = (
+                _points(call),
+                _unit_apart(call),
+                _thousands(call),
+                _seconds_of_motors(call, source.text),
+            )
             diagnostics += [reading for reading in readings if reading][:1]
         start += len(line) + 1
     return diagnostics
@@ -112,6 +118,17 @@ def _call_diagnostic(
 ) -> Diagnostic:
     repair = Repair((Edit(call.span, fix),), is_sure)
     return Diagnostic(code, call.span, {**values, "fix": fix}, call.span, repair)
+
+
+def _points(call: _Call) -> Diagnostic | None:
+    """`BEEP(1. 440)`, of a phone: a point before a space is a comma."""
+    inside = call.text.partition("(")[2].rpartition(")")[0]
+    values = _split_values(_POINT.sub(",", inside))
+    is_whole = len(call.values) < len(call.word.arguments) == len(values)
+    if not is_whole or not all(map(_NUMBER.fullmatch, values)):
+        return None
+    fix = call.with_values(values)
+    return _call_diagnostic(call, codes.MISSING_COMMA, fix, True)
 
 
 def _unit_apart(call: _Call) -> Diagnostic | None:

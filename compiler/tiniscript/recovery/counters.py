@@ -55,9 +55,9 @@ def counters(source: Source) -> list[Diagnostic]:
         for item in own:
             in_header = [it.text for it in row[item.start : item.end]].count(item.name)
             is_used = words[item.name] > in_header + ends[item.name]
-            if is_used or any(
-                lexicon_meaning(it.text, "each") for it in row[item.start : item.end]
-            ):
+            header = row[item.start : item.end]
+            is_of_c = any(it.text == ";" for it in header)
+            if is_used or is_of_c or any(lexicon_meaning(it.text, "each") for it in header):
                 span = Span(spans[item.start].start, spans[item.end - 1].end)
                 diagnostics.append(
                     _counter_diagnostic(

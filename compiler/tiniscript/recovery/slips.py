@@ -113,8 +113,9 @@ def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
             for line in (old, new)
         )
     told, fix = without_setup(change.before), without_setup(change.after)
-    if code is codes.OTHER_SIGN and setup_of(change.after) and not setup_of(change.before):
-        fix = instructions(change.after)  # the bar was a word, too
+    is_begun = setup_of(change.after) and not setup_of(change.before)
+    if is_begun and code in (codes.OTHER_SIGN, codes.QUOTE):
+        fix = instructions(change.after)  # the bar was a word, or in quotation marks, too
     head, tail = alike([*map(texts, told)], [*map(texts, fix)])
     was, now = (
         [lexeme for part in parts[head : len(parts) - tail] for lexeme in part]
