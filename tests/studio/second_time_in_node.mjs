@@ -1241,7 +1241,7 @@ const PARTS = {
     };
   },
 
-  // The recording of a run, before and after runs of others.
+  // The recording of a run, before and after runs of others: each row at its time, which stands while the program is halted.
   async recording() {
     const page = freshPage();
     await learns(page);
@@ -1250,23 +1250,36 @@ const PARTS = {
     const runs = new Runs();
     const recorder = new Recorder({ runs, see() {} });
     recorder.sends({ program: 'aa', places: [], shows: [], variables: [] });
-    let own = []; // what the newest run of ours has told
+    let own = []; // what the newest run of ours has told, and when
     let isOpen = false;
+    let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
+    let halted = null;
+    const tells = (event) => {
+      began ??= now();
+      if (isOpen) own.push([Math.round(now() - began), event]);
+    };
+    const goesOn = () => {
+      if (halted !== null) began += now() - halted;
+      halted = null;
+    };
     const ends = (event) => {
-      if (isOpen) own.push(event);
+      goesOn();
+      tells(event);
       isOpen = false;
     };
-    const begins = () => {
+    const begins = (at) => {
       own = [];
       isOpen = true;
+      began = at;
+      halted = null;
     };
     const acts = {
       ours() {
-        begins();
+        begins(now());
         recorder.onEvent({ event: 'STARTED', program: 'aa', is_program: true });
       },
       waits() {
-        begins();
+        begins(null);
         recorder.wait('aa');
       },
       theirs() {
@@ -1274,8 +1287,9 @@ const PARTS = {
         recorder.onEvent({ event: 'STARTED', program: 'bb', is_program: false });
       },
       shows(chance) {
+        if (halted !== null) return; // it stands
         const value = String(chance.below(1000));
-        if (isOpen) own.push(`SHOW ${value}`);
+        if (isOpen) tells(`SHOW ${value}`);
         recorder.onEvent({ event: 'SHOW', value });
       },
       ends(chance) {
@@ -1287,6 +1301,15 @@ const PARTS = {
         ends('LOST');
         recorder.end('LOST');
       },
+      halts() {
+        if (!isOpen || began === null) return;
+        halted ??= now();
+        recorder.halt();
+      },
+      goesOn() {
+        goesOn();
+        recorder.goOn();
+      },
     };
     return async (chance, isGood) => {
       let end = '';
@@ -1296,7 +1319,7 @@ const PARTS = {
         acts[end](chance);
         await passes(chance.below(300));
         if (page.byId('record_play').hidden) continue;
-        const told = runs.all[0].rows.map(([, event]) => event);
+        const told = runs.all[0].rows;
         if (`${told}` !== `${own}`) throw new Error(`${told} in place of ${own}`);
       }
       return { ends: [end], seen: isGood && [...own] };

@@ -45,7 +45,7 @@ ENDS = {
     "arena": {"long", "short"},
     "curves": {"long", "short"},
     "steps": {"came", "failed"},
-    "recording": {"theirs", "shows", "ends", "waits", "gone"},
+    "recording": {"theirs", "shows", "ends", "waits", "gone", "halts"},
     "giving": {"chosen", "gone", "alike", "nobody"},
     "sure": {"sure", "once"},
     "cable": {"closed", "opening", "open", "over"},
