@@ -966,6 +966,105 @@ const PARTS = {
     };
   },
 
+  // What is pressed for a real robot, with breakpoints and without: after STOP the page starts nothing before somebody presses
+  // anew, however late its answers come, and what is pressed then starts.
+  async orders() {
+    let late = () => 5;
+    let wants = ''; // what was pressed since the newest STOP
+    let stops = 0;
+    let wrong = '';
+    let started = 0;
+    let robot = null;
+    const page = freshPage({
+      offer() {}, pictured() {}, drawnPicture() {}, hasSerial: false, chosenPort() {}, knownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
+      hostPorts: async () => [],
+      HostRobot: class {
+        constructor(heard) {
+          this.heard = heard;
+          robot = this;
+        }
+        async connect() {
+          return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false, has_remote: true, has_breakpoints: true };
+        }
+        async ask({ do: what, runs }) {
+          const starts = what === 'start' || what === 'live' || (what === 'upload' && runs);
+          if (starts && !wants) wrong = what;
+          const before = stops;
+          await later(late()); // what is asked before a stop and comes after it is void
+          if (before !== stops) return { failure: 'stopped_elsewhere' };
+          if (starts) {
+            started += 1;
+            this.heard.event({ event: 'STARTED', program: 'ff', is_program: what !== 'live' });
+          }
+          await later(late());
+          return { ok: true, program: 'ff' };
+        }
+        stop() { stops += 1; }
+        leave() {}
+      },
+    });
+    playsNavigator({});
+    playsFetch(async () => { throw new Broken(); });
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { RobotPlace } = await page.load('robot/place.js');
+    const { RobotPanel } = await page.load('robot/panel.js');
+    pageState.robotName.set('tinibot');
+    const whole = { ...PROGRAM, program: 'ff', bytes: 9, halts: [0], findings: [], start: 'SI' };
+    pageState.checked.set(whole);
+    const python = { again() {}, ask: () => later(late(), { ...whole, program: 'ee', image: 'ee' }) };
+    const panel = new RobotPanel({ python, goTo() {}, recorder: noting([], 'recorder'), place: new RobotPlace(), pad: noting([], 'pad') });
+    await passes(10);
+    panel.byHost('p');
+    await passes(100);
+    const presses = {
+      run: () => page.byId('link_upload').click(),
+      start: () => page.byId('link_start').click(),
+      step: () => page.byId('link_step').disabled || page.byId('link_step').click(),
+      line() {
+        page.byId('link_line').value = 'F(1, 80)';
+        page.byId('link_live').dispatchEvent(Object.assign(new Event('submit'), { preventDefault() {} }));
+      },
+    };
+    const others = {
+      send: () => page.byId('link_send').click(),
+      points: (chance) => pageState.breakpoints.set(chance() < 0.5 ? [] : [{ line: 1, column: 1, point: {} }]),
+      halts: () => robot.heard.event({ event: 'HALTED', at: 0, task: 0, program: 'ff', is_program: true }),
+      ends: (chance) => robot.heard.event(chance.of([{ event: 'DONE' }, { event: 'STOPPED', cause: 'BUTTON' }])),
+    };
+    const stop = (chance) => {
+      wants = '';
+      if (chance() < 0.5) page.byId('stop').click();
+      else dispatchEvent(Object.assign(new Event('keydown'), { key: 'Escape' }));
+    };
+    return async (chance, isGood) => {
+      late = () => (isGood ? 5 : chance.below(150));
+      let end = '';
+      for (let k = 3 + chance.below(8); k > 0; k -= 1) {
+        end = chance.of(['stop', 'stop', ...Object.keys(presses), ...Object.keys(presses), ...Object.keys(others)]);
+        if (end === 'stop') stop(chance);
+        else if (presses[end]) {
+          wants = end;
+          presses[end]();
+        } else others[end](chance);
+        await passes(chance() < 0.7 ? chance.below(60) : chance.below(900));
+        if (wrong) throw new Error(`${wrong} after a STOP`);
+      }
+      stop(chance);
+      await passes(1500);
+      others.ends(chance);
+      const before = started;
+      wants = chance.of(['run', 'start', 'line']);
+      presses[wants]();
+      await passes(1500);
+      if (wrong) throw new Error(`${wrong} after a STOP`);
+      if (started !== before + 1) throw new Error(`${wants} starts ${started - before} times`);
+      stop(chance);
+      await passes(1500);
+      return { ends: [end], seen: [] };
+    };
+  },
+
   // STOP for all robots, pressed again and again.
   async stops() {
     const page = freshPage();
