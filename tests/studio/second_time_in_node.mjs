@@ -1120,6 +1120,76 @@ const PARTS = {
     };
   },
 
+  // What is drawn in one world after another is undone and done again in that world alone, change by change.
+  async drawing() {
+    const page = freshPage();
+    await learns(page);
+    const { WorldDrawing } = await page.load('world/drawing.js');
+    const empty = (name) => ({
+      name, labels: { en: name }, width_cm: 200, height_cm: 100, has_border: true, ambient_percent: 50, seconds: 0,
+      start: { x_cm: 30, y_cm: 30, heading: 0 }, walls: [], boxes: [], lines: [], lamps: [], flags: [],
+    });
+    let world = empty('w0');
+    const choice = { isOwn: false, write: async () => ({ text: 'w' }), keepOwn: async () => true };
+    const drawing = new WorldDrawing({ ask: async () => ({ world: empty('opened') }) }, noting([], 'arena'), {
+      world: () => world, choice, robot: () => [0, 0], isDriving: () => false, rest() {}, preview() {}, tell() {},
+      put(changed) {
+        world = changed;
+        choice.isOwn = true;
+      },
+    });
+    drawing.allow();
+    page.byId('world_draw').click();
+    const presses = (id, detail = 1) => page.byId(`world_${id}`).dispatchEvent(Object.assign(new Event('click'), { detail }));
+    const types = (key) => page.byId('arena').dispatchEvent(Object.assign(new Event('keydown'), { key, preventDefault() {} }));
+    const KINDS = ['walls', 'boxes', 'lines', 'lamps', 'flags'];
+    let worlds = 0;
+    const acts = {
+      adds: (chance) => presses(`add_${chance.of(KINDS)}`, 0),
+      turns: (chance) => presses(chance.of(['turn_left', 'turn_right'])),
+      moves: (chance) => types(chance.of(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'])),
+      deletes: () => presses('delete'),
+      undoes: () => presses('undo'),
+      redoes: () => presses('redo'),
+      leaves() {
+        presses('done');
+        presses('draw');
+      },
+      enters() {
+        world = empty(`w${(worlds += 1)}`);
+        choice.isOwn = false;
+        drawing.forget();
+      },
+      async opens() {
+        page.byId('world_file').files = [new File(['w'], 'w.toml')];
+        page.byId('world_file').dispatchEvent(new Event('change'));
+        await passes(50);
+      },
+    };
+    const drawn = () => JSON.stringify({ ...world, name: '', labels: {} });
+    let past = [];
+    let future = [];
+    return async (chance) => {
+      let end = '';
+      for (let k = 4 + chance.below(16); k > 0; k -= 1) {
+        end = chance.of(['adds', 'adds', 'moves', 'undoes', 'undoes', 'redoes', ...Object.keys(acts)]);
+        const before = drawn();
+        await acts[end](chance);
+        await passes(chance.below(50));
+        if (end === 'enters' || end === 'opens') past = future = [];
+        else if (end === 'undoes' || end === 'redoes') {
+          const [from, to] = end === 'undoes' ? [past, future] : [future, past];
+          const wanted = from.at(-1) ?? before;
+          if (drawn() !== wanted) throw new Error(`it ${end} ${drawn()} and not ${wanted}`);
+          if (from.length) [past, future] = end === 'undoes' ? [past.slice(0, -1), [...to, before]] : [[...to, before], future.slice(0, -1)];
+        } else if (drawn() !== before) [past, future] = [[...past, before], []];
+        const can = ['undo', 'redo'].map((id) => !page.byId(`world_${id}`).disabled);
+        if (`${can}` !== `${[past, future].map((each) => each.length > 0)}`) throw new Error(`after it ${end} it can ${can}`);
+      }
+      return { ends: [end], seen: [] };
+    };
+  },
+
   // The programs that were in the editor, as they are kept: none is lost while there is room, and the oldest go first.
   async programs() {
     const page = freshPage({ generate: () => ({ toCanvas() {} }), correction: {} });

@@ -42,6 +42,7 @@ ENDS = {
     "orders": {"run", "start", "step", "line", "send", "points", "halts", "stop"},
     "stops": {"silent", "confirmed"},
     "worlds": {"one", "several"},
+    "drawing": {"adds", "undoes", "redoes", "enters", "opens"},
     "programs": {"kept", "full"},
     "arena": {"long", "short"},
     "curves": {"long", "short"},
