@@ -84,6 +84,36 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     assert terminal.end() == 0
 
 
+# Where a person may be who presses Ctrl-C: what is typed, and what is seen then.
+PLACES = {
+    "at the prompt": ("", "tini> "),
+    "in a line": ("F(1, ", "F(1, "),
+    "in an open block": ("LOOP(2)\n", "....> "),
+    "in a line of a block": ("LOOP(2)\nF(1,", "....> F(1,"),
+    "after a mistake": ("F(1 2)\n", "need a comma"),
+}
+
+
+def test_ctrl_c_stops_what_the_robot_does_wherever_a_person_is(pty_robot: PtyRobot) -> None:
+    """Also what its button has started."""
+    assert on(pty_robot, "upload", "-e", "SB|F(60, 80)").code == 0
+    terminal = Terminal("live", "--port", pty_robot.port)
+    terminal.until("tini>")
+    for place, (typed, seen) in PLACES.items():
+        pty_robot.push()
+        pty_robot.until(lambda: pty_robot.moves, "it drives")
+        terminal.screen.reset()
+        terminal.type(typed)
+        if typed:
+            terminal.until(re.escape(seen.rstrip()))
+        terminal.type("\x03")
+        terminal.until(re.escape("the robot has confirmed the stop."))
+        assert not pty_robot.moves, place
+        terminal.until("tini>\n*$")
+    terminal.type("\x04")
+    assert terminal.end() == 0
+
+
 def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
     """Up to its end, or to the first line with a mistake."""
 

@@ -7,19 +7,23 @@ the new one, nothing drives that was stopped, and the next upload is whole.
 from __future__ import annotations
 
 from argparse import ArgumentParser
+from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, computer, happened, held, holding
+from tests.firmware.test_host_firmware import KIT, computer, happened, held, holding, send, stored
+from tests.firmware.test_second_time import SmallRobot
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tiniscript.bytecode.image import Image, pack, unpack
-from tiniscript.link.messages import SAVED, SAVED_NOTHING
+from tiniscript.link.frames import Frame, decode_frame, encode_frame
+from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, RUN, SAVED, SAVED_NOTHING
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 OLD = "SB|F(0.1, 50)"
 ROOM = 389
+CHECKSUM_AT = 10  # in an image
 STRIDE = 29  # of the bytes in the tests
 STOP = bytes(8)
 SAVED_MEMORY = [name for name, _ in SAVED].index("MEMORY")
@@ -114,6 +118,149 @@ def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
     assert (status_reply.saved, status_reply.program, status_reply.length) == (SAVED_NOTHING, 0, 0)
     assert (hello.saved, hello.program, hello.length) == (SAVED_NOTHING, 0, 0)
     assert again.robot and again.robot.values.program == 0
+
+
+# -- what comes between ---------------------------------------------------------------------------
+
+TYPED = b"SI|LOOP(9);F(0.1,30);B(0.1,30);END_LOOP\n"
+PIECE_BYTES = 9
+SECOND = image_of("SI|" + "B(0.1, 60); SHOW(7); " * 12)
+BEGUN, ALL_BUT_ONE, ALL = "begun", "all but a piece", "all but its COMMIT"
+CUTS = (BEGUN, ALL_BUT_ONE, ALL)
+
+
+class Line:
+    """A robot that has saved two programs, and a computer that asks frame by frame."""
+
+    def __init__(self, kind: type[HostFirmware], memory: bytes) -> None:
+        self.robot = kind(KIT, memory)
+        self.robot.wait(200)
+        self.epoch = self.seq = 0
+        self.heard = b""
+        self.says_hello()
+        self.asks("CLEAR")
+
+    def asks(self, name: str, payload: bytes = b"") -> int:
+        """Send a frame; return the status of its answer."""
+        self.seq += 1
+        number = BY_NAME[name].number
+        frame = encode_frame(Frame(number, self.seq, self.epoch, payload))
+        answers = [each for each in self.hears(b"\0" + frame, 20) if each.seq == self.seq]
+        assert [each.number for each in answers] == [number], answers
+        return answers[0].payload[0]
+
+    def hears(self, data: bytes, milliseconds: int) -> list[Frame]:
+        sent = self.heard + self.robot.wait(milliseconds, data)
+        *packets, self.heard = sent.split(b"\0")
+        frames = [frame for frame in map(decode_frame, packets) if frame is not None]
+        if frames:
+            self.epoch = frames[-1].epoch
+        return [frame for frame in frames if frame.is_reply]
+
+    def says_hello(self, nonce: bytes = b"abcd") -> None:
+        kit = KIT.fingerprint.to_bytes(2, "little")
+        assert self.asks("HELLO", bytes((MAJOR, MINOR, 2, 0)) + kit + nonce) == OK
+
+
+def pushes(line: Line) -> None:
+    line.robot.push()
+    line.hears(b"", 30)
+
+
+# What needs the memory of a program, or ends what was asked for before it.
+BETWEEN: dict[str, Callable[[Line], object]] = {
+    "a line": lambda line: line.hears(TYPED, 150),
+    "a line for the button": lambda line: line.hears(TYPED.replace(b"SI", b"SB"), 150),
+    "a live line": lambda line: line.asks("LIVE", bytes([RUN]) + image_of("SI|B(9, 40)").code),
+    "a program": lambda line: line.asks("PROGRAM", bytes([RUN]) + image_of("SI|B(9, 50)").code),
+    "an upload": lambda line: line.asks("BEGIN", bytes([RUN]) + bytes_of(SECOND)[2:CHECKSUM_AT]),
+    "a start": lambda line: line.asks("START", bytes(1)),
+    "an undo": lambda line: line.asks("UNDO"),
+    "a breakpoint": lambda line: line.asks("BREAK", bytes(2)),
+    "an abort": lambda line: line.asks("ABORT"),
+    "the button": pushes,
+    "another computer": lambda line: line.says_hello(b"efgh"),
+    "zeros": lambda line: line.hears(STOP, 5),
+    "a stop": lambda line: line.hears(
+        b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 200, line.epoch)), 5
+    ),
+    "a typed stop": lambda line: line.hears(b"S\n", 200),
+}
+# Beside these an upload goes on.
+BESIDE: dict[str, Callable[[Line], object]] = {
+    "a ping": lambda line: line.asks("PING"),
+    "a status": lambda line: line.asks("STATUS"),
+    "an identify": lambda line: line.asks("IDENTIFY"),
+    "a wrong line": lambda line: line.hears(b"F(1,\n", 100),
+    "a wrong live line": lambda line: line.asks("LIVE", bytes([RUN, 255])),
+}
+KINDS_OF_ROBOTS = {"a mega": HostFirmware, "an uno": SmallRobot}
+
+
+def two_programs() -> bytes:
+    robot, session = holding(OLD)
+    send(robot, session, "SB|B(0.1, 40)")
+    stored(robot, session)
+    return robot.memory()
+
+
+def frames_of(image: Image) -> list[tuple[str, bytes]]:
+    data = bytes_of(image)
+    body = data[CHECKSUM_AT + 4 :]
+    return [
+        ("BEGIN", bytes([RUN]) + data[2:CHECKSUM_AT]),
+        *(("DATA", at.to_bytes(2, "little") + body[at : at + PIECE_BYTES])
+          for at in range(0, len(body), PIECE_BYTES)),
+        ("COMMIT", data[CHECKSUM_AT : CHECKSUM_AT + 4]),
+    ]  # fmt: skip
+
+
+def cut_by(
+    kind: str, memory: bytes, cut: str, between: Callable[[Line], object]
+) -> tuple[Line, list[tuple[str, bytes]]]:
+    """Send a part of an upload and then something else; return what is still to be sent."""
+    line, frames = Line(KINDS_OF_ROBOTS[kind], memory), frames_of(SECOND)
+    count = {BEGUN: 1, ALL_BUT_ONE: len(frames) - 2, ALL: len(frames) - 1}[cut]
+    assert {line.asks(*frame) for frame in frames[:count]} == {OK}
+    between(line)
+    return line, frames[count:]
+
+
+@pytest.fixture(scope="module")
+def kept() -> bytes:
+    return two_programs()
+
+
+@pytest.mark.parametrize("kind", KINDS_OF_ROBOTS)
+@pytest.mark.parametrize("cut", CUTS)
+@pytest.mark.parametrize("what", BETWEEN)
+def test_an_upload_that_something_has_come_between_is_over(
+    kept: bytes, what: str, cut: str, kind: str
+) -> None:
+    """No more of it is taken, and the robot does what it does where nothing more of it comes. What
+    runs is watched by the stand-in: no byte of it changes."""
+    line, rest = cut_by(kind, kept, cut, BETWEEN[what])
+    twin, _ = cut_by(kind, kept, cut, BETWEEN[what])
+    if what == "an upload":
+        rest = rest[1:] if cut == ALL_BUT_ONE else [("COMMIT", bytes(4))]  # of which it has less
+    refused = [line.asks(*frame) for frame in rest]
+    assert OK not in refused, (refused, rest)
+    assert {twin.asks("PING") for _ in rest} == {OK}
+    for each in (line, twin):
+        each.robot.wait(300)
+    assert line.robot.did == twin.robot.did
+    assert line.robot.codes() == twin.robot.codes()
+
+
+@pytest.mark.parametrize("kind", KINDS_OF_ROBOTS)
+@pytest.mark.parametrize("cut", CUTS)
+@pytest.mark.parametrize("what", BESIDE)
+def test_an_upload_goes_on_beside_what_needs_no_memory(
+    kept: bytes, what: str, cut: str, kind: str
+) -> None:
+    line, rest = cut_by(kind, kept, cut, BESIDE[what])
+    assert [line.asks(*frame) for frame in rest] == [OK] * len(rest)
+    assert line.robot.codes() == [SECOND.code]
 
 
 if __name__ == "__main__":

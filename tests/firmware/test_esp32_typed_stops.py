@@ -226,3 +226,30 @@ def test_a_frame_before_a_stop_that_waits_does_nothing(make: Make) -> None:
     end.send(LINES[:0] + b"// " + b"x" * 500 + b"\n" + live * 6 + b"\nS\n")
     robot.wait(300)
     assert moves(robot) == []
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
+    """In every state of the receiver: what else waits of him is gone, but no stop that waits for
+    nothing more to come."""
+    robot = booted()
+    driver = session(1, robot)
+    count = 0
+    for k, (name, prefix) in enumerate(ALL.items()):
+        spellings = spellings_after(name)
+        for spelling in (spellings[k % len(spellings)], spellings[-1 - k % len(spellings)]):
+            stopped = []
+            for leaves in (False, True):
+                ends, end = drives(robot, driver), make(robot)
+                driver.events()
+                end.send(prefix + spelling)
+                if leaves:
+                    end.leave()
+                talk(robot, ends, LATE_MS)
+                events = [event.name for event in driver.events()]
+                stopped.append(stands(robot) and "STOPPED" in events)
+                end.leave()
+                talk(robot, ends, LATE_MS)
+            assert stopped[1] or not stopped[0], f"{name} {spelling!r}"
+            count += stopped[0]
+    assert count > len(ALL)

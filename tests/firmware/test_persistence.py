@@ -3,6 +3,9 @@ says that it has before it has."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 
 from tests.firmware.test_host_firmware import (
@@ -20,6 +23,7 @@ from tests.firmware.test_host_firmware import (
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tiniscript.bytecode.image import pack
+from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import SAVED, STATUSES
 from tiniscript.link.payloads import EmptyReply, FetchReply
 from tiniscript.link.requests import OK, Request, send_single
@@ -178,6 +182,38 @@ def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
     assert name_after_power_off(robot) == "NEW"
     assert robot.until(session, session.name(b"ONE")) == OK
     assert name_after_power_off(robot) == "ONE"
+
+
+PACED = Trim(is_exchanged=True, least=3, pace=Pace(10, 20, 30, 40))
+# What is asked for, and what a robot has that is switched on again.
+KEPT: dict[str, tuple[Callable[[Session], PendingRequest[Any]], Callable[[HostFirmware], bool]]] = {
+    "a name": (lambda session: session.name(b"XYZ"),
+               lambda robot: name_after_power_off(robot) == "XYZ"),
+    "a trim": (lambda session: session.trim(bytes((0, 0, 3))),
+               lambda robot: trim_after_power_off(robot).least == 3),
+    "a pace": (lambda session: session.trim(PACED.data()),
+               lambda robot: trim_after_power_off(robot) == PACED),
+    "a program": (lambda session: session.upload(image_of(WAITS)),
+                  lambda robot: program_after_power_off(robot) == bytes_of(WAITS)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", KEPT)
+def test_what_could_not_be_kept_is_kept_when_it_is_asked_for_again(what: str) -> None:
+    """The memory takes nothing for a while, as where the supply breaks down in each write. The
+    first answer after it may still be about the last time."""
+    robot, session = holding()
+    asks, is_kept = KEPT[what]
+    for place in range(len(robot.memory())):
+        robot.wear_out(place)
+    is_program = what == "a program"  # whose answer does not wait for that
+    assert robot.until(session, asks(session)) == (OK if is_program else STATUSES["NOT_KEPT"])
+    robot.talk(session, 3000)
+    assert not is_kept(robot)
+    robot.mend()
+    answers = {robot.until(session, asks(session)) for _ in "12"}
+    robot.talk(session, 3000)
+    assert OK in answers and is_kept(robot)
 
 
 def test_a_name_is_kept_after_a_program_that_met_a_worn_byte() -> None:

@@ -22,7 +22,7 @@ from tests.firmware.test_host_firmware import (
     stored,
     switched_on,
 )
-from tests.machines.host_firmware import EMPTY, HostFirmware
+from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
 from tests.support.campaign import each_seed, wanted
 from tests.support.command import OBSTACLE
 from tests.support.images import image_of
@@ -604,6 +604,52 @@ def test_the_obstacle_program_in_lines(end: str) -> None:
     robot.wait(1000)
     assert happened(robot)[-1] == "MOTORS 60 -60"
     assert typed(robot, OBSTACLE.rstrip("\n").replace("\n", end) + end)[-1] == "// OK"
+
+
+# -- answers that are cut -------------------------------------------------------------------------
+
+PACE = 21  # ticks of a byte at 9600 baud
+ASKED = ("HELP", "PING|CHECK_CONNECTION", "F(1,500)")
+CUTS = {
+    "zeros": bytes(8),
+    "a message": b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0)),
+    "a line": b"\nS\n",
+    "another question": b"\nW(5.)\n",
+}
+STEP_MS = 37
+
+
+def on_a_slow_line() -> HostFirmware:
+    robot = HostFirmware(KIT)
+    robot.wait(200)
+    robot.pace(PACE)
+    return robot
+
+
+def answered(robot: HostFirmware, line: str) -> bytes:
+    """Return what the robot says to a line, to its end."""
+    said = robot.wait(1, f"{line}\n".encode())
+    while part := robot.wait(2500):
+        said += part
+    return said
+
+
+@pytest.mark.parametrize("cut", CUTS)
+@pytest.mark.parametrize("line", ASKED)
+def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:
+    """At any moment of it: nothing more of it is said, and the next time it is what a fresh robot
+    says."""
+    wanted_answer = answered(on_a_slow_line(), line)
+    assert wanted_answer.startswith(b"//")
+    robot = on_a_slow_line()
+    lasts_ms = 1 + len(wanted_answer) * PACE // TICKS
+    for begun_ms in range(1, lasts_ms + STEP_MS, STEP_MS):
+        robot.wait(begun_ms, f"{line}\n".encode())
+        rest = robot.wait(8000, CUTS[cut]).split(b"\n")[1:]  # of the line that was under way
+        if cut != "another question":  # which waits for the answer before it
+            assert not {*rest} & {*wanted_answer.split(b"\n")[:-1]}, (begun_ms, rest)
+        robot.wait(2500, b"\n")
+        assert answered(robot, line) == wanted_answer, begun_ms
 
 
 def test_text_at_once_after_power_on() -> None:

@@ -155,6 +155,10 @@ class HostFirmware(Process):
         """Let a byte of the memory keep what it is."""
         self.ask(b"D", pack("<H", place))
 
+    def mend(self) -> None:
+        """Let each byte of the memory change again."""
+        self.ask(b"M", b"")
+
     def levels(self, trim: bytes) -> tuple[bool, list[tuple[int, int]]]:
         """Return whether a trim is sound, and its levels of both wheels for -128 to 127 percent."""
         answer = self.ask(b"T", trim)

@@ -133,6 +133,7 @@ class Part extends EventTarget {
     this.open = false;
     this.dispatchEvent(new Event('close'));
   }
+  contains(part) { return part === this || this.children.some((each) => each instanceof Part && each.contains(part)); }
   insertBefore(part, next) {
     this.children = this.children.filter((each) => each !== part);
     part.parent = this;

@@ -966,6 +966,105 @@ const PARTS = {
     };
   },
 
+  // What is pressed for a real robot, with breakpoints and without: after STOP the page starts nothing before somebody presses
+  // anew, however late its answers come, and what is pressed then starts.
+  async orders() {
+    let late = () => 5;
+    let wants = ''; // what was pressed since the newest STOP
+    let stops = 0;
+    let wrong = '';
+    let started = 0;
+    let robot = null;
+    const page = freshPage({
+      offer() {}, pictured() {}, drawnPicture() {}, hasSerial: false, chosenPort() {}, knownPorts: async () => [], hasHost: true, isPupil: false, isTeacher: false, post: async () => ({ robots: [] }),
+      hostPorts: async () => [],
+      HostRobot: class {
+        constructor(heard) {
+          this.heard = heard;
+          robot = this;
+        }
+        async connect() {
+          return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false, has_remote: true, has_breakpoints: true };
+        }
+        async ask({ do: what, runs }) {
+          const starts = what === 'start' || what === 'live' || (what === 'upload' && runs);
+          if (starts && !wants) wrong = what;
+          const before = stops;
+          await later(late()); // what is asked before a stop and comes after it is void
+          if (before !== stops) return { failure: 'stopped_elsewhere' };
+          if (starts) {
+            started += 1;
+            this.heard.event({ event: 'STARTED', program: 'ff', is_program: what !== 'live' });
+          }
+          await later(late());
+          return { ok: true, program: 'ff' };
+        }
+        stop() { stops += 1; }
+        leave() {}
+      },
+    });
+    playsNavigator({});
+    playsFetch(async () => { throw new Broken(); });
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { RobotPlace } = await page.load('robot/place.js');
+    const { RobotPanel } = await page.load('robot/panel.js');
+    pageState.robotName.set('tinibot');
+    const whole = { ...PROGRAM, program: 'ff', bytes: 9, halts: [0], findings: [], start: 'SI' };
+    pageState.checked.set(whole);
+    const python = { again() {}, ask: () => later(late(), { ...whole, program: 'ee', image: 'ee' }) };
+    const panel = new RobotPanel({ python, goTo() {}, recorder: noting([], 'recorder'), place: new RobotPlace(), pad: noting([], 'pad') });
+    await passes(10);
+    panel.byHost('p');
+    await passes(100);
+    const presses = {
+      run: () => page.byId('link_upload').click(),
+      start: () => page.byId('link_start').click(),
+      step: () => page.byId('link_step').disabled || page.byId('link_step').click(),
+      line() {
+        page.byId('link_line').value = 'F(1, 80)';
+        page.byId('link_live').dispatchEvent(Object.assign(new Event('submit'), { preventDefault() {} }));
+      },
+    };
+    const others = {
+      send: () => page.byId('link_send').click(),
+      points: (chance) => pageState.breakpoints.set(chance() < 0.5 ? [] : [{ line: 1, column: 1, point: {} }]),
+      halts: () => robot.heard.event({ event: 'HALTED', at: 0, task: 0, program: 'ff', is_program: true }),
+      ends: (chance) => robot.heard.event(chance.of([{ event: 'DONE' }, { event: 'STOPPED', cause: 'BUTTON' }])),
+    };
+    const stop = (chance) => {
+      wants = '';
+      if (chance() < 0.5) page.byId('stop').click();
+      else dispatchEvent(Object.assign(new Event('keydown'), { key: 'Escape' }));
+    };
+    return async (chance, isGood) => {
+      late = () => (isGood ? 5 : chance.below(150));
+      let end = '';
+      for (let k = 3 + chance.below(8); k > 0; k -= 1) {
+        end = chance.of(['stop', 'stop', ...Object.keys(presses), ...Object.keys(presses), ...Object.keys(others)]);
+        if (end === 'stop') stop(chance);
+        else if (presses[end]) {
+          wants = end;
+          presses[end]();
+        } else others[end](chance);
+        await passes(chance() < 0.7 ? chance.below(60) : chance.below(900));
+        if (wrong) throw new Error(`${wrong} after a STOP`);
+      }
+      stop(chance);
+      await passes(1500);
+      others.ends(chance);
+      const before = started;
+      wants = chance.of(['run', 'start', 'line']);
+      presses[wants]();
+      await passes(1500);
+      if (wrong) throw new Error(`${wrong} after a STOP`);
+      if (started !== before + 1) throw new Error(`${wants} starts ${started - before} times`);
+      stop(chance);
+      await passes(1500);
+      return { ends: [end], seen: [] };
+    };
+  },
+
   // STOP for all robots, pressed again and again.
   async stops() {
     const page = freshPage();
@@ -1018,6 +1117,76 @@ const PARTS = {
       own.keep('tinibot');
       await passes(2000);
       return { ends: ['good'], seen: keptWorlds().newest };
+    };
+  },
+
+  // What is drawn in one world after another is undone and done again in that world alone, change by change.
+  async drawing() {
+    const page = freshPage();
+    await learns(page);
+    const { WorldDrawing } = await page.load('world/drawing.js');
+    const empty = (name) => ({
+      name, labels: { en: name }, width_cm: 200, height_cm: 100, has_border: true, ambient_percent: 50, seconds: 0,
+      start: { x_cm: 30, y_cm: 30, heading: 0 }, walls: [], boxes: [], lines: [], lamps: [], flags: [],
+    });
+    let world = empty('w0');
+    const choice = { isOwn: false, write: async () => ({ text: 'w' }), keepOwn: async () => true };
+    const drawing = new WorldDrawing({ ask: async () => ({ world: empty('opened') }) }, noting([], 'arena'), {
+      world: () => world, choice, robot: () => [0, 0], isDriving: () => false, rest() {}, preview() {}, tell() {},
+      put(changed) {
+        world = changed;
+        choice.isOwn = true;
+      },
+    });
+    drawing.allow();
+    page.byId('world_draw').click();
+    const presses = (id, detail = 1) => page.byId(`world_${id}`).dispatchEvent(Object.assign(new Event('click'), { detail }));
+    const types = (key) => page.byId('arena').dispatchEvent(Object.assign(new Event('keydown'), { key, preventDefault() {} }));
+    const KINDS = ['walls', 'boxes', 'lines', 'lamps', 'flags'];
+    let worlds = 0;
+    const acts = {
+      adds: (chance) => presses(`add_${chance.of(KINDS)}`, 0),
+      turns: (chance) => presses(chance.of(['turn_left', 'turn_right'])),
+      moves: (chance) => types(chance.of(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'])),
+      deletes: () => presses('delete'),
+      undoes: () => presses('undo'),
+      redoes: () => presses('redo'),
+      leaves() {
+        presses('done');
+        presses('draw');
+      },
+      enters() {
+        world = empty(`w${(worlds += 1)}`);
+        choice.isOwn = false;
+        drawing.forget();
+      },
+      async opens() {
+        page.byId('world_file').files = [new File(['w'], 'w.toml')];
+        page.byId('world_file').dispatchEvent(new Event('change'));
+        await passes(50);
+      },
+    };
+    const drawn = () => JSON.stringify({ ...world, name: '', labels: {} });
+    let past = [];
+    let future = [];
+    return async (chance) => {
+      let end = '';
+      for (let k = 4 + chance.below(16); k > 0; k -= 1) {
+        end = chance.of(['adds', 'adds', 'moves', 'undoes', 'undoes', 'redoes', ...Object.keys(acts)]);
+        const before = drawn();
+        await acts[end](chance);
+        await passes(chance.below(50));
+        if (end === 'enters' || end === 'opens') past = future = [];
+        else if (end === 'undoes' || end === 'redoes') {
+          const [from, to] = end === 'undoes' ? [past, future] : [future, past];
+          const wanted = from.at(-1) ?? before;
+          if (drawn() !== wanted) throw new Error(`it ${end} ${drawn()} and not ${wanted}`);
+          if (from.length) [past, future] = end === 'undoes' ? [past.slice(0, -1), [...to, before]] : [[...to, before], future.slice(0, -1)];
+        } else if (drawn() !== before) [past, future] = [[...past, before], []];
+        const can = ['undo', 'redo'].map((id) => !page.byId(`world_${id}`).disabled);
+        if (`${can}` !== `${[past, future].map((each) => each.length > 0)}`) throw new Error(`after it ${end} it can ${can}`);
+      }
+      return { ends: [end], seen: [] };
     };
   },
 
@@ -1241,7 +1410,7 @@ const PARTS = {
     };
   },
 
-  // The recording of a run, before and after runs of others.
+  // The recording of a run, before and after runs of others: each row at its time, which stands while the program is halted.
   async recording() {
     const page = freshPage();
     await learns(page);
@@ -1250,23 +1419,36 @@ const PARTS = {
     const runs = new Runs();
     const recorder = new Recorder({ runs, see() {} });
     recorder.sends({ program: 'aa', places: [], shows: [], variables: [] });
-    let own = []; // what the newest run of ours has told
+    let own = []; // what the newest run of ours has told, and when
     let isOpen = false;
+    let began = null; // by the clock that stands in a halt; null before the first row of a run by the button
+    let halted = null;
+    const tells = (event) => {
+      began ??= now();
+      if (isOpen) own.push([Math.round(now() - began), event]);
+    };
+    const goesOn = () => {
+      if (halted !== null) began += now() - halted;
+      halted = null;
+    };
     const ends = (event) => {
-      if (isOpen) own.push(event);
+      goesOn();
+      tells(event);
       isOpen = false;
     };
-    const begins = () => {
+    const begins = (at) => {
       own = [];
       isOpen = true;
+      began = at;
+      halted = null;
     };
     const acts = {
       ours() {
-        begins();
+        begins(now());
         recorder.onEvent({ event: 'STARTED', program: 'aa', is_program: true });
       },
       waits() {
-        begins();
+        begins(null);
         recorder.wait('aa');
       },
       theirs() {
@@ -1274,8 +1456,9 @@ const PARTS = {
         recorder.onEvent({ event: 'STARTED', program: 'bb', is_program: false });
       },
       shows(chance) {
+        if (halted !== null) return; // it stands
         const value = String(chance.below(1000));
-        if (isOpen) own.push(`SHOW ${value}`);
+        if (isOpen) tells(`SHOW ${value}`);
         recorder.onEvent({ event: 'SHOW', value });
       },
       ends(chance) {
@@ -1287,6 +1470,15 @@ const PARTS = {
         ends('LOST');
         recorder.end('LOST');
       },
+      halts() {
+        if (!isOpen || began === null) return;
+        halted ??= now();
+        recorder.halt();
+      },
+      goesOn() {
+        goesOn();
+        recorder.goOn();
+      },
     };
     return async (chance, isGood) => {
       let end = '';
@@ -1296,7 +1488,7 @@ const PARTS = {
         acts[end](chance);
         await passes(chance.below(300));
         if (page.byId('record_play').hidden) continue;
-        const told = runs.all[0].rows.map(([, event]) => event);
+        const told = runs.all[0].rows;
         if (`${told}` !== `${own}`) throw new Error(`${told} in place of ${own}`);
       }
       return { ends: [end], seen: isGood && [...own] };

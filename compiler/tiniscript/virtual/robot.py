@@ -328,7 +328,6 @@ class VirtualRobot:
             self._say(said)
             self.ended_ms = self.now_ms
         self.is_running = False
-        self._ended = ""
 
     def _sensor_reading(self, sensor: int) -> int:
         if self.wheels:

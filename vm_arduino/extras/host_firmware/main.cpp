@@ -263,6 +263,9 @@ void answer_supply(RequestReader* request, Writer*) { table.is_low = request->u8
 // D: a byte of the memory never changes any more.
 void answer_dead(RequestReader* request, Writer*) { table.dead.insert(request->u16()); }
 
+// M: each byte of the memory changes again.
+void answer_mended(RequestReader*, Writer*) { table.dead.clear(); }
+
 // V: sets the readings of the sensors.
 void answer_readings(RequestReader* request, Writer*) {
   for (int32_t& reading : table.readings) reading = request->i32();
@@ -457,6 +460,7 @@ const Answers answers = {
     {'E', answer_memory},
     {'L', answer_supply},
     {'D', answer_dead},
+    {'M', answer_mended},
     {'V', answer_readings},
     {'C', answer_codes},
     {'T', answer_trim},

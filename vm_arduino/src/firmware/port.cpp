@@ -37,7 +37,8 @@ bool port_may_prepare_upload(bool is_live) {
 bool port_may_write_ahead() {
   if (!link.is_driving()) return false;
   const bool is_text = kTextIsInProgram && is_image_running(program) && !is_in_memory();
-  return has_booted() && !is_image_running(live) && !is_text && load_program();
+  // None is loaded: its memory may be that of an upload, which goes on beside a frame that is none.
+  return has_booted() && !is_image_running(live) && !is_text && has_program();
 }
 
 uint8_t* port_memory(uint16_t length, bool is_live) {

@@ -20,6 +20,7 @@ Answer Link::set_breakpoints(const uint8_t* places, uint8_t length) {
   if (port_status().state != State::kRunning) {
     const Answer lacking = lacks_program();
     if (lacking != Answer::kOk) return lacking;
+    image_ = nullptr;  // the program is loaded to where it is
   }
   const Answer answer = port_set_breakpoints(places, static_cast<uint8_t>(length / 2));
   if (answer == Answer::kOk) has_breakpoints_ = length != 0;

@@ -53,6 +53,7 @@ export class RobotPanel {
   /** @type {About | null} */
   #about = null;
   #isBusy = false;
+  #stops = 0; // that were pressed
   /** @type {Choice[]} */
   #choices = [];
   /** Words of a remote control that the newest program reads. @type {string[]} */
@@ -159,6 +160,7 @@ export class RobotPanel {
   /** @param {string} [confirmed] a text, once it is */
   #stop(confirmed = '') {
     if (!this.#way) return;
+    this.#stops += 1;
     this.#debugging.stop();
     this.#watching.stop();
     this.#way.stop();
@@ -380,10 +382,12 @@ export class RobotPanel {
   /** Runs a line now. @param {string} line */
   async #live(line) {
     if (!line.trim() || !this.#about) return;
+    const stops = this.#stops;
     const robot = pageState.robotName.value;
     const data = new TextEncoder().encode(`SI|${line}`);
     /** @type {Checked} */
     const found = await this.#page.python.ask({ do: 'check', robot, language: currentLanguage() }, data);
+    if (stops !== this.#stops) return; // STOP was pressed since
     const mistake = found.findings.find((each) => each.severity === 'mistake');
     if (mistake) {
       this.#speech.tell(whole(mistake));
