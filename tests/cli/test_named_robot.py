@@ -76,7 +76,7 @@ def test_a_name_that_no_robot_has_is_a_mistake(verb: str, tsc: Tsc, tmp_path: Pa
     done = tsc(verb, *(CALLS[verb] or []), path).gives(1)
     assert done.err.count("[TS") == 1  # which words there are nobody knows
     assert "line 1:  // robot: linar\n                   ^^^^^\n" in done.err
-    assert "No robot is called linar; TiniScript includes: tinibot, grabber" in done.err
+    assert "No robot is called linar; TiniScript includes: tinibot, elegoo4" in done.err
     assert "Try:  // robot: liner   [TS138]" in done.err
 
 

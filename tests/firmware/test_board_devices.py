@@ -75,6 +75,7 @@ def test_no_echo_is_far_away_and_takes_three_times_25_ms(width_us: int) -> None:
     ("grabber", "TEMPERATURE", 0, 750, 25),
     ("grabber", "TEMPERATURE", 0, 5000, 100),
     ("liner", "BATTERY * 10", 7, 3700, 74),
+    ("elegoo4", "BATTERY * 10", 3, 900, 74.5),
 ])  # fmt: skip
 def test_a_voltage_is_a_reading(
     name: str, reading: str, channel: int, millivolts: int, power: float
@@ -113,6 +114,15 @@ def test_a_threshold_and_thousandths() -> None:
     assert is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2910))
     assert not is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2950))
     assert is_true(robots.load("liner"), "BATTERY > 1.456", lambda board: board.analog(7, 729))
+
+
+@pytest.mark.parametrize(("sensor", "channel"), [("LINE_L", 2), ("LINE_M", 1), ("LINE_R", 0)])
+def test_a_car_is_over_black_from_250_on(sensor: str, channel: int) -> None:
+    """As ELEGOO's own program has it."""
+    car = robots.load("elegoo4")
+    for millivolts, says in ((1180, False), (1260, True)):
+        found = is_true(car, sensor, lambda board, mv=millivolts: board.analog(channel, mv))  # type: ignore[misc]
+        assert found == says
 
 
 DIM = (

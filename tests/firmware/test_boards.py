@@ -55,6 +55,15 @@ TWO_WIRE_STATES = (
     ("pwm 127", "low", "low", "pwm 255"),
     ("low",) * 4,
 )
+# One direction pin for each motor, and the board makes the other.
+ONE_DIRECTION = (
+    'driver = "pwm_dir"\nleft_pwm = 5\nleft_forward = 7\nright_pwm = 6\nright_forward = 9\n'
+    'standby = "A5"\n'
+)
+ONE_DIRECTION_STATES = tuple(
+    (*(state[k] for k in (0, 1, 3, 4)), "low" if state[0] == "low" else "high")
+    for state in BRIDGE_STATES
+)
 DRIVERS = {
     "l298n": (bridge("l298n"), BRIDGE_STATES),
     "l293d": (bridge("l293d"), BRIDGE_STATES),
@@ -63,6 +72,7 @@ DRIVERS = {
         tuple((*state, "low" if state[0] == "low" else "high") for state in BRIDGE_STATES),
     ),
     "two_wire": (TWO_WIRE, TWO_WIRE_STATES),
+    "pwm_dir": (ONE_DIRECTION, ONE_DIRECTION_STATES),
 }
 
 
@@ -105,13 +115,13 @@ def on_board(name: str, chip: str, *changes: tuple[str, str]) -> Robot:
 @pytest.mark.parametrize(("name", "chip"), [
     ("tinibot", "uno"), ("tinibot", "nano"), ("tinibot", "mega"),
     ("liner", "nano"), ("liner", "mega"), ("grabber", "mega"),
+    ("elegoo4", "uno"), ("elegoo4", "nano"), ("elegoo4", "mega"),
 ])  # fmt: skip
 def test_shipped_robots_drive(name: str, chip: str) -> None:
-    board = started(on_board(name, chip), MOVES).ran(START + OFF + 50)
-    standby = 1 if name == "liner" else 0
-    for ms, state in zip((FORWARD, BACK, TURN, OFF), BRIDGE_STATES, strict=True):
-        last = ("low" if ms == OFF else "high",) * standby
-        assert board.motors(START + ms) == (*state, *last)
+    robot = on_board(name, chip)
+    board = started(robot, MOVES).ran(START + OFF + 50)
+    states = DRIVERS[robot.board.motors.driver][1]
+    assert tuple(board.motors(START + ms) for ms in (FORWARD, BACK, TURN, OFF)) == states
 
 
 @pytest.mark.sampled("name", keep=2)

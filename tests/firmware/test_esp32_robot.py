@@ -68,6 +68,14 @@ pin = 17
 yes_is_low = true
 """
 SERVOS = '[board.motors]\ndriver = "servos"\nleft_pin = 25\nright_pin = 26\n'
+ONE_DIRECTION = """[board.motors]
+driver = "pwm_dir"
+left_pwm = 25
+left_forward = 26
+right_pwm = 27
+right_forward = 33
+standby = 13
+"""
 TWO_WIRE = """[board.motors]
 driver = "two_wire"
 left_forward = 25
@@ -216,12 +224,16 @@ def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -
     assert [event.cause for event in session.events() if event.name == "STOPPED"] == [4]
 
 
-@pytest.mark.parametrize("motors", [SERVOS, TWO_WIRE], ids=["servos", "two_wire"])
+@pytest.mark.parametrize(
+    "motors", [SERVOS, TWO_WIRE, ONE_DIRECTION], ids=["servos", "two_wire", "pwm_dir"]
+)
 def test_other_motors(motors: str) -> None:
-    robot = wired(motors)
-    run(robot, "SI|F(1, 80)")
+    robot = wired(motors, MORE.replace("pin = 13", "pin = 14"))
+    run(robot, "SI|M(-40, 60);W(0.1);F(1, 80)")
     robot.wait(300)
-    assert "MOTORS 80 80" in happened(robot)
+    assert [each for each in happened(robot) if each.startswith("MOTORS")] == [
+        "MOTORS -40 60", "MOTORS 80 80",
+    ]  # fmt: skip
     robot.did.clear()
     robot.step(bytes(4))
     robot.wait(40)

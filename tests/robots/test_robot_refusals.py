@@ -125,6 +125,8 @@ REFUSED = [
      "board.discs.left"),
     ("pin_cannot", "grabber", "echo = 2", "echo = 33", "board.sensors.DISTANCE.echo"),
     ("timer_twice", "tinibot", "left_pwm = 5", "left_pwm = 3", "board.motors.left_pwm"),
+    ("timer_twice", "elegoo4", "left_pwm = 6", "left_pwm = 9", "board.motors.left_pwm"),
+    ("pin_twice", "elegoo4", "button = 2", "button = 12", "board.sensors.DISTANCE.echo"),
     ("timer_twice", "grabber", "left_pwm = 6", "left_pwm = 12", "board.motors.left_pwm"),
     ("timer_twice", "grabber", "left_pwm = 6", "left_pwm = 9", "board.motors.left_pwm"),
 ]  # fmt: skip
@@ -350,8 +352,8 @@ def test_a_wrong_name_gets_the_nearest_one() -> None:
     with pytest.raises(ProfileRefused) as caught:
         robots.load("Tinybot")
     assert describe(caught.value, "es") == [
-        "No hay un robot Tinybot. ¿Quisiste decir tinibot? Los robots son: tinibot, grabber,"
-        " liner, tinibot2, tinibot32, tinibotc3."
+        "No hay un robot Tinybot. ¿Quisiste decir tinibot? Los robots son: "
+        f"{', '.join(robots.names())}."
     ]
     for name in ("", "zzz", "\0", "💥", "{path}"):
         with pytest.raises(ProfileRefused) as caught:

@@ -26,6 +26,7 @@ from tiniscript.syntax.lexer import WORD, scan
 SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
 _UNKNOWN_CODES = (UNKNOWN_NAME, UNKNOWN_WORD)
 BUTTON = "BUTTON"  # of some kits; each robot has one that starts it
+LESSON_ROBOTS = ("grabber", "liner", "tinibot")
 _ORDINALS = ("first", "second", "third")
 
 
@@ -66,6 +67,8 @@ def hints_among(
     kit_names = own.union(*known.values())
     texts = {token.text for token in scan(text).tokens if token.kind is WORD}
     used = {word if word in kit_names else lexicon_concept(word) for word in texts} & kit_names
+    own_name = named_robot(text)
+    named_name = own_name.name.lower() if own_name else ""
     whole = [robot for robot, own_kit in known.items() if used <= own_kit]
     named: list[Diagnostic] = []
     messages: list[set[str]] = []  # robots that words have led to
@@ -80,6 +83,12 @@ def hints_among(
         having = [robot for robot, own_kit in known.items() if word in own_kit - own]
         if diagnostic.code in codes and having:
             having = [item for item in having if item in whole] or having
+            # that which the program names is meant, else one with more of its words, or of a lesson
+            having.sort(
+                key=lambda item: (
+                    item != named_name, -len(used & known[item]), item not in LESSON_ROBOTS,
+                )
+            )  # fmt: skip
             if any(item <= {*having} for item in messages):
                 continue
             messages.append({*having})

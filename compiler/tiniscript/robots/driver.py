@@ -323,6 +323,7 @@ class Bridge(MotorDriver):
 
     module = "motors_bridge"
     profile = "left_pwm, left_forward, left_backward and the same for right"
+    keys: ClassVar[tuple[str, ...]] = ("pwm", *WAYS)  # of each side
     pins = tuple(
         PinKey(f"{side}_{key}", need)
         for side in SIDES
@@ -339,14 +340,14 @@ void $drive_motor(int pwmPin, int forwardPin, int backwardPin, int percent) {
         lines = []
         for side in SIDES:
             pwm = part.pins.pwm(wiring.pins[f"{side}_pwm"])
-            forward, backward = (part.pins.pin(wiring.pins[f"{side}_{way}"]) for way in WAYS)
+            forward, backward = (part.pins.pin(wiring.pins.get(f"{side}_{way}")) for way in WAYS)
             lines.append(f"constexpr Bridge k{side.capitalize()}Motor =")
             lines.append(f"    {{{pwm}, {forward}, {backward}}};")
         standby = part.pins.pin(wiring.pins.get("standby"))
         return [*lines, f"constexpr Pin kStandby = {standby};"]
 
     def sketch(self, plan: Plan, wiring: Wiring) -> list[str]:
-        lines = [driven_line(plan, wiring, side, ("pwm", *WAYS)) for side in SIDES]
+        lines = [driven_line(plan, wiring, side, self.keys) for side in SIDES]
         if "standby" in wiring.pins:
             plan.pin("$STANDBY_$PIN", wiring.pins["standby"], "OUTPUT")
             is_on = "left != 0 || right != 0 ? HIGH : LOW"

@@ -14,7 +14,8 @@ int percent(double level) { return static_cast<int>(lround(level / 2.55)); }
 #if defined(tiniscript_motors_bridge)
 int power_of(const Bridge& motor) {
   const bool is_forward = output_of(motor.forward.number) != 0;
-  const bool is_backward = output_of(motor.backward.number) != 0;
+  const bool is_backward =
+      is_there(motor.backward) ? output_of(motor.backward.number) != 0 : !is_forward;
   if (is_forward == is_backward) return 0;
   return (is_forward ? 1 : -1) * percent(output_of(motor.pwm.pin.number));
 }

@@ -19,6 +19,8 @@
 #include "kits/liner.h"
 #elif defined(tiniscript_grabber)
 #include "kits/grabber.h"
+#elif defined(tiniscript_elegoo4)
+#include "kits/elegoo4.h"
 #elif defined(tiniscript_tinibot2)
 #include "kits/tinibot2.h"
 #elif __has_include("kits/own.h") && !defined(tiniscript_tinibot)

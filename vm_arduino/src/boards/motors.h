@@ -11,7 +11,7 @@
 
 namespace tiniscript {
 
-// Two direction pins and one PWM pin: L298N, L293D, TB6612.
+// Two direction pins and one PWM pin: L298N, L293D, TB6612. A pin for backward may be missing.
 struct Bridge {
   Pwm pwm;
   Pin forward;

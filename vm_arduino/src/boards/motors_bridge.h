@@ -1,4 +1,6 @@
 // Motors behind an L298N, an L293D or a TB6612. Off: no PWM, both direction pins low.
+//
+// A motor without a pin for backward has a board that makes it of the one for forward.
 
 #pragma once
 
@@ -9,7 +11,7 @@ namespace tiniscript {
 tini_always_inline void begin(Bridge motor) {
   begin_pwm(motor.pwm);
   begin_output(motor.forward, false);
-  begin_output(motor.backward, false);
+  if (is_there(motor.backward)) begin_output(motor.backward, false);
 }
 
 // Uses direct writes only, so that it can run before memory is set up.
@@ -22,7 +24,7 @@ tini_always_inline void begin_motors() {
 tini_always_inline void off(Bridge motor) {
   disconnect_inside(motor.pwm);
   write(motor.forward, false);
-  write(motor.backward, false);
+  if (is_there(motor.backward)) write(motor.backward, false);
 }
 
 tini_always_inline void motors_off() {
@@ -37,9 +39,9 @@ tini_always_inline void motors_low() { motors_off(); }
 tini_always_inline void drive(Bridge motor, bool is_backward, uint8_t level) {
   if (is_backward) {
     write(motor.forward, false);
-    write(motor.backward, true);
+    if (is_there(motor.backward)) write(motor.backward, true);
   } else {
-    write(motor.backward, false);
+    if (is_there(motor.backward)) write(motor.backward, false);
     write(motor.forward, true);
   }
   connect_inside(motor.pwm, level);
