@@ -226,14 +226,28 @@ def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
 
 def test_a_page_that_is_loaded_again_goes_on(two: Two) -> None:
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
-    two.types(two.ana, "W(1);", "W(", is_hot=True)
+    two.types(two.ana, "W(1);", "W(9)", is_hot=True)
     kept = json.loads(json.dumps(two.ana.kept()))
     two.types(two.luz, "L(1, 60)", "L(3, 60)")
     two.sends(two.luz)
     two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
-    assert "  W(" in two.ana.text
+    assert two.ana.text[two.ana.caret] == "  W(9)"
+    two.ana.leave()  # nobody has gone on with that line
     assert "F(2, 80)" in two.meet()
+    assert "W(1)" in two.meet()
     assert "L(3, 60)" in " ".join(two.ana.text)
+    two.types(two.ana, "W(9)", "W(95)")
+    assert "W(95)" in two.meet()
+
+
+def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(two: Two) -> None:
+    two.inserts(two.ana, ROOT, two.find("L(1, 60)"))
+    two.program.submit(two.ana.pending)  # and the answer is lost
+    two.types(two.ana, "F(1, 80)", "F(2, 80)")
+    kept = json.loads(json.dumps(two.ana.kept()))
+    two.ana = Page.of("z", two.program.news("z", -1, ""), kept)
+    assert two.meet().count("BEEP(1, 440)") == 1
+    assert "F(2, 80)" in two.meet()
 
 
 def test_a_copy_of_a_page_goes_its_own_way(two: Two) -> None:

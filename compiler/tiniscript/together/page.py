@@ -50,7 +50,8 @@ MOST_STEPS = 1000  # from what has gone to what is there
 class Draft:
     """`rows` in the place of the lines of `covers`, or behind the line of `above`.
 
-    `stays`: it was finished, but somebody has deleted the instruction; it waits for its pupil.
+    `stays`: it waits until its pupil goes on with it: somebody has deleted the instruction, or the
+    page was loaded again.
     """
 
     rows: list[str]
@@ -131,27 +132,38 @@ class Page:
             "ids": self.ids,
             "pending": [data_of_change(each) for each in self.pending],
             "undoing": sorted(self._undoing),
-            "drafts": [[each.rows, each.covers, each.above, each.stays] for each in self.drafts],
+            "drafts": [[each.rows, each.covers, each.above] for each in self.drafts],
+            "row": self.text[self.caret] if self.text else "",
         }
 
     @classmethod
     def of(cls, name: str, news: Json, kept: Json | None = None) -> Page:
         """Return the page that begins with the whole; one that was loaded again, with what it has
-        kept. Raises Refused, and what a damaged store raises: KeyError, TypeError, ValueError."""
+        kept, whatever its name was: a draft stays until its pupil goes on with it.
+
+        Raises Refused, and what a damaged store raises: KeyError, TypeError, ValueError.
+        """
         page = cls(name, tree_of(news["whole"]), news["n"], news["epoch"])
         refused: list[Change] = []
-        if kept is not None and kept["name"] == name:
-            page.count, page.ids = int(kept["count"]), int(kept["ids"])
+        if kept is not None:
             page.pending = list(map(change_of, kept["pending"]))
-            page._undoing = set(kept["undoing"])
+            if kept["name"] == name:
+                page.count, page.ids = int(kept["count"]), int(kept["ids"])
+                page._undoing = set(kept["undoing"])
+            else:  # what is there already is not put in again
+                page.pending = [change._replace(uid=f"{name}:{k}")
+                                for k, change in enumerate(page.pending, 1)]  # fmt: skip
+                page.count = len(page.pending)
             page.drafts = [
-                Draft(list(rows), tuple(map(_key, covers)), _key(above) if above else None, stays)
-                for rows, covers, above, stays in kept["drafts"]
+                Draft(list(rows), tuple(map(_key, covers)), _key(above) if above else None, True)
+                for rows, covers, above in kept["drafts"]
             ]
             refused = page._decide(news)
         page._rebase()
         page._keep_typed(refused)
         page._show()
+        if kept is not None and kept["row"] in page.text:
+            page.caret = page.text.index(kept["row"])
         return page
 
     # -- own changes ------------------------------------------------------------------------------
