@@ -28,8 +28,8 @@ DEEDS = (
     *["replace"] * 6, "note", "arm", "comment", "start", "undo", "undo",
 )  # fmt: skip
 PLANS = (
-    *["change"] * 6, *["new"] * 5, *["around"] * 2, *["cut"] * 2, *["gone"] * 2, "unround", "arm",
-    "note", "blank", "layout", "two", "anew",
+    *["change"] * 6, *["new"] * 5, *["around"] * 2, *["cut"] * 2, *["gone"] * 2, *["lines"] * 2,
+    "unround", "arm", "note", "blank", "layout", "two", "anew",
 )  # fmt: skip
 LARGE = 60  # instructions: from then on more is deleted
 
@@ -252,6 +252,30 @@ class Pupil:
             return text, caret, False
 
         return [first, last]
+
+    def _plan_lines(self) -> list[Stage]:
+        """Lines one below the other, with Enter behind each."""
+        rows = [self._simple() for _ in range(self._chance.randint(2, 4))]
+        at = 0
+
+        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+            k = self._new_line(text)
+            text.insert(k, rows[0])
+            text.insert(k + 1, "")
+            return text, k + 1, True
+
+        def more(text: Text, caret: int) -> tuple[Text, int, bool]:
+            nonlocal at
+            at += 1
+            if not text:
+                return text, caret, False
+            text[caret] = rows[at]
+            if at == len(rows) - 1:
+                return text, caret, False
+            text.insert(caret + 1, "")
+            return text, caret + 1, True
+
+        return [first, *[more] * (len(rows) - 1)]
 
     def _plan_around(self) -> list[Stage]:
         head = self._head()

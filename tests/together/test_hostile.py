@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from tiniscript.together.form import BAD, TOO_LONG, UNPARSED, Refused, change_of, tree_of
+from tiniscript.together.form import BAD, TOO_LONG, UNPARSED, Refused, change_of, taken_of, tree_of
 from tiniscript.together.layout import read, text_of
-from tiniscript.together.ordering import SharedProgram, taken_of
+from tiniscript.together.ordering import SharedProgram
 from tiniscript.together.page import Page
 from tiniscript.together.tree import MOST_GONE
 

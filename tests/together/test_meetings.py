@@ -210,6 +210,27 @@ def test_a_half_typed_value_is_no_change_though_it_parses(two: Two) -> None:
     assert sum("L(1, 9" in str(taken) for taken in two.program.log) == 1
 
 
+def test_of_lines_typed_one_below_the_other_only_the_last_one_waits(two: Two) -> None:
+    k = two.ana.text.index("L(1, 60);")
+    for row in ("W(2)", "f(3,70)", "LOOP(2)", "BEEP(1, 440)", "END_LOOP"):
+        rows = two.ana.text[:]
+        rows[k:k] = [row] if rows[k] else []
+        rows[k] = row
+        two.ana.type([*rows[: k + 1], "", *rows[k + 1 :]], k + 1, True)
+        two.ana.flush()
+        k = two.ana.caret
+        assert two.ana.text[k] == ""
+        assert len(two.ana.drafts) == 1 + (row in ("LOOP(2)", "BEEP(1, 440)"))
+    two.sends(two.ana)
+    two.hears(two.luz)
+    assert "W(2); F(3, 70); LOOP(2); BEEP(1, 440); END_LOOP; L(1, 60);" in " ".join(
+        " ".join(two.luz.text).split()
+    )
+    two.ana.leave()
+    two.meet()
+    assert two.luz.text[-3:] == ["END_LOOP;", "", "L(1, 60);"]  # the empty line is there for all
+
+
 def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
     two.luz.do_by_blocks([Delete((two.find("R(1, 40)"),))])
     two.types(two.ana, "R(1, 40)", "R(2, 40)")

@@ -27,6 +27,7 @@ from tiniscript.together.form import (
     Insert,
     Operation,
     Replace,
+    Taken,
     Unwrap,
     Wrap,
     change_of,
@@ -34,7 +35,7 @@ from tiniscript.together.form import (
     page_and_count,
 )
 from tiniscript.together.layout import read, text_of
-from tiniscript.together.ordering import SharedProgram, Taken, program_of
+from tiniscript.together.ordering import SharedProgram, program_of
 from tiniscript.together.page import Page
 from tiniscript.together.tree import BLOCK, DO, ROOT, START, Tree
 
@@ -216,7 +217,8 @@ class World:
         ids = tree.below()
         assert len(ids) == len(set(ids)) == len(tree.nodes)
         numbered = Counter(tree[id].text for id in ids if re.search("[0-9]", tree[id].text))
-        assert not [said for said, times in numbered.items() if times > 1]
+        twice = [said for said, times in numbered.items() if times > 1]
+        assert not twice, twice
 
     def _check_instructions(self, tree: Tree, text: str, body: Sequence[Instruction]) -> None:
         """Each node is one instruction of the AST, in order, with the text that it has."""

@@ -26,6 +26,7 @@ from tiniscript.together.form import (
     BAD,
     TOO_LONG,
     Refused,
+    Taken,
     change_of,
     is_uid,
     page_and_count,
@@ -34,7 +35,7 @@ from tiniscript.together.form import (
 from tiniscript.together.journal import Journal
 from tiniscript.together.layout import Unparsed, read, text_of
 from tiniscript.together.operations import MOST_CHARACTERS
-from tiniscript.together.ordering import MOST_PAGES, SharedProgram, Taken
+from tiniscript.together.ordering import MOST_PAGES, SharedProgram
 from tiniscript.together.tree import Tree
 
 MOST_MEMBERS = 4
@@ -226,8 +227,10 @@ class Groups:
         held = member.holds
         group.news.notify_all()
         group.news.wait_for(
-            lambda: (group.program.number, group.version, member.holds) != (since, saw, held)
-            or group.members.get(member.token) is not member,
+            lambda: (
+                (group.program.number, group.version, member.holds) != (since, saw, held)
+                or group.members.get(member.token) is not member
+            ),
             MOST_HELD_S,
         )
 

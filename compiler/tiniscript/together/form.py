@@ -115,6 +115,18 @@ class Change(NamedTuple):
     since: int = 0
 
 
+class Taken(NamedTuple):
+    """What a change has done exactly, and its number."""
+
+    number: int
+    uid: str
+    operations: tuple[Operation, ...]
+
+    def data(self) -> Json:
+        operations = [data_of(each) for each in self.operations]
+        return {"n": self.number, "uid": self.uid, "ops": operations}
+
+
 def page_and_count(uid: str) -> tuple[str, int]:
     page, _, number = uid.partition(":")
     return page, int(number)
@@ -206,6 +218,14 @@ def tree_of(snapshot: object) -> Tree:
             raise Refused(BAD)
         were[_name(id)] = Gone(_name(row[0]), _name(row[1]) if row[1] else "", row[2])
     return Tree.of(root, were)
+
+
+def taken_of(found: Json) -> Taken:
+    """Return the taken change in data. Raises Refused."""
+    number, uid, operations = found.get("n"), found.get("uid"), found.get("ops")
+    if type(number) is not int or not is_uid(uid) or not isinstance(operations, list):
+        raise Refused(BAD)
+    return Taken(number, str(uid), tuple(map(operation_of, operations)))
 
 
 def _insert(found: object) -> Insert:

@@ -8,16 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from typing import NamedTuple
 
 from tiniscript.together.form import (
     Change,
-    Operation,
     Refused,
-    data_of,
+    Taken,
     is_uid,
-    operation_of,
     page_and_count,
+    taken_of,
     tree_of,
 )
 from tiniscript.together.operations import applied
@@ -26,26 +24,6 @@ from tiniscript.together.tree import Json, Tree
 KEPT = 2000  # changes in memory, for pages that come back
 MOST_REFUSED = 100  # of a page: what it is told
 MOST_PAGES = 200  # of which it is known what was decided
-
-
-class Taken(NamedTuple):
-    """What a change has done exactly, and its number."""
-
-    number: int
-    uid: str
-    operations: tuple[Operation, ...]
-
-    def data(self) -> Json:
-        operations = [data_of(each) for each in self.operations]
-        return {"n": self.number, "uid": self.uid, "ops": operations}
-
-
-def taken_of(found: Json) -> Taken:
-    """Return the taken change in data. Raises Refused."""
-    number, uid, operations = found.get("n"), found.get("uid"), found.get("ops")
-    if type(number) is not int or not is_uid(uid) or not isinstance(operations, list):
-        raise Refused("bad")
-    return Taken(number, str(uid), tuple(map(operation_of, operations)))
 
 
 class SharedProgram:

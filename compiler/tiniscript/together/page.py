@@ -8,12 +8,14 @@ are ever merged. Runs in the page's Pyodide; knows no network and no editor.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from typing import Any
 
+from tiniscript.syntax.formatter import pieces_of
+from tiniscript.syntax.lexer import scan
 from tiniscript.together import differences
 from tiniscript.together.differences import CutOut
 from tiniscript.together.form import (
@@ -27,6 +29,7 @@ from tiniscript.together.form import (
     change_of,
     data_of_change,
     page_and_count,
+    taken_of,
     tree_of,
 )
 from tiniscript.together.layout import (
@@ -39,7 +42,6 @@ from tiniscript.together.layout import (
     read,
 )
 from tiniscript.together.operations import applied, conditions, do_hold
-from tiniscript.together.ordering import taken_of
 from tiniscript.together.tree import DO, ROOT, START, TEXT, Json, Tree, kind_of
 
 MOST_UNDONE = 200  # own changes that can be taken back
@@ -71,11 +73,11 @@ class Item:
 
 @dataclass(eq=False)
 class Hunk:
-    """Items that the lines from `first` to `last`, not included, take the place of; `at`: the first
-    of these items, or where there is none the one behind."""
+    """Items that the lines from `first` to `last`, not included, take the place of, and whose lines
+    these hide: no line is hidden by two."""
 
     items: list[Item]
-    at: int
+    covers: tuple[Key, ...]
     first: int
     last: int
 
@@ -157,6 +159,7 @@ class Page:
             page.drafts = [
                 Draft(list(rows), tuple(map(_key, covers)), _key(above) if above else None, True)
                 for rows, covers, above in kept["drafts"]
+                if rows  # what was only taken out is there again
             ]
             refused = page._decide(news)
         page._rebase()
@@ -237,7 +240,7 @@ class Page:
             held = hunks
         for choice in (held, hunks):
             if self._make_changes(hunks, choice):
-                self.drafts = [self._draft(hunk) for hunk in choice]
+                self.drafts = self._drafts(choice)
                 break
         self._show(self.caret)
 
@@ -298,12 +301,37 @@ class Page:
             else:
                 merged.append([i1, i2, j1, j2])
         bounds = [*visible, len(self._items)]
-        return [self._hunk(bounds[i1], bounds[max(i1, i2)], j1, j2) for i1, i2, j1, j2 in merged]
+        hunks: list[Hunk] = []
+        hidden: set[Key] = set()
+        for hunk in merged:
+            for i1, i2, j1, j2 in self._around_caret(*hunk):
+                items = self._items_between(bounds[i1], bounds[i2])
+                covers = [key for key in dict.fromkeys(_covers(items)) if key not in hidden]
+                hidden.update(covers)
+                hunks.append(Hunk(items, tuple(covers), j1, j2))
+        return hunks
 
-    def _hunk(self, at: int, end: int, first: int, last: int) -> Hunk:
-        while at and self._items[at - 1].text is None:
-            at -= 1
-        return Hunk(self._items[at:end], at, first, last)
+    def _around_caret(self, i1: int, i2: int, j1: int, j2: int) -> list[tuple[int, int, int, int]]:
+        """Return the parts of a hunk before a hot line, of that, and behind it: what is finished in
+        the lines around goes on without it. A draft stays whole: nobody knows which of its lines
+        hide which."""
+        k = self.caret
+        if not self.is_hot or not j1 <= k < j2:
+            return [(i1, i2, j1, j2)]
+        first = min(i2, i1 + k - j1)
+        last = max(first, i2 - (j2 - k - 1))
+        shown = self._shown()
+        for i in (first, last):
+            if i1 < i < i2 and shown[i].draft and shown[i].draft is shown[i - 1].draft:
+                return [(i1, i2, j1, j2)]
+        parts = [(i1, first, j1, k), (first, last, k, k + 1), (last, i2, k + 1, j2)]
+        return [part for part in parts if part[0] < part[1] or part[2] < part[3]]
+
+    def _items_between(self, first: int, last: int) -> list[Item]:
+        """Return these items, and those without a line that are right before them."""
+        while first and self._items[first - 1].text is None:
+            first -= 1
+        return self._items[first:last]
 
     def _waits(self, hunk: Hunk) -> bool:
         """Whether it is a draft that stays, as it was."""
@@ -317,36 +345,40 @@ class Page:
     def _splits(self, hunks: list[Hunk], held: list[Hunk]) -> bool:
         """Whether a row that is hidden by what is held is put in elsewhere: it would be there twice
         if the draft was given up."""
-        hidden = {key for hunk in held for key in _covers(hunk)}
+        hidden = {key for hunk in held for key in hunk.covers}
         rows = {line.text.strip() for line in lines(self.view) if hidden.intersection(line.keys)}
         rows |= {row.rstrip(";") for row in rows}
         return any(self.text[k].strip() in rows for hunk in hunks if hunk not in held
                    for k in range(hunk.first, hunk.last) if self.text[k].strip())  # fmt: skip
 
-    def _draft(self, hunk: Hunk) -> Draft:
-        before = reversed(self._items[: hunk.at])
-        above = next((item.keys[-1] for item in before if item.keys), None)
-        drafts = [item.draft for item in hunk.items if item.draft]
-        above = above or next((draft.above for draft in drafts if draft.above), None)
-        rows = self.text[hunk.first : hunk.last]
-        return Draft(rows, _covers(hunk), above, self._waits(hunk))
+    def _drafts(self, held: list[Hunk]) -> list[Draft]:
+        """Return what is held as drafts, each behind the line above it, which may be a new one."""
+        keys = [key for line in lines(self.view) for key in line.keys]
+        found = []
+        for k, hunk in enumerate(held):
+            rows = self.text[hunk.first : hunk.last]
+            before = pieces_of(scan(self._text_without(held[:k], hunk.first)))
+            above = keys[min(len(before), len(keys)) - 1] if before and keys else None
+            found.append(Draft(rows, hunk.covers, above, self._waits(hunk)))
+        return found
 
-    def _text_without(self, held: list[Hunk]) -> str:
-        """Return the text with the lines of the program in the place of what is held."""
+    def _text_without(self, held: list[Hunk], end: int | None = None) -> str:
+        """Return the text, up to a line, with the lines of the program in the place of what is
+        held."""
         program = lines(self.view)
         found, at = [], 0
         for hunk in held:
-            covers = set(_covers(hunk))
+            covers = set(hunk.covers)
             found += self.text[at : hunk.first]
             found += [line.text for line in program if line.keys and covers.issuperset(line.keys)]
             at = hunk.last
-        return "\n".join([*found, *self.text[at:]])
+        return "\n".join([*found, *self.text[at:end]])
 
     def _revive(self, hunks: Iterable[Hunk]) -> None:
         """A line that was finished in the place of one that somebody has deleted is that one."""
         for hunk in hunks:
             rows = [row for row in self.text[hunk.first : hunk.last] if row.strip()]
-            gone = [id for id, role in _covers(hunk) if role == OWN and id not in self.view]
+            gone = [id for id, role in hunk.covers if role == OWN and id not in self.view]
             if len(rows) != 1 or not gone:
                 continue
             try:
@@ -481,6 +513,14 @@ class Page:
         shown = self._shown()
         return (shown[caret].keys, 0) if caret < len(shown) and shown[caret].keys else None
 
+    def ids_of_lines(self) -> list[str]:
+        """Return whose each line is that is shown: the id of an instruction, or nothing."""
+        found = []
+        for item in self._shown():
+            covers = item.draft.covers if item.draft else item.keys
+            found.append(covers[-1][0] if covers else "")
+        return found
+
     def _anchor(self, above: Key | None, present: set[Key]) -> Key | None:
         """Return the line behind which a draft is whose line above has gone."""
         if above is None or above in present:
@@ -497,13 +537,10 @@ class Page:
         return None
 
 
-def _covers(hunk: Hunk) -> tuple[Key, ...]:
-    """Return whose lines a hunk takes the place of."""
-    return tuple(
-        dict.fromkeys(
-            key for item in hunk.items for key in (item.draft.covers if item.draft else item.keys)
-        )
-    )
+def _covers(items: list[Item]) -> Iterator[Key]:
+    """Return whose lines these are, or take the place of."""
+    for item in items:
+        yield from item.draft.covers if item.draft else item.keys
 
 
 def _key(found: Any) -> Key:
