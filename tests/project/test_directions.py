@@ -47,6 +47,7 @@ UPSTREAM: dict[str, set[str]] = {
     "diagnostics": {"base.source", "base.languages"},
     "bytecode": {"base.kit", "base.limits", "base.words"},
     "syntax": TEXT,
+    "together": {"base.files", "base.source", "base.words", "syntax"},
     "recovery": {*TEXT, "syntax"},
     "semantics": {*TEXT, "syntax", "recovery"},  # of recovery its lexicon
     "codegen": {"base.source", "base.fixed_point", "base.limits", "bytecode", "semantics"},

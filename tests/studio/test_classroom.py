@@ -16,9 +16,10 @@ import pytest
 from tests.support.waiting import HANGS_S
 from tiniscript.cli.commands import studio as command
 from tiniscript.studio import class_keeping, classroom
-from tiniscript.studio import classroom as rate_of
+from tiniscript.studio import rates as rate_of
 from tiniscript.studio.class_keeping import Keeper
-from tiniscript.studio.classroom import Classroom, Rate
+from tiniscript.studio.classroom import Classroom
+from tiniscript.studio.rates import Rate
 from tiniscript.studio.robot_link import BadRequest
 
 Json = dict[str, Any]

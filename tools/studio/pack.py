@@ -16,7 +16,9 @@ from pathlib import Path, PurePosixPath
 from types import CodeType
 
 ROOT = "tiniscript.studio.worker"
-LESSONS = "tiniscript.studio.page_lessons"  # fetched when it is first needed
+# Fetched when they are first needed.
+LESSONS = "tiniscript.studio.page_lessons"
+TOGETHER = "tiniscript.studio.page_together"
 # What needs what no browser has: ports, a terminal, other programs, files of profiles.
 LEFT_OUT = ("tiniscript.cli", "tiniscript.doctor", "tiniscript.flash", "tiniscript.link.modules",
             "tiniscript.link.sharing", "tiniscript.robots.reader",
@@ -175,7 +177,8 @@ def data_of(package: str, rows: Mapping[str, tuple[str, ...]]) -> Files:
 
 
 def pack(start: list[str], package: str, cobs: str, standard: str, target: str) -> str:
-    """Write `python.zip`, `tiniscript.zip` and `lessons.zip`; return what was packed, in words."""
+    """Write `python.zip`, `tiniscript.zip`, `lessons.zip` and `together.zip`; return what was
+    packed, in words."""
     library = zipfile.ZipFile(standard)
     packer = Packer([Path(package), Path(cobs)], library)
     for name in (*start, *ENCODINGS, ROOT):
@@ -184,9 +187,13 @@ def pack(start: list[str], package: str, cobs: str, standard: str, target: str) 
     write(f"{target}/tiniscript.zip", {**compile_all(packer.own), **data_of(package, DATA)})
     packer.add(LESSONS)  # what of Python's library these need is in the archive of that
     lessons = {name: source for name, source in packer.own.items() if name not in packed}
+    packed |= set(lessons)
+    packer.add(TOGETHER)
+    together = {name: source for name, source in packer.own.items() if name not in packed}
     data = data_of(package, DATA_OF_LESSONS)
     data |= {name: on_page(page.decode()).encode() for name, page in data.items()
              if name.endswith(".md")}  # fmt: skip
     write(f"{target}/lessons.zip", {**compile_all(lessons), **data})
+    write(f"{target}/together.zip", compile_all(together))
     write(f"{target}/python.zip", compile_all(packer.standard))
     return f"{len(packer.own)} modules of tiniscript and cobs, {len(packer.standard)} of Python"

@@ -148,6 +148,11 @@ def path() -> Path:
     return settings_folder() / "class.json"
 
 
+def groups_folder() -> Path:
+    """Return the folder of the journals of groups."""
+    return settings_folder() / "class.groups"
+
+
 def _unread_path() -> Path:
     return path().with_name("class.unread.json")
 

@@ -5,6 +5,10 @@ queue; a turn ends when the pupil leaves the robot or is not heard, and after a 
 waits. A pupil reaches only the robot of their own turn: the page of a request is never one that a
 pupil names. A pupil's page tells of its work, and whether a hand is up.
 
+Pupils of a group (`groups`) have one place in the queue and one turn: each of them may take the
+robot over, and each may stop it, whoever drives it. Their program is asked for without the lock of
+the class.
+
 Work belongs to the token of the page that made it. Nobody else's replaces it or pushes it out: the
 teacher gives it to another pupil, and a copy stays until that page has said that it has it. Knows
 no HTTP, no file (`class_keeping`) and no clock of its own.
@@ -18,6 +22,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
+from pathlib import Path
 from threading import RLock
 from time import monotonic
 from typing import NamedTuple
@@ -34,42 +39,15 @@ from tiniscript.studio.class_keeping import (
     is_token,
 )
 from tiniscript.studio.entrances import new_token
+from tiniscript.studio.groups import Groups
 from tiniscript.studio.hosted_robot import HostedRobot
 from tiniscript.studio.hosting import Hosting, list_ports, port_of
 from tiniscript.studio.names import are_alike, free_name, plain_name
+from tiniscript.studio.rates import Rate
 from tiniscript.studio.robot_link import BadRequest, Json, robot_of, whole_number
 from tiniscript.studio.serving import REQUEST_BYTES
 
 OWN_NAME_CHARACTERS, MOST_COLOUR = 16, 31  # of the robot that a pupil calls their own
-MOST_NAMES = 1000  # who has not been seen for longest is forgotten
-
-
-class Rate:
-    """`burst` at once, `per_s` come back each second; for each name apart."""
-
-    def __init__(self, burst: float, per_s: float) -> None:
-        self._burst = burst
-        self._per_s = per_s
-        self._left: dict[str, tuple[float, float]] = {}  # what was left, and when
-
-    def has(self, name: str, now_s: float) -> bool:
-        """Return whether one is left."""
-        return self._now(name, now_s) >= 1
-
-    def take(self, name: str, now_s: float) -> bool:
-        """Take one; return whether one was left."""
-        left = self._now(name, now_s)
-        is_left = left >= 1
-        self._left.pop(name, None)
-        if len(self._left) >= MOST_NAMES:
-            del self._left[next(iter(self._left))]
-        self._left[name] = (left - 1 if is_left else left, now_s)
-        return is_left
-
-    def _now(self, name: str, now_s: float) -> float:
-        left, when_s = self._left.get(name, (self._burst, now_s))
-        return min(self._burst, left + (now_s - when_s) * self._per_s)
-
 
 class OwnRobot(NamedTuple):
     """What a pupil has made of the virtual robot: `colour` is a number of the page's colours."""
@@ -146,6 +124,12 @@ class ClassRobot:
         self.pupil, self.hosted, self.began_s = pupil, None, now_s
         self.waited, pupil.waits = pupil.waits, None
 
+    def pass_to(self, pupil: Pupil) -> None:
+        """Let another pupil of the group have the rest of the turn, and stop what was started."""
+        if self.hosted is not None:
+            self.hosted.leave("group_other")
+        self.pupil, self.hosted = pupil, None
+
     def end(self) -> None:
         self.pupil = self.hosted = None
 
@@ -189,9 +173,11 @@ class Classroom:
 
     def __init__(
         self, hosting: Hosting, ports: list[str], turn_s: int | None = None,
-        clock: Clock = monotonic,
+        clock: Clock = monotonic, folder: Path | None = None,
     ) -> None:  # fmt: skip
-        """`turn_s` of None: as in the class from before a crash, else TURN_S."""
+        """`turn_s` of None: as in the class from before a crash, else TURN_S. `folder`: for what is
+        kept of groups."""
+        self._groups = Groups(clock, folder)
         self.code = _new_code()
         self._hosting = hosting
         self._turn_s = TURN_S if turn_s is None else turn_s
@@ -237,6 +223,10 @@ class Classroom:
                 return self._connect(pupil, request)
             if do in ("beat", "leave"):
                 return self._drive(pupil, request)
+            if do in ("group_join", "group_leave"):
+                return self._change_group(pupil, request)
+        if do == "group":
+            return self._groups.answer(token, request)
         raise BadRequest
 
     def _join(self, address: str, request: Json) -> Json:
@@ -332,9 +322,11 @@ class Classroom:
         """A page tells of its program, and hears its place: 0 is a turn, -1 none."""
         self._hear_work(pupil, request)
         wants, hand = request.get("wants"), request.get("hand")
+        mates = self._mates(pupil)
         if wants is False:
-            pupil.waits = None
-        elif wants is True and pupil.waits is None and self._turn(pupil) is None:
+            for mate in mates:
+                mate.waits = None
+        elif wants is True and not any(mate.waits or self._turn(mate) for mate in mates):
             pupil.waits = next(self._numbers)
         if hand is False:
             pupil.hand = None
@@ -344,10 +336,13 @@ class Classroom:
         if self._over:
             pupil.knows_end = True
             return {"over": self._over}
-        turn, waiting = self._turn(pupil), self._waiting_pupils()
+        turn, waiting = self._turn_of(mates), self._waiting_pupils()
         place = -1 if turn is None else 0
-        if pupil in waiting:
-            place = waiting.index(pupil) + 1
+        for mate in mates:
+            if mate in waiting:
+                place = waiting.index(mate) + 1
+        group, groups = self._groups.of(pupil.token), self._groups.shown()
+        driver = turn.pupil if turn is not None else None
         given = next((item for item in self._kept.values() if item.given_to == pupil.token), None)
         return {
             "name": pupil.name,
@@ -357,6 +352,9 @@ class Classroom:
             "robot": turn.name if turn else "",
             "left_s": self._remaining_s(turn) if turn else 0,
             "hand": pupil.hand is not None,
+            **({"groups": groups} if groups else {}),
+            **({"group": group.name} if group is not None else {}),
+            **({"driver": driver.name} if driver is not None and driver is not pupil else {}),
             **({"given": {"key": given.key, **given.work._asdict()}} if given else {}),
         }
 
@@ -391,9 +389,11 @@ class Classroom:
 
     def _connect(self, pupil: Pupil, request: Json) -> Json:
         self._tend()
-        robot = self._turn(pupil)
+        robot = self._turn(pupil) or self._turn_of(self._mates(pupil))
         if robot is None:
             return {"failure": "turn_none"}
+        if robot.pupil is not pupil:
+            robot.pass_to(pupil)
         # One that this page has left a moment ago is not the robot of this turn.
         answer = self._hosting.answer({**_own_request(pupil, request), "port": robot.port})
         if not answer:
@@ -407,8 +407,40 @@ class Classroom:
         return self._hosting.answer(_own_request(pupil, request))
 
     def _stop(self, pupil: Pupil, request: Json) -> Json:
-        """Stop the own robot, and no other, whatever was asked."""
+        """Stop the own robot, or that of the group, and no other, whatever was asked. Of another
+        pupil's turn it latches: what was asked before it, and arrives later, is refused."""
+        robot = self._turn_of(self._mates(pupil))
+        if robot is not None and robot.pupil is not pupil and robot.hosted is not None:
+            stops = request.get("group_stops", 0)
+            if self._groups.is_new_stop(pupil.token, stops if type(stops) is int else 0):
+                robot.hosted.attending.latch()
         return self._hosting.answer({**_own_request(pupil, request), "do": "stop", "asked": []})
+
+    # -- groups -----------------------------------------------------------------------------------
+
+    def _change_group(self, pupil: Pupil, request: Json) -> Json:
+        if request["do"] == "group_leave":
+            self._groups.leave(pupil.token)
+            return {}
+        if self._over:
+            return {"failure": "class_over"}
+        answer = self._groups.join(pupil.token, pupil.name, request)
+        mates = self._mates(pupil)
+        places = [mate.waits for mate in mates if mate.waits is not None]
+        for mate in mates:  # from now on they have one place
+            mate.waits = None
+        if places and self._turn_of(mates) is None:
+            pupil.waits = min(places)
+        return answer
+
+    def _mates(self, pupil: Pupil) -> list[Pupil]:
+        """Return all pupils of the group, the pupil first; of no group that one alone."""
+        tokens = self._groups.mates(pupil.token)
+        return [pupil, *(mate for mate in self._pupils.values()
+                         if mate.token in tokens and mate is not pupil)]  # fmt: skip
+
+    def _turn_of(self, pupils: list[Pupil]) -> ClassRobot | None:
+        return next((turn for turn in map(self._turn, pupils) if turn is not None), None)
 
     # -- turns ------------------------------------------------------------------------------------
 
@@ -452,9 +484,19 @@ class Classroom:
             robot.take_back()
 
     def _begin_turn(self, robot: ClassRobot, now_s: float) -> None:
-        here = [pupil for pupil in self._waiting_pupils() if now_s - pupil.heard_s <= HERE_S]
-        if here and self._hosting.is_free(robot.port):
-            robot.begin(here[0], now_s)
+        """Give a robot to who is next, or to who is here of the same group."""
+        for pupil in self._waiting_pupils():
+            here = [mate for mate in self._mates(pupil) if now_s - mate.heard_s <= HERE_S]
+            if here and self._hosting.is_free(robot.port):
+                place, pupil.waits = pupil.waits, None
+                here[0].waits = place
+                robot.begin(here[0], now_s)
+            if here:
+                return
+
+    def tidy(self) -> None:
+        """Delete what is kept of groups that this class has not."""
+        self._groups.tidy()
 
     def _waiting_pupils(self) -> list[Pupil]:
         found = [(pupil.waits, pupil) for pupil in self._pupils.values() if pupil.waits is not None]
@@ -518,10 +560,15 @@ class Classroom:
             if robot is not None:
                 robot.take_back()
             if do == "class_remove":
+                self._groups.leave(pupil.token)
                 self._forget(pupil)
 
     def _text(self, request: Json) -> Json:
-        """Return the work of a pupil, or kept work, of which the page names the key."""
+        """Return the work of a pupil, or of a group, or kept work, of which the page names the
+        key."""
+        group = self._groups.by_key(request.get("group"))
+        if group is not None:
+            return {"version": group.program.number, **Work(group.text)._asdict()}
         pupil = self._pupil(request) or self._kept.get(str(request.get("key")))
         version = pupil.version if isinstance(pupil, Pupil) else 0
         return {"version": version, **(pupil.work if pupil else NOTHING)._asdict()}
@@ -556,6 +603,7 @@ class Classroom:
         """Begin another class: nobody is in it, and nothing is kept of the one before."""
         for robot in self._robots:
             robot.take_back()
+        self._groups.end()
         self._pupils.clear()
         self._kept.clear()
         self.code = _new_code()
@@ -571,6 +619,7 @@ class Classroom:
                 "turn_s": self._turn_s,
                 "places": self._places,
                 "robots": [robot.port for robot in self._robots],
+                "groups": self._groups.state_to_keep(),
                 "kept": [
                     {
                         "name": item.name,
@@ -610,6 +659,8 @@ class Classroom:
                     result.given_to = result.given_to if result.given_to in self._pupils else ""
                     self._keep(result)
             self._goes_on = bool(self._pupils or self._kept)
+            here = set(self._pupils) if is_same_lesson else set()
+            self._groups.go_on(_rows(kept, "groups"), here.__contains__)
             if not is_same_lesson:
                 for pupil in list(self._pupils.values()):
                     self._forget(pupil)
@@ -643,6 +694,7 @@ class Classroom:
     def _end(self, erases: bool) -> None:
         for robot in self._robots:
             robot.take_back()
+        self._groups.end()
         self._over = "erased" if erases else "kept"
         self._over_s = self._clock()
 
@@ -693,6 +745,15 @@ class Classroom:
                     "lessons": pupil.work.lessons,
                 }
                 for pupil in self._pupils.values()
+            ],
+            "groups": [
+                {
+                    "key": group.key,
+                    "name": group.name,
+                    "pupils": [self._number(token) for token in group.members],
+                    "version": group.program.number,
+                }
+                for group in self._groups.all()
             ],
             "robots": [
                 {

@@ -307,6 +307,7 @@ class _Handler(BaseHTTPRequestHandler):
     server_version = "tsc"
     sys_version = ""
     timeout = SILENT_S
+    disable_nagle_algorithm = True  # else the body of an answer waits 40 ms behind its head
 
     def setup(self) -> None:
         super().setup()

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import json
 import marshal
+import sys
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any
 
 from tiniscript.base import languages
@@ -20,6 +22,7 @@ from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import LOOSE, read
 
 Answer = dict[str, Any]
+TOGETHER = "tiniscript.studio.page_together"
 MOST_BLOCKS = 1500  # that a page can move about
 
 
@@ -117,6 +120,10 @@ def _request_handler(do: str) -> Callable[[Answer, bytes], Answer]:
     """Return what answers a request. A page begins without its robots: they load when asked for."""
     if do in _ASKED:
         return _ASKED[do]
+    if do.startswith("group_"):  # which the page has fetched meanwhile; its first archive lacks it
+        sys.path_importer_cache.clear()
+        asked: dict[str, Callable[[Answer, bytes], Answer]] = import_module(TOGETHER).ASKED
+        return asked[do]
     if do in ("connect", "link", "import_keys"):
         from tiniscript.studio.page_line import ASKED
     else:

@@ -76,16 +76,15 @@ python.then(
   (why) => postMessage({ id: 0, error: String(why) }),
 );
 
-/** @type {Promise<void> | null} */
-let lessons = null;
+/** What is fetched once it is needed, until that was possible. @type {Map<string, Promise<void>>} */
+const archives = new Map();
 
-/** Fetches the lessons, once that was possible. */
-function needLessons() {
-  lessons ??= Promise.all([python, fetched('lessons.zip')]).then(([{ unpack }, data]) => unpack(data));
-  lessons.catch(() => {
-    lessons = null;
-  });
-  return lessons;
+/** @param {string} name */
+function need(name) {
+  const coming = archives.get(name) ?? Promise.all([python, fetched(name)]).then(([{ unpack }, data]) => unpack(data));
+  archives.set(name, coming);
+  coming.catch(() => archives.delete(name));
+  return coming;
 }
 
 addEventListener('message', async ({ data: { id, request, data } }) => {
@@ -93,7 +92,8 @@ addEventListener('message', async ({ data: { id, request, data } }) => {
     const { ask, learn } = await python;
     const asked = JSON.parse(request);
     const { language } = asked;
-    if (asked.do.startsWith('lesson_')) await Promise.all([needLessons(), coming.get(language)?.catch(() => null)]);
+    if (asked.do.startsWith('lesson_')) await Promise.all([need('lessons.zip'), coming.get(language)?.catch(() => null)]);
+    if (asked.do.startsWith('group_')) await need('together.zip');
     if (asked.do === 'learn') {
       if (!learnt.has(language)) {
         coming.set(language, fetched(`messages.${language}.json`).then((found) => learn(language, found)));

@@ -39,7 +39,10 @@ def run(options: Namespace, language: str) -> int:
             raise CommandError(2, "studio_needs_class")
         return _serve(options, language, (serving.HOST, port), hosting)
     host = _address_option(options.address) if options.address else _address()
-    room = Classroom(hosting, list(map(inputs.port, options.ports)), 60 * minutes or None)
+    room = Classroom(
+        hosting, list(map(inputs.port, options.ports)), 60 * minutes or None,
+        folder=class_keeping.groups_folder(),
+    )  # fmt: skip
     with closing(_class_keeper()) as keeper:
         return _serve(options, language, (host, port), hosting, _Class(room, keeper))
 
@@ -107,7 +110,9 @@ def _class_keeper() -> class_keeping.Keeper:
 def _resume_class(taught: _Class) -> int:
     """Go on with a class that a crash has ended; return how many pupils it has."""
     kept = taught.keeper.read()
-    return taught.room.go_on(*kept) if kept is not None else 0
+    pupils = taught.room.go_on(*kept) if kept is not None else 0
+    taught.room.tidy()
+    return pupils
 
 
 def _server(port: int, host: str, hosting: Hosting, classroom: Classroom | None) -> serving.Server:

@@ -1,6 +1,8 @@
 // A pupil's part in a class: joins with the code, asks for a robot, waits, and drives the robot of
 // the own turn as any robot of `tsc studio`.
 //
+// Pupils of a group (`group.js`) have one turn: who drives is in the answer, and each may take the robot over.
+//
 // The page asks once a second for its place. That keeps no robot going: only a page that drives does.
 
 import { button, labelled, made } from '../page/made.js';
@@ -9,6 +11,7 @@ import { askAs, post } from '../robot/host.js';
 import { keepDone, lessonsDone } from '../lesson/progress.js';
 import { shown } from '../robot/plain_text.js';
 import { Failed } from '../robot/transport.js';
+import { Group } from './group.js';
 import { sign } from './signs.js';
 import { clock } from './wall.js';
 import { pageState } from '../page/page_state.js';
@@ -22,7 +25,7 @@ const LOOK_MS = 1000;
 const SOON_MS = 300; // while the next turn may be one's own
 
 /** @typedef {{key: string, text: string, robot: string, lessons: string[]}} Given */
-/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string}} Here */
+/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string, groups?: import('./group.js').Seen[], driver?: string}} Here */
 
 function newStay() {
   return {
@@ -55,6 +58,7 @@ export class Pupil {
     this.#look();
   }, sign('hand', 26));
   #isUp = false;
+  #group;
   #isEntering = false;
   #stay = newStay(); // in one class: an answer of the one before is none of the next one
   #timer = 0;
@@ -84,6 +88,7 @@ export class Pupil {
     });
     this.#box.append(this.#join, this.#said, made('p', '', this.#ask, this.#quit, this.#connect, this.#own));
     this.#box.hidden = false;
+    this.#group = new Group(page, this.#box);
     const token = kept(PLACE, 'sessionStorage');
     if (token) this.#begin(token);
     else this.#leave('class_welcome');
@@ -109,6 +114,7 @@ export class Pupil {
     keepAt(BEFORE, token);
     this.#join.hidden = true;
     this.#hands.hidden = false;
+    this.#group.enter();
     this.#look();
   }
 
@@ -117,6 +123,7 @@ export class Pupil {
     clearTimeout(this.#timer);
     this.#stay = newStay();
     this.#showHand(false);
+    this.#group.exit();
     askAs('');
     keepAt(PLACE, '', 'sessionStorage');
     this.#join.hidden = false;
@@ -203,15 +210,16 @@ export class Pupil {
   }
 
   /** @param {Here} here */
-  #show({ place, waiting, robots, robot, left_s, name, hand }) {
+  #show({ place, waiting, robots, robot, left_s, name, hand, groups = [], driver = '' }) {
     this.#showHand(hand);
-    const isNew = place === 0 && this.#stay.place !== 0;
+    this.#group.see(groups, driver);
+    const isNew = place === 0 && this.#stay.place !== 0 && !driver;
     this.#stay.place = place;
     this.#ask.hidden = place >= 0;
     this.#quit.hidden = place <= 0;
     const time = clock(left_s);
-    const key = place > 0 ? 'class_place' : place < 0 ? 'class_in' : waiting ? 'class_turn' : 'class_turn_alone';
-    this.#say(key, { place, waiting, robots, time, name: shown(name), robot: shown(robot) });
+    const key = place > 0 ? 'class_place' : place < 0 ? 'class_in' : driver ? 'group_drives' : waiting ? 'class_turn' : 'class_turn_alone';
+    this.#say(key, { place, waiting, robots, time, name: shown(driver || name), robot: shown(robot) });
     if (isNew && this.#panel.isFree) {
       element('side_real', HTMLButtonElement).click();
       this.#panel.byHost();

@@ -49,6 +49,7 @@ export const pageState = {
   taughtBlocks: new Observable(/** @type {Taught} */ ({ offered: [], needed: [], fresh: [] })),
   isRobotNamed: new Observable(false), // by the text: `// robot: liner`
   programText: new Observable(''),
+  group: new Observable(''), // of pupils who edit this program together
   /** What the compiler says of the newest text; null while it is at work. */
   checked: new Observable(/** @type {import('../python.js').Checked | null} */ (null)),
   offeredFinding: new Observable(-1), // the number of one of its findings, which has a button from now on

@@ -89,10 +89,12 @@ export class Programs {
   }
 
   /**
-   * Puts another program into the editor. The one before is kept, and undo brings it back, too.
+   * Puts another program into the editor; where others edit it, too, only if that is wanted for all. The one before is
+   * kept, and undo brings it back, too.
    * @param {{text: string, robot: string, name: string}} program
    */
   replace(program) {
+    if (pageState.group.value && !confirm(text('group_replace'))) return;
     this.keep();
     this.#page.put(program);
   }

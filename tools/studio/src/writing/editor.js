@@ -123,6 +123,12 @@ export class Editor {
     return this.#view.hasFocus;
   }
 
+  /** Has more from now on; who brings it works with the view itself. @param {import('@codemirror/state').Extension} extension */
+  extend(extension) {
+    this.#view.dispatch({ effects: StateEffect.appendConfig.of(extension) });
+    return this.#view;
+  }
+
   undo() {
     undo(this.#view);
   }

@@ -1,0 +1,396 @@
+"""Groups of a class: up to four pupils who edit one program, each on a page of their own.
+
+A page sends its changes, and where its caret is; it hears those of the others in a request that is
+held until there are any. Whoever spoils the program of a group spoils nothing else: how much a
+pupil may send is limited, and each group has a lock of its own, so nobody waits for another one.
+Knows no HTTP, no robot and no page; `together` has the program.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from itertools import count
+from pathlib import Path
+from threading import Condition, Lock, RLock
+from time import monotonic
+
+from tiniscript.studio.entrances import new_token
+from tiniscript.studio.names import are_alike, plain_name
+from tiniscript.studio.rates import Rate
+from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, whole_number
+from tiniscript.together.form import (
+    BAD,
+    TOO_LONG,
+    Refused,
+    Taken,
+    change_of,
+    is_uid,
+    page_and_count,
+    tree_of,
+)
+from tiniscript.together.journal import Journal
+from tiniscript.together.layout import Unparsed, read, text_of
+from tiniscript.together.operations import MOST_CHARACTERS
+from tiniscript.together.ordering import MOST_PAGES, SharedProgram
+from tiniscript.together.tree import Tree
+
+MOST_MEMBERS = 4
+MOST_GROUPS = 30
+MOST_FOUNDED = 3  # groups with a program, by one pupil
+MOST_HELD_S = 8.0  # of a request: a connection that asks nothing for longer is left
+GONE_S = 20.0  # a page that is silent for longer gives its place away
+MOST_CHANGES = 50  # of a request
+CHANGE_BYTES = 64_000  # as JSON: a whole program is less
+COSTS_BYTES = 2000  # a change costs one for each of these that it begins
+CHANGES = (80, 4)  # of a pupil: who is quick makes one a second; a large one takes 40 ms
+MARKS = 4  # colours
+_NODE = re.compile(r"[a-z0-9.]{0,24}")
+_PAGE = re.compile(r"m[0-9]{1,6}")
+
+Clock = Callable[[], float]
+
+
+@dataclass(eq=False)
+class Member:
+    """`page` is the name of the page in the program; `at`: the instruction with the caret, which
+    the pupil `writes` or has only chosen. `holds` counts requests: the newest one is held."""
+
+    token: str
+    name: str
+    page: str
+    heard_s: float
+    mark: int = 0
+    at: str = ""
+    writes: bool = False
+    holds: int = 0
+    stops: int = 0
+
+
+@dataclass(eq=False)
+class Group:
+    """`version` counts what is new besides the program: who is here, and where carets are.
+
+    No two pages have the same name, in all its time: `owners` are of the newest.
+    """
+
+    name: str
+    founder: str
+    program: SharedProgram
+    journal: Journal
+    key: str
+    members: dict[str, Member] = field(default_factory=dict)  # by token
+    version: int = 0
+    owners: dict[str, str] = field(default_factory=dict)  # tokens by page; the newest ones
+    news: Condition = field(default_factory=Condition)
+
+    @property
+    def text(self) -> str:
+        return text_of(self.program.tree)
+
+
+class Groups:
+    """Any thread may call it. `folder` is for their journals; without one nothing is kept."""
+
+    def __init__(self, clock: Clock = monotonic, folder: Path | None = None) -> None:
+        self._clock = clock
+        self._folder = folder
+        self._lock = RLock()  # never asked for by who has that of a group
+        self._groups: dict[str, Group] = {}  # by key
+        self._rate = Rate(*CHANGES)
+        self._rate_lock = Lock()
+
+    # -- pupils -----------------------------------------------------------------------------------
+
+    def join(self, token: str, name: str, request: Json) -> Json:
+        """A pupil joins the group of a name; where there is none, it begins with the pupil's own
+        program. Raises BadRequest."""
+        wanted, text, before = request.get("name"), request.get("text"), request.get("before")
+        if not isinstance(wanted, str) or not isinstance(text, str):
+            raise BadRequest
+        plain = plain_name(wanted)
+        if not plain:
+            return {"failure": "group_nameless"}
+        with self._lock:
+            group = self._named(plain)
+            if group is None:
+                try:
+                    group = self._found(token, plain, text)
+                except Unparsed:
+                    return {"failure": "group_mistakes"}
+                except Refused:
+                    return {"failure": "group_long"}
+                if group is None:
+                    return {"failure": "group_many"}
+            own = self.of(token)
+            if own is not None and own is not group:
+                self.leave(token)
+            return self._enter(group, token, name, before)
+
+    def _named(self, name: str) -> Group | None:
+        return next((item for item in self._groups.values() if are_alike(item.name, name)), None)
+
+    def _found(self, token: str, name: str, text: str) -> Group | None:
+        """Return a new group; None where there are too many. Raises Unparsed, Refused."""
+        founded = [item for item in self._groups.values() if item.founder == token]
+        if len(self._groups) >= MOST_GROUPS or len(founded) >= MOST_FOUNDED:
+            return None
+        return self._add(name, token, new_token(), _tree_of(text))
+
+    def _add(self, name: str, founder: str, key: str, tree: Tree | None) -> Group | None:
+        """Add a group with a program, or one that goes on from its journal."""
+        journal = Journal(self._folder / f"{key}.journal" if self._folder is not None else None)
+        epoch = new_token()
+        program = journal.begin(tree, epoch) if tree is not None else journal.go_on(epoch)
+        if program is None:
+            return None
+        group = self._groups[key] = Group(name, founder, program, journal, key)
+        return group
+
+    def _enter(self, group: Group, token: str, name: str, before: object) -> Json:
+        now_s = self._clock()
+        with group.news:
+            member = group.members.get(token)
+            if member is None:
+                here = group.members.values()
+                if len(group.members) >= MOST_MEMBERS:
+                    silent = min(here, key=lambda each: each.heard_s)
+                    if now_s - silent.heard_s <= GONE_S:
+                        return {"failure": "group_full"}
+                    del group.members[silent.token]
+                taken = {each.mark for each in group.members.values()}
+                mark = next(k for k in range(MARKS) if k not in taken)
+                member = group.members[token] = Member(token, name, "", now_s, mark)
+            if not isinstance(before, str) or group.owners.get(before) != token:
+                before = f"m{1 + max((_number(page) for page in group.owners), default=0)}"
+                group.owners[before] = token
+                for page in list(group.owners)[:-MOST_PAGES]:
+                    del group.owners[page]
+            member.page, member.heard_s, member.name = before, now_s, name
+            _tell(group)
+            return {"group": group.name, "page": member.page,
+                    **group.program.news(member.page, -1, "")}  # fmt: skip
+
+    def leave(self, token: str) -> None:
+        """A pupil leaves the group, if there is one. What nobody has changed goes with the last."""
+        with self._lock:
+            group = self.of(token)
+            if group is None:
+                return
+            with group.news:
+                del group.members[token]
+                _tell(group)
+                is_over = not group.members and group.program.number == 0
+            if is_over:
+                del self._groups[group.key]
+                group.journal.forget()
+
+    def answer(self, token: str, request: Json) -> Json:
+        """Take changes, and return what is new; where the page `waits`, once there is something.
+
+        Raises BadRequest. To be called without any lock.
+        """
+        group = self.of(token)
+        if group is None:
+            return {"left": True}
+        since = whole_number(request, "since", -1, MOST_COUNT)
+        saw = whole_number(request, "saw", 0, MOST_COUNT, 0)
+        epoch, changes = request.get("epoch"), request.get("changes", [])
+        if not isinstance(epoch, str) or not isinstance(changes, list):
+            raise BadRequest
+        with group.news:
+            member = group.members.get(token)
+            if member is None or member.page != request.get("page"):
+                return {"left": True}
+            member.heard_s = self._clock()
+            is_slow = not self._take(group, member, changes)
+            self._hear_caret(group, member, request)
+            group.news.notify_all()
+            if request.get("waits") is True and not changes:
+                self._hold(group, member, since, saw)
+            if group.members.get(token) is not member:
+                return {"left": True}
+            return {
+                **group.program.news(member.page, since, epoch),
+                "group": group.name,
+                "saw": group.version,
+                "others": [_said(each) for each in group.members.values() if each is not member],
+                **({"slow": True} if is_slow else {}),
+            }
+
+    def _hold(self, group: Group, member: Member, since: int, saw: int) -> None:
+        """Wait until there is something new, or the page asks again."""
+        member.holds += 1
+        held = member.holds
+        group.news.notify_all()
+        group.news.wait_for(
+            lambda: (
+                (group.program.number, group.version, member.holds) != (since, saw, held)
+                or group.members.get(member.token) is not member
+            ),
+            MOST_HELD_S,
+        )
+
+    def _take(self, group: Group, member: Member, changes: list[object]) -> bool:
+        """Decide on changes; return whether all of them were looked at. Raises BadRequest."""
+        if len(changes) > MOST_CHANGES:
+            raise BadRequest
+        for row in changes:
+            uid = row.get("uid") if isinstance(row, dict) else None
+            if not isinstance(uid, str) or not is_uid(uid) or page_and_count(uid)[0] != member.page:
+                raise BadRequest
+            size = len(json.dumps(row, separators=(",", ":")))
+            cost = 1 + min(size, CHANGE_BYTES) // COSTS_BYTES
+            with self._rate_lock:
+                if not self._rate.take(member.token, self._clock(), cost):
+                    return False
+            if size > CHANGE_BYTES:
+                group.program.refuse(uid, TOO_LONG)
+                continue
+            try:
+                change = change_of(row)
+            except (Refused, RecursionError):
+                group.program.refuse(uid, BAD)
+                continue
+            if group.program.submit([change]):
+                group.news.notify_all()
+        return True
+
+    def _hear_caret(self, group: Group, member: Member, request: Json) -> None:
+        at, writes = request.get("at", member.at), request.get("writes", member.writes)
+        if not isinstance(at, str) or not _NODE.fullmatch(at) or not isinstance(writes, bool):
+            raise BadRequest
+        if (at, writes) != (member.at, member.writes):
+            member.at, member.writes = at, writes
+            _tell(group)
+
+    # -- for the class ----------------------------------------------------------------------------
+
+    def of(self, token: str) -> Group | None:
+        with self._lock:
+            return next((item for item in self._groups.values() if token in item.members), None)
+
+    def mates(self, token: str) -> list[str]:
+        """Return the tokens of all who are in a pupil's group, the own one, too."""
+        group = self.of(token)
+        return [*group.members] if group is not None else [token]
+
+    def is_new_stop(self, token: str, stops: int) -> bool:
+        """Whether a pupil has not pressed STOP so often before; of no count it always is."""
+        group = self.of(token)
+        if group is None or not stops:
+            return True
+        member = group.members[token]
+        is_new, member.stops = stops > member.stops, max(stops, member.stops)
+        return is_new
+
+    def shown(self) -> list[Json]:
+        """Return what a pupil sees of all groups."""
+        with self._lock:
+            return [{"name": item.name, "members": [each.name for each in item.members.values()]}
+                    for item in self._groups.values()]  # fmt: skip
+
+    def by_key(self, key: object) -> Group | None:
+        with self._lock:
+            return self._groups.get(str(key))
+
+    def all(self) -> list[Group]:
+        with self._lock:
+            return [*self._groups.values()]
+
+    def history(self, group: Group) -> list[Json]:
+        """Return what was done, and by whom as far as that is known."""
+        names = {each.page: each.name for each in group.members.values()}
+        with group.news:
+            return [{**taken.data(), "who": names.get(_page(taken), "")}
+                    for taken in group.program.log]  # fmt: skip
+
+    def end(self) -> None:
+        """Forget all groups, and what is kept of them."""
+        with self._lock:
+            for group in self._groups.values():
+                with group.news:
+                    group.members.clear()
+                    _tell(group)
+                group.journal.forget()
+            self._groups.clear()
+
+    def state_to_keep(self) -> list[Json]:
+        """Return what groups go on with after a crash, besides their journals."""
+        with self._lock:
+            return [
+                {
+                    "key": item.key,
+                    "name": item.name,
+                    "founder": item.founder,
+                    "owners": item.owners,
+                    "members": [[each.token, each.name, each.page]
+                                for each in item.members.values()],
+                }
+                for item in self._groups.values()
+            ]  # fmt: skip
+
+    def go_on(self, rows: list[Json], is_here: Callable[[str], bool]) -> None:
+        """Go on with groups from before a crash; what is damaged of them is left out."""
+        with self._lock:
+            for row in rows:
+                key, name, founder = row.get("key"), row.get("name"), row.get("founder")
+                plain = plain_name(name) if isinstance(name, str) else ""
+                is_key = isinstance(key, str) and re.fullmatch("[0-9a-f]{32}", key) is not None
+                if not is_key or not plain or len(self._groups) >= MOST_GROUPS:
+                    continue
+                group = self._add(plain, str(founder), str(key), None)
+                if group is None:
+                    continue
+                owners = row.get("owners")
+                known = dict.fromkeys(group.program.counts, "")
+                known.update(owners if isinstance(owners, dict) else {})
+                group.owners = {page: str(owner) for page, owner in known.items()
+                                if _PAGE.fullmatch(page)}  # fmt: skip
+                members = row.get("members")
+                for each in members if isinstance(members, list) else ():
+                    self._bring_back(group, each, is_here)
+
+    def tidy(self) -> None:
+        """Delete journals of groups that there are not any more."""
+        with self._lock, suppress(OSError):
+            for path in self._folder.iterdir() if self._folder is not None else ():
+                if path.name.partition(".")[0] not in self._groups:
+                    path.unlink()
+
+    def _bring_back(self, group: Group, found: object, is_here: Callable[[str], bool]) -> None:
+        if not isinstance(found, list) or len(found) != 3:
+            return
+        token, name, page = map(str, found)
+        if is_here(token) and _PAGE.fullmatch(page) and len(group.members) < MOST_MEMBERS:
+            mark = len(group.members)
+            group.members[token] = Member(token, name, page, self._clock(), mark)
+
+
+def _number(page: str) -> int:
+    return int(page[1:])
+
+
+def _tree_of(text: str) -> Tree:
+    """Return the tree of a program with which a group begins. Raises Unparsed, Refused."""
+    numbers = count(1)
+    tree = read(text, lambda: f"i.{next(numbers)}")
+    if len(text_of(tree)) > MOST_CHARACTERS:
+        raise Refused(TOO_LONG)
+    return tree_of(tree.snapshot())
+
+
+def _tell(group: Group) -> None:
+    group.version += 1
+    group.news.notify_all()
+
+
+def _said(member: Member) -> Json:
+    return {"name": member.name, "mark": member.mark, "at": member.at, "writes": member.writes}
+
+
+def _page(taken: Taken) -> str:
+    return page_and_count(taken.uid)[0]

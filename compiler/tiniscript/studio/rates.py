@@ -1,0 +1,33 @@
+"""How much of something each of many may have: some at once, and then so much each second."""
+
+from __future__ import annotations
+
+MOST_NAMES = 1000  # who has not been seen for longest is forgotten
+
+
+class Rate:
+    """`burst` at once, `per_s` come back each second; for each name apart. `cost` of what is more
+    than one."""
+
+    def __init__(self, burst: float, per_s: float) -> None:
+        self._burst = burst
+        self._per_s = per_s
+        self._left: dict[str, tuple[float, float]] = {}  # what was left, and when
+
+    def has(self, name: str, now_s: float, cost: float = 1) -> bool:
+        """Return whether so much is left."""
+        return self._now(name, now_s) >= cost
+
+    def take(self, name: str, now_s: float, cost: float = 1) -> bool:
+        """Take so much, where it is left; return whether it was."""
+        left = self._now(name, now_s)
+        is_left = left >= cost
+        self._left.pop(name, None)
+        if len(self._left) >= MOST_NAMES:
+            del self._left[next(iter(self._left))]
+        self._left[name] = (left - cost if is_left else left, now_s)
+        return is_left
+
+    def _now(self, name: str, now_s: float) -> float:
+        left, when_s = self._left.get(name, (self._burst, now_s))
+        return min(self._burst, left + (now_s - when_s) * self._per_s)

@@ -1,0 +1,122 @@
+"""The journal of a shared program: a file with a snapshot, and below it all that was decided since.
+
+A row is in the file, for power cuts too, before anybody hears of it. Where the disk takes none, the
+lesson goes on, and the journal begins anew as soon as there is room. Of a row that was cut off by a
+crash nobody has heard: it is taken out.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from contextlib import suppress
+from pathlib import Path
+
+from tiniscript.base.files import contents, replace
+from tiniscript.together.form import Refused
+from tiniscript.together.ordering import SharedProgram, program_of
+from tiniscript.together.tree import Json, Tree
+
+MOST_BYTES = 4_000_000  # then it begins anew, and the one before is kept beside it
+BEFORE_ENDING = ".before"
+_FLAGS = os.O_WRONLY | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+
+
+class Journal:
+    """`path` of None: nothing is kept. `is_behind`: the file lacks something."""
+
+    def __init__(self, path: Path | None) -> None:
+        self.path = path
+        self.is_behind = False
+        self._file: int | None = None
+        self._size = 0
+
+    def begin(self, tree: Tree, epoch: str) -> SharedProgram:
+        """Return the program that begins with a tree, and is kept from now on."""
+        program = SharedProgram(tree, epoch)
+        program.keep = lambda row: self._add(program, row)
+        self._begin(program)
+        return program
+
+    def go_on(self, epoch: str) -> SharedProgram | None:
+        """Return the program that the file has, and go on with it; None where it has none."""
+        if self.path is None:
+            return None
+        try:
+            data = contents(self.path, 2 * MOST_BYTES)
+            whole = data[: data.rfind(b"\n") + 1]
+            rows = [json.loads(row) for row in whole.splitlines()]
+            program = program_of(rows[0])
+        except (OSError, ValueError, IndexError, RecursionError, Refused, AttributeError):
+            return None
+        program.replay([row for row in rows[1:] if isinstance(row, dict)])
+        program.epoch = epoch
+        program.keep = lambda row: self._add(program, row)
+        self._open()
+        if self._file is not None and len(whole) < len(data):
+            with suppress(OSError):
+                os.truncate(self.path, len(whole))
+                self._size = len(whole)
+        return program
+
+    def close(self) -> None:
+        if self._file is not None:
+            os.close(self._file)
+            self._file = None
+
+    def forget(self) -> None:
+        """Delete the file, and the one before it."""
+        self.close()
+        for path in (self.path, self._before) if self.path is not None else ():
+            with suppress(OSError):
+                path.unlink()
+
+    @property
+    def _before(self) -> Path:
+        assert self.path is not None
+        return self.path.with_name(self.path.name + BEFORE_ENDING)
+
+    def _begin(self, program: SharedProgram) -> None:
+        """Give the file the program as it is now; what there was is kept beside it."""
+        if self.path is None:
+            return
+        self.close()
+        with suppress(OSError):
+            self.path.replace(self._before)
+        data = _line(program.snapshot())
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            replace(self.path, data, mode=0o600, is_lasting=True)
+        except (OSError, ValueError):
+            self.is_behind = True
+            return
+        self._open()
+
+    def _open(self) -> None:
+        assert self.path is not None
+        try:
+            self._file = os.open(self.path, _FLAGS)
+            self._size = os.fstat(self._file).st_size
+            self.is_behind = False
+        except OSError:
+            self.is_behind = True
+
+    def _add(self, program: SharedProgram, row: Json) -> None:
+        if self.path is None:
+            return
+        if self.is_behind or self._size > MOST_BYTES:
+            self._begin(program)
+        if self._file is None:
+            return
+        data = _line(row)
+        try:
+            if os.write(self._file, data) < len(data):
+                raise OSError
+            os.fsync(self._file)
+            self._size += len(data)
+        except OSError:
+            self.is_behind = True
+
+
+def _line(row: Json) -> bytes:
+    return json.dumps(row, separators=(",", ":")).encode() + b"\n"

@@ -1,0 +1,501 @@
+"""Groups of a class: who edits with whom, what is limited, and one robot for all of a group."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
+from random import Random
+from threading import Event, Thread
+from typing import Any
+
+import pytest
+
+from tests.studio.test_class_histories import without_ports  # noqa: F401
+from tests.studio.test_classroom import HERE, Room
+from tests.support.waiting import HANGS_S, until
+from tiniscript.studio import groups
+from tiniscript.studio.class_keeping import MOST_PUPILS
+from tiniscript.studio.classroom import Classroom
+from tiniscript.studio.robot_link import BadRequest
+from tiniscript.together.form import data_of_change
+from tiniscript.together.page import Page
+
+Json = dict[str, Any]
+TEXT = "F(1, 80)\nLOOP(3)\nB(1, 40)\nEND_LOOP\nS\n"
+
+
+class School(Room):
+    """A class with room for all, and what is kept of its groups."""
+
+    def __init__(self, folder: Path, robots: int = 1) -> None:
+        super().__init__(robots)
+        self.folder = folder
+        self.made = self.anew(robots)
+        self.teaches("class_places", places=MOST_PUPILS)
+
+    def anew(self, robots: int = 1) -> Classroom:
+        ports = [f"port{k}" for k in range(robots)]
+        return Classroom(self.hosting, ports, 60, lambda: self.now_s, self.folder)  # type: ignore[arg-type]
+
+    def crashes(self) -> None:
+        kept = json.loads(json.dumps(self.made.state_to_keep()))
+        self.made = self.anew()
+        self.made.go_on(kept)
+        self.made.tidy()
+
+
+class Member:
+    """A pupil's page in a group."""
+
+    def __init__(self, school: School, name: str, group: str = "Red", text: str = TEXT) -> None:
+        self.school, self.name = school, name
+        self.token = school.joins(name)
+        self.saw = 0
+        answer = self.joins(group, text)
+        assert "failure" not in answer, answer
+        self.page = Page.of(answer["page"], answer)
+
+    def joins(self, group: str, text: str = TEXT, before: str = "") -> Json:
+        return self.asks("group_join", name=group, text=text, before=before)
+
+    def asks(self, do: str, **more: Any) -> Json:
+        return self.school.made.answer(self.token, HERE, {"do": do, **more})
+
+    def request(self, **more: Any) -> Json:
+        page = self.page
+        since = -1 if page.is_astray else page.number
+        return {"page": page.name, "since": since, "epoch": page.epoch, "saw": self.saw, **more}
+
+    def sends(self, **more: Any) -> Json:
+        """Send what is pending, and hear what is new."""
+        changes = [data_of_change(each) for each in self.page.pending[: groups.MOST_CHANGES]]
+        answer: Json = json.loads(
+            json.dumps(self.asks("group", **self.request(changes=changes, **more)))
+        )
+        assert "left" not in answer
+        self.page.receive(answer)
+        self.saw = answer["saw"]
+        return answer
+
+    def types(self, old: str, new: str) -> None:
+        rows = [row.replace(old, new) for row in self.page.text]
+        assert rows != self.page.text
+        self.page.type(rows, 0)
+        self.page.flush()
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.page.text).split())
+
+
+@pytest.fixture
+def school(tmp_path: Path) -> School:
+    return School(tmp_path / "groups")
+
+
+def test_pupils_of_a_group_have_one_program(school: School) -> None:
+    ana, luz = Member(school, "Ana"), Member(school, "Luz", "RED", "S\n")  # it looks the same
+    assert luz.text == ana.text == "F(1, 80); LOOP(3); B(1, 40); END_LOOP; S;"
+    ana.types("80", "95")
+    ana.sends()
+    luz.types("B(1", "B(7")
+    luz.sends()
+    ana.sends()
+    assert ana.text == luz.text == "F(1, 95); LOOP(3); B(7, 40); END_LOOP; S;"
+    assert school.here(ana.token)["group"] == "Red"
+    teo = school.joins("Teo")
+    assert school.here(teo)["groups"] == [{"name": "Red", "members": ["Ana", "Luz"]}]
+
+
+def test_others_see_where_a_pupil_is_and_writes(school: School) -> None:
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    ana.sends(at="i.3", writes=True)
+    [seen] = luz.sends()["others"]
+    assert seen == {"name": "Ana", "mark": 0, "at": "i.3", "writes": True}
+    assert luz.sends()["others"][0]["mark"] != luz.asks("group", **ana.request())
+    assert {each["mark"] for each in ana.sends()["others"]} == {1}
+    for at in ("x" * 30, "a b", 5, None):
+        with pytest.raises(BadRequest):
+            ana.sends(at=at)
+
+
+def test_four_have_room_and_who_is_silent_gives_the_place_away(school: School) -> None:
+    members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
+    late = school.joins("Late")
+    request = {"do": "group_join", "name": "Red", "text": ""}
+    assert school.made.answer(late, HERE, request) == {"failure": "group_full"}
+    school.now_s += groups.GONE_S + 1
+    for member in members[1:]:
+        member.sends()
+    assert school.made.answer(late, HERE, request)["group"] == "Red"
+    assert members[0].asks("group", **members[0].request()) == {"left": True}
+
+
+def test_what_is_no_program_begins_no_group(school: School) -> None:
+    token = school.joins("Ana")
+
+    def begins(name: str, text: str) -> Json:
+        request = {"do": "group_join", "name": name, "text": text}
+        return school.made.answer(token, HERE, request)
+
+    assert begins("Red", "LOOP(3)\n") == {"failure": "group_mistakes"}
+    assert begins("Red", "S\n" * 10_000) == {"failure": "group_long"}
+    assert begins("Red", f"// {'x' * 3000}\n") == {"failure": "group_long"}
+    assert begins(" ", TEXT) == {"failure": "group_nameless"}
+    assert school.teaches("class")["groups"] == []
+    for k in range(groups.MOST_FOUNDED):
+        assert begins(f"Group {k}", TEXT)["group"] == f"Group {k}"
+        change = {"uid": "m1:1", "ops": [{"do": "delete", "ids": ["i.1"]}]}
+        school.made.answer(token, HERE, {"do": "group", "page": "m1", "since": 0, "epoch": "",
+                                         "changes": [change]})  # fmt: skip
+    assert begins("One more", TEXT) == {"failure": "group_many"}
+
+
+def test_a_group_that_nobody_has_changed_goes_with_its_last_pupil(school: School) -> None:
+    ana = Member(school, "Ana")
+    ana.asks("group_leave")
+    assert school.teaches("class")["groups"] == []
+    assert not list(school.folder.iterdir())
+    luz = Member(school, "Luz")
+    luz.types("80", "95")
+    luz.sends()
+    luz.asks("group_leave")
+    assert len(school.teaches("class")["groups"]) == 1
+    assert "F(1, 95)" in Member(school, "Teo", text="S\n").text  # who comes has it
+
+
+def test_a_page_that_waits_hears_at_once_and_holds_nobody_up(
+    school: School, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(groups, "MOST_HELD_S", HANGS_S)
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    ana.sends()
+    luz.sends()
+    heard: list[Json] = []
+    waiting = in_thread(lambda: heard.append(ana.asks("group", **ana.request(waits=True))))
+    until(lambda: members_hold(school, ana) > 0, "the page waits")
+    assert school.here(luz.token)["group"] == "Red"  # the class is not held
+    luz.types("80", "95")
+    luz.sends()
+    waiting.join(HANGS_S)
+    assert "F(1, 95)" in json.dumps(heard)
+
+
+def test_a_page_holds_one_request(school: School, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(groups, "MOST_HELD_S", HANGS_S)
+    ana = Member(school, "Ana")
+    ana.sends()
+    threads = []
+    for k in range(5):
+        threads.append(in_thread(lambda: ana.asks("group", **ana.request(waits=True))))
+        until(partial(has_held, school, ana, k + 1), "the page waits")
+    for thread in threads[:-1]:
+        thread.join(HANGS_S)
+        assert not thread.is_alive()
+    ana.asks("group_leave")
+    threads[-1].join(HANGS_S)
+    assert not threads[-1].is_alive()
+
+
+def test_a_held_request_ends(school: School, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(groups, "MOST_HELD_S", 0.05)
+    ana = Member(school, "Ana")
+    ana.sends()
+    assert ana.asks("group", **ana.request(waits=True))["changes"] == []
+
+
+def in_thread(do: Callable[[], object]) -> Thread:
+    thread = Thread(target=do, daemon=True)
+    thread.start()
+    return thread
+
+
+def has_held(school: School, member: Member, count: int) -> bool:
+    return members_hold(school, member) == count
+
+
+def members_hold(school: School, member: Member) -> int:
+    group = school.made._groups.of(member.token)
+    assert group is not None
+    return group.members[member.token].holds
+
+
+def test_a_pupil_sends_so_much_and_no_more(school: School) -> None:
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    burst, per_s = groups.CHANGES
+    for k in range(round(burst) + 20):
+        ana.types("F(", "B(") if k % 2 == 0 else ana.types("B(1, 8", "F(1, 8")
+    answers = [ana.sends() for _ in range(4)]
+    assert answers[-1].get("slow") is True
+    assert len(ana.page.pending) >= 20
+    luz.types("S;", "BEEP(1, 440);")
+    assert "slow" not in luz.sends()  # another pupil's are counted apart
+    school.now_s += 60 / per_s
+    ana.sends()
+    ana.sends()
+    assert not ana.page.pending
+    text = "".join(f"// {k} {'x' * 900}\n" for k in range(80))
+    ana.page.type((text + TEXT).split("\n"), 0)
+    ana.page.flush()
+    assert not ana.page.pending  # the page itself makes no program that is too long
+    large = {
+        "uid": f"{ana.page.name}:{ana.page.count + 1}",
+        "ops": [
+            {"do": "insert", "at": ["root", ""], "nodes": [{"id": "m1.9", "text": "S", "x": text}]}
+        ],
+    }
+    answer = ana.asks("group", **ana.request(changes=[large]))
+    assert answer["refused"][-1] == [large["uid"], "too_long"]
+
+
+def test_nobody_sends_as_another_page(school: School) -> None:
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    luz.types("80", "95")
+    forged = [data_of_change(each) for each in luz.page.pending]
+    wrong: list[Any] = [forged, [5], [{"uid": "x"}], "no", [{}] * 51]
+    for changes in wrong:
+        with pytest.raises(BadRequest):
+            ana.asks("group", **ana.request(changes=changes))
+    for more in ({"since": "0"}, {"since": -2}, {"epoch": 5}, {"saw": None}):
+        with pytest.raises(BadRequest):
+            ana.asks("group", **{**ana.request(), **more})
+    assert ana.asks("group", **{**ana.request(), "page": luz.page.name}) == {"left": True}
+
+
+def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
+    """Whatever he sends is refused or a program; other groups, and the class, do not notice."""
+    chance = Random(3)
+    eve = Member(school, "Eve", "Bad")
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    values: list[Any] = [
+        None,
+        -1,
+        2**40,
+        "",
+        "m1",
+        "m1:1",
+        "root",
+        [],
+        {},
+        [[]],
+        "x" * 5000,
+        True,
+        [{"uid": "m1:1", "ops": [{}]}],
+        [{"uid": "m1:2", "ops": "x"}],
+        [{"uid": "m1:1", "ops": [{"do": "delete", "ids": ["i.1", "i.2"]}]}],
+    ]
+    fields = ("page", "since", "epoch", "saw", "changes", "at", "writes", "name", "text", "before")
+    for k in range(400):
+        request = eve.request(do=chance.choice(("group", "group", "group_join", "group_leave")))
+        for field in chance.sample(fields, chance.randint(0, 3)):
+            request[field] = chance.choice(values)
+        with suppress(BadRequest):
+            school.made.answer(eve.token, HERE, json.loads(json.dumps(request)))
+        if k % 50 == 0:
+            old, new = ("80", "95") if "80" in ana.text else ("95", "80")
+            ana.types(old, new)
+            ana.sends()
+            luz.sends()
+            assert ana.text == luz.text and new in luz.text
+        school.now_s += 0.1
+    assert school.here(luz.token)["group"] == "Red"
+    assert {each["name"] for each in school.teaches("class")["groups"]} >= {"Red"}
+
+
+def test_after_a_crash_groups_go_on_and_nothing_is_lost(school: School) -> None:
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    ana.types("80", "95")
+    ana.sends()
+    luz.types("B(1", "B(7")  # not sent yet
+    for _ in range(2):
+        school.crashes()
+    luz.sends()
+    ana.sends()
+    assert ana.text == luz.text == "F(1, 95); LOOP(3); B(7, 40); END_LOOP; S;"
+    teo = Member(school, "Teo", text="S\n")
+    assert teo.page.name not in (ana.page.name, luz.page.name)
+    answer = ana.joins("Red", before=ana.page.name)  # her page is loaded again
+    assert answer["page"] == ana.page.name
+    assert luz.joins("Red", before=ana.page.name)["page"] not in (ana.page.name, teo.page.name)
+
+
+def test_after_another_lesson_a_group_is_there_without_its_pupils(school: School) -> None:
+    ana = Member(school, "Ana")
+    ana.types("80", "95")
+    ana.sends()
+    kept = json.loads(json.dumps(school.made.state_to_keep()))
+    school.made = school.anew()
+    school.made.go_on(kept, is_same_lesson=False)
+    assert [each["pupils"] for each in school.teaches("class")["groups"]] == [[]]
+    assert "F(1, 95)" in Member(school, "Luz", text="S\n").text
+
+
+@pytest.mark.parametrize("end", ["class_over", "class_anew"])
+def test_with_the_class_its_groups_are_over(school: School, end: str) -> None:
+    ana = Member(school, "Ana")
+    ana.types("80", "95")
+    ana.sends()
+    (school.folder / "0.journal").write_text("of a class that has gone")
+    school.made.tidy()
+    assert len(list(school.folder.iterdir())) == 1
+    groups_there = school.made._groups
+    school.teaches(end, erases=True)
+    assert not list(school.folder.iterdir())
+    assert groups_there.answer(ana.token, ana.request()) == {"left": True}
+
+
+def test_the_teacher_sees_a_group_as_one_and_reads_its_program(school: School) -> None:
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    [seen] = school.teaches("class")["groups"]
+    assert seen["pupils"] == [school.number("Ana"), school.number("Luz")]
+    ana.types("80", "95")
+    ana.sends()
+    assert "F(1, 95);" in school.teaches("class_text", group=seen["key"])["text"]
+    [group] = school.made._groups.all()
+    assert school.made._groups.history(group)[-1]["who"] == "Ana"
+    school.teaches("class_remove", pupil=school.number("Ana"))
+    [seen] = school.teaches("class")["groups"]
+    assert seen["pupils"] == [school.number("Luz")]
+    assert luz.sends()["others"] == []
+
+
+# -- one robot for the group ----------------------------------------------------------------------
+
+
+def test_a_group_has_one_place_and_one_turn(school: School) -> None:
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    teo, eva = school.joins("Teo"), school.joins("Eva")
+    school.here(teo, True)
+    school.connects(teo)
+    school.here(eva, True)
+    assert school.here(luz.token, True)["place"] == 2
+    assert school.here(ana.token, True)["place"] == 2  # the same one
+    assert school.here(teo)["waiting"] == 2
+    school.here(eva, False)
+    school.teaches("class_next", pupil=school.number("Teo"))
+    school.now_s += 1
+    assert school.here(ana.token)["place"] == 0
+    assert school.here(luz.token)["place"] == 0
+    assert school.here(teo)["waiting"] == 0
+    ana.asks("group_leave")
+    places = {school.here(token)["place"] for token in (ana.token, luz.token)}
+    assert places == {0, -1}
+
+
+def test_who_joins_a_group_brings_the_earlier_place(school: School) -> None:
+    teo = school.joins("Teo")
+    school.here(teo, True)
+    school.connects(teo)
+    ana = Member(school, "Ana")
+    luz, eva = school.joins("Luz"), school.joins("Eva")
+    for token in (luz, eva, ana.token):
+        school.here(token, True)
+    assert school.here(ana.token)["place"] == 3
+    school.made.answer(luz, HERE, {"do": "group_join", "name": "Red", "text": ""})
+    assert school.here(ana.token)["place"] == school.here(luz)["place"] == 1
+    assert school.here(teo)["waiting"] == 2
+
+
+def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    eve = school.joins("Eve")
+    school.here(ana.token, True)
+    school.here(luz.token)
+    robot = school.connects(ana.token)
+    assert "driver" not in school.here(ana.token)
+    assert school.here(luz.token)["driver"] == "Ana"
+    luz.asks("stop", group_stops=1)
+    luz.asks("stop", group_stops=1)  # sent again, as the answer was lost
+    assert robot.stopped == 1
+    luz.asks("stop", group_stops=2)
+    luz.asks("stop")  # whatever it counts
+    assert robot.stopped == 3
+    school.made.answer(eve, HERE, {"do": "stop"})
+    assert robot.stopped == 3
+    assert school.made.answer(eve, HERE, {"do": "connect"}) == {"failure": "turn_none"}
+    other = school.connects(luz.token)
+    assert (robot.left, other.has_ended) == ("group_other", False)
+    assert school.here(ana.token)["driver"] == "Luz"
+    ana.asks("stop")
+    assert (other.stopped, robot.stopped) == (1, 3)
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> None:
+    """Wherever in connects and runs of the others it arrives: no robot that was there drives on."""
+    chance = Random(seed)
+    members = [Member(school, name) for name in ("Ana", "Luz", "Teo")]
+    school.here(members[0].token, True)
+    for member in members:
+        school.here(member.token)
+    school.connects(members[0].token)
+    stops = 0
+    for _ in range(12):
+        member = chance.choice(members)
+        turn = school.made._turn_of(school.made._mates(school.made._pupils[member.token]))
+        assert turn is not None and turn.pupil is not None
+        robot = school.hosting.robots[turn.pupil.page]
+        before = robot.stopped
+        deed = chance.choice(("stop", "connect", "beat"))
+        if deed == "connect":
+            if turn.pupil.token != member.token:
+                school.connects(member.token)
+                assert robot.left == "group_other"  # that stops what it does
+        elif deed == "beat":
+            member.asks("beat", page="x", asked=[{"do": "start", "id": 1}])
+        else:
+            stops += 1
+            member.asks("stop", group_stops=stops, stops=stops)
+            is_own = turn.pupil.token == member.token
+            asked = school.hosting.asked[-1]
+            assert (asked["do"], asked["page"]) == ("stop", page_of(school, member))
+            assert is_own or robot.stopped == before + 1
+
+
+def page_of(school: School, member: Member) -> str:
+    return school.made._pupils[member.token].page
+
+
+def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
+    """As with HTTP: each page has a request that is held, and one that sends."""
+    members = [Member(school, f"P{k}", f"G{k % 2}") for k in range(6)]
+    is_over, chance = Event(), Random(4)
+    failed: list[BaseException] = []
+
+    def listens(member: Member) -> None:
+        try:
+            since = saw = 0
+            while not is_over.is_set():
+                request = {**member.request(waits=True), "since": since, "saw": saw}
+                answer = member.asks("group", **request)
+                since, saw = answer.get("n", since), answer.get("saw", saw)
+        except BaseException as why:
+            failed.append(why)
+
+    threads = [in_thread(partial(listens, member)) for member in members]
+    for k in range(300):
+        member = chance.choice(members)
+        rows = member.page.text[:]
+        rows.insert(chance.randint(0, len(rows)), f"W({1000 + k})")
+        if len(rows) > 12:
+            del rows[chance.randrange(len(rows))]
+        member.page.type(rows, 0)
+        member.page.leave()
+        member.page.give_up()
+        member.sends()
+        school.now_s += 1
+    for _ in range(2):
+        for member in members:
+            member.sends()
+    is_over.set()
+    for member in members:
+        member.asks("group_leave")
+    for thread in threads:
+        thread.join(HANGS_S)
+    assert not failed
+    for k in (0, 1):
+        assert len({member.page.base.checksum() for member in members[k::2]}) == 1
+    assert members[0].text != members[1].text

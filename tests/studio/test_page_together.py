@@ -1,0 +1,190 @@
+"""Pupils of a group in browsers: one program, typed by two at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_class import joined
+from tests.support import studio
+from tests.support.studio import Class, Pages, image, write
+from tests.support.waiting import until
+from tiniscript import compile
+from tiniscript.studio.class_keeping import MOST_PUPILS
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+PROGRAM = "F(1, 80);\nLOOP(3);\n  B(1, 40);\nEND_LOOP;\nS;\n"
+
+
+@pytest.fixture(scope="module")
+def taught(browser: Browser) -> Iterator[Class]:
+    with studio.taught([]) as made:
+        made.room.teach({"do": "class_places", "places": MOST_PUPILS})
+        yield made
+
+
+@pytest.fixture(scope="module")
+def pages(browser: Browser, taught: Class) -> Iterator[Pages]:
+    found = Pages(browser, taught.server.address)
+    yield found
+    found.close()
+    assert not found.wrong
+
+
+@pytest.fixture(scope="module")
+def two(pages: Pages, taught: Class) -> tuple[Page, Page]:
+    ana = joined(pages, taught, "Ana")
+    write(ana, PROGRAM)
+    luz = joined(pages, taught, "Luz")
+    for page in (ana, luz):
+        enters(page)
+    return ana, luz
+
+
+def enters(page: Page) -> None:
+    page.locator("#class_group input").fill("Red")
+    page.click("[data-text=group_join]")
+    page.locator("html[data-group=in]").wait_for(state="attached")
+
+
+def lines(page: Page) -> list[str]:
+    found = page.evaluate("""() => { const root = document.querySelector('#editor').shadowRoot;
+        return [...root.querySelectorAll('.cm-line')].map((line) => {
+          const copy = line.cloneNode(true);
+          for (const name of copy.querySelectorAll('.cm-mate')) name.remove();
+          return copy.textContent; }); }""")
+    return [str(row) for row in found]
+
+
+def has(page: Page, *rows: str) -> None:
+    until(lambda: [row.strip() for row in lines(page) if row.strip()] == list(rows),
+          f"{rows}, but {lines(page)}", 30)  # fmt: skip
+
+
+def goes_to(page: Page, row: str) -> None:
+    """Press at the end of a line."""
+    page.locator(".cm-line").filter(has_text=row).first.click()
+    page.keyboard.press("End")
+
+
+def types(page: Page, text: str) -> None:
+    page.keyboard.type(text, delay=20)
+
+
+def begins(two: tuple[Page, Page]) -> None:
+    """Let both have the program, and no caret in it."""
+    ana, luz = two
+    write(ana, PROGRAM)
+    ana.locator("#class_group h2").click()
+    ana.locator(".cm-content").evaluate("(it) => it.blur()")
+    rows = [row.strip() for row in PROGRAM.splitlines()]
+    for page in (ana, luz):
+        has(page, *rows)
+
+
+def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    begins(two)
+    goes_to(ana, "F(1, 80)")
+    types(ana, "\nBEEP(1, 440)")  # its line is hers until she leaves it
+    goes_to(luz, "S;")
+    types(luz, "\nw(2)\n")
+    has(ana, "F(1, 80);", "BEEP(1, 440)", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(2);")
+    assert "BEEP" not in "".join(lines(luz))
+    types(ana, "\n")
+    both = ("F(1, 80);", "BEEP(1, 440);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(2);")
+    for page in two:
+        page.locator(".cm-content").evaluate("(it) => it.blur()")
+        has(page, *both)
+        page.locator("html[data-state=checked]").wait_for(state="attached")
+        until(lambda page=page: image(page) == compile("".join(both)).image, "compiled")  # type: ignore[misc]
+
+
+def test_a_half_typed_value_stays_in_its_page_and_is_not_touched(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    begins(two)
+    goes_to(ana, "B(1, 40)")
+    for key in ("ArrowLeft", "ArrowLeft", "Backspace", "Backspace"):
+        ana.keyboard.press(key)
+    types(ana, "9")  # B(1, 9), which parses
+    goes_to(luz, "F(1, 80)")
+    types(luz, "\nR(1, 50)\n")
+    has(ana, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 9);", "END_LOOP;", "S;")
+    types(ana, "5")  # the caret is where it was
+    assert "B(1, 40);" in [row.strip() for row in lines(luz)]
+    ana.keyboard.press("ArrowDown")
+    has(luz, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 95);", "END_LOOP;", "S;")
+
+
+def test_undo_takes_back_what_the_own_page_has_typed(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    begins(two)
+    goes_to(ana, "S;")
+    types(ana, "\nW(7)\n")
+    goes_to(luz, "F(1, 80)")
+    types(luz, "\nR(1, 50)\n")
+    has(ana, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(7);")
+    ana.locator(".cm-content").focus()
+    for _ in range(4):
+        if any("W(7)" in row for row in lines(ana)):
+            ana.keyboard.press("Control+z")
+    for page in two:
+        has(page, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;")
+
+
+def test_each_sees_where_the_other_is(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    begins(two)
+    goes_to(ana, "B(1, 40)")
+    mark = luz.locator(".cm-line", has_text="B(1, 40)").locator(".cm-mate")
+    mark.filter(has_text="Ana").wait_for()
+    types(ana, " ")
+    mark.filter(has_text="Ana …").wait_for()
+    luz.locator("#class_mates", has_text="Ana").wait_for()
+
+
+def test_who_loads_the_page_again_is_in_the_group_with_all(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    begins(two)
+    goes_to(luz, "F(1, 80)")
+    types(luz, "\nBEEP(1, 4")  # not finished
+    goes_to(ana, "S;")
+    types(ana, "\nW(3)\n")
+    has(luz, "F(1, 80);", "BEEP(1, 4", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(3);")
+    luz.reload()
+    luz.locator("html[data-group=in]").wait_for(state="attached")
+    has(luz, "F(1, 80);", "BEEP(1, 4", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(3);")
+    goes_to(luz, "BEEP(1, 4")
+    types(luz, "40)\n")
+    has(ana, "F(1, 80);", "BEEP(1, 440);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(3);")
+
+
+def test_a_broken_network_loses_nothing(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    begins(two)
+    ana.context.set_offline(True)
+    goes_to(ana, "F(1, 80)")
+    types(ana, "\nW(4)\n")
+    ana.locator("#class_group", has_text="does not answer").wait_for()
+    goes_to(luz, "S;")
+    types(luz, "\nW(5)\n")
+    ana.context.set_offline(False)
+    for page in two:
+        has(page, "F(1, 80);", "W(4);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(5);")
+
+
+def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    begins(two)
+    luz.click("[data-text=group_leave]")
+    luz.locator("[data-text=group_join]").wait_for()
+    goes_to(ana, "S;")
+    types(ana, "\nW(8)\n")
+    luz.locator("#class_group button", has_text="Red (Ana)").wait_for()
+    assert "W(8)" not in "".join(lines(luz))
+    luz.locator("#class_group button", has_text="Red (Ana)").click()
+    has(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(8);")

@@ -1,0 +1,416 @@
+"""Pupils that write by chance: with blocks, and with the keyboard, a few keys at a time.
+
+Each instruction that they write has a number that nobody has written before: so it is seen whether
+values of two were mixed, or something is there twice.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from random import Random
+
+from tiniscript.syntax.formatter import instruction_text
+from tiniscript.syntax.lexer import scan
+from tiniscript.together.form import At, Delete, Insert, Move, Operation, Replace, Unwrap, Wrap
+from tiniscript.together.page import Page
+from tiniscript.together.tree import ARM, BLOCK, DO, NOTE, ROOT, START, Part, Tree
+
+Text = list[str]
+Stage = Callable[[Text, int], tuple[Text, int, bool]]  # what the editor has after some keys
+VALUES = {
+    "F": "F({}, 50)", "B": "B({}, 50)", "L": "L({}, 60)", "R": "R({}, 60)", "W": "W({})",
+    "LOOP": "LOOP({})", "WHILE": "WHILE(X < {})", "IF": "IF(X > {})", "ELSEIF": "ELSEIF(X > {})",
+    "SHOW": "SHOW({})", "BEEP": "BEEP({}, 440)",
+}  # fmt: skip
+DEEDS = (
+    *["insert"] * 5, *["delete"] * 4, *["move"] * 4, *["wrap"] * 2, *["unwrap"] * 2,
+    *["replace"] * 6, "note", "arm", "comment", "start", "undo", "undo",
+)  # fmt: skip
+PLANS = (
+    *["change"] * 6, *["new"] * 5, *["around"] * 2, *["cut"] * 2, *["gone"] * 2, *["lines"] * 2,
+    "unround", "arm", "note", "blank", "layout", "two", "anew",
+)  # fmt: skip
+LARGE = 60  # instructions: from then on more is deleted
+
+
+class Pupil:
+    """`typed` has all that somebody has written; `focus` is where in the text this one works."""
+
+    def __init__(
+        self, page: Page, chance: Random, numbers: Iterator[int], typed: set[str],
+        deeds: Counter[str], spread: float = 0.5,
+    ) -> None:  # fmt: skip
+        self.page, self.typed, self.deeds = page, typed, deeds
+        self.focus = 0.5
+        self.stages: list[Stage] = []
+        self._chance, self._numbers, self._spread = chance, numbers, spread
+        self._cut: Text = []
+
+    def acts(self) -> None:
+        """Go on with what is being typed, or do something else."""
+        if self.stages or self._chance.random() < 0.55:
+            self.types()
+        else:
+            self.does_by_blocks()
+
+    def drops(self) -> None:
+        """What was cut out is not pasted, what was begun is not finished."""
+        self.page.give_up()
+        self.stages, self._cut = [], []
+
+    def finishes(self) -> None:
+        while self.stages:
+            self.types()
+        self.page.leave()
+        self.page.give_up()
+
+    def _own(self, text: str) -> str:
+        said = text if text.startswith("//") else instruction_text(scan(text).tokens[:-1])
+        self.typed.add(said)
+        return text
+
+    def _simple(self) -> str:
+        k = next(self._numbers)
+        return self._own(self._chance.choice((
+            f"F({k}, 50)", f"B({k}, 50)", f"L({k}, 60)", f"R({k}, 60)", f"W({k})", f"X = {k}",
+            f"F({k}, 40) UNTIL(DISTANCE < 10)", f"SHOW({k})",
+        )))  # fmt: skip
+
+    def _head(self) -> str:
+        k = next(self._numbers)
+        return self._own(self._chance.choice((f"LOOP({k})", f"WHILE(X < {k})", f"IF(X > {k})")))
+
+    # -- by blocks --------------------------------------------------------------------------------
+
+    def does_by_blocks(self) -> bool:
+        page = self.page
+        page.leave()
+        view = page.view
+        ids = [id for id in view.below()[1:] if id != START]
+        deeds = DEEDS + ("delete",) * 8 if len(ids) > LARGE else DEEDS
+        deed = self._chance.choice(deeds) if ids else "insert"
+        if deed == "undo":
+            was_done = page.undo()
+        else:
+            make: Callable[[Tree, list[str], str], list[Operation]] = getattr(self, f"_{deed}")
+            was_done = page.do_by_blocks(make(view, ids, self._near(ids) if ids else ""))
+        self.deeds[f"{deed}{'' if was_done else ', not possible'}"] += 1
+        return was_done
+
+    def _near(self, ids: list[str]) -> str:
+        k = round(self._chance.gauss(self.focus * len(ids), max(2.0, len(ids) * self._spread)))
+        return ids[max(0, min(len(ids) - 1, k))]
+
+    def _at(self, view: Tree, one: str) -> At:
+        if not one or self._chance.random() < 0.1:
+            return At(ROOT, START if view[START].text else "")
+        if view[one].kind == BLOCK and self._chance.random() < 0.4:
+            return At(one, "")
+        return At(view[one].parent, one)
+
+    def _insert(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+        new = tuple(Part(self.page.new_id(), self._simple())
+                    for _ in range(self._chance.choice((1, 1, 1, 2, 3))))  # fmt: skip
+        if self._chance.random() < 0.25:
+            new = (Part(self.page.new_id(), self._head(), inside=new),)
+        return [Insert(self._at(view, one), new)]
+
+    def _run(self, view: Tree, one: str, most: int, has_arms: bool = True) -> list[str]:
+        siblings = view[view[one].parent].inside
+        k = siblings.index(one)
+        run = []
+        for id in siblings[k : k + self._chance.randint(1, most)]:
+            if id == START or (not has_arms and view[id].kind == ARM):
+                break
+            run.append(id)
+        return run
+
+    def _delete(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+        run = self._run(view, one, 3)
+        arms = tuple(id for id in run if view[id].kind == ARM and view.of_arm(id)
+                     and set(view.of_arm(id)) <= set(run))  # fmt: skip
+        return [Delete(tuple(each for id in run for each in view.below(id)), arms)]
+
+    def _move(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+        run = self._run(view, one, 3, has_arms=False)
+        to = self._near(ids)
+        if not run or any(view.is_in(to, id) for id in run):
+            return []
+        return [Move(tuple(run), self._at(view, to))]
+
+    def _wrap(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+        run = self._run(view, one, 4, has_arms=False)
+        return [Wrap(tuple(run), Part(self.page.new_id(), self._head()))] if run else []
+
+    def _unwrap(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+        blocks = [id for id in ids if view[id].kind == BLOCK]
+        return [Unwrap(self._chance.choice(blocks))] if blocks else []
+
+    def _replace(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+        node, k = view[one], next(self._numbers)
+        if node.kind == DO:
+            text = self._simple()
+        elif node.kind == BLOCK:
+            text = self._own(f"IF(X > {k})" if node.text.startswith("IF") else f"LOOP({k})")
+        elif node.kind == NOTE:
+            text = self._own(f"// c{k}")
+        else:
+            return []
+        return [Replace(one, (("text", text),))]
+
+    def _note(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+        if view[one].kind == NOTE:
+            return []
+        return [Replace(one, (("note", self._own(f"// n{next(self._numbers)}")),))]
+
+    def _arm(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+        ifs = [id for id in ids if view[id].text.startswith("IF")]
+        if not ifs:
+            return []
+        block = self._chance.choice(ifs)
+        arm = "ELSE" if self._chance.random() < 0.6 else f"ELSEIF(X > {next(self._numbers)})"
+        at = At(block, self._chance.choice(["", *view[block].inside]))
+        return [Insert(at, (Part(self.page.new_id(), self._own(arm)),))]
+
+    def _comment(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+        text, is_apart = self._own(f"// c{next(self._numbers)}"), self._chance.random() < 0.5
+        new = Part(self.page.new_id(), text, apart=is_apart)
+        return [Insert(self._at(view, one), (new,))]
+
+    def _start(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+        return [Replace(START, (("text", self._chance.choice(("SI|", "SB|"))),))]
+
+    # -- with the keyboard ------------------------------------------------------------------------
+
+    def types(self) -> None:
+        page = self.page
+        if not self.stages:
+            waits = any(draft.stays for draft in page.drafts)
+            plan = "kept" if waits and self._chance.random() < 0.5 else self._chance.choice(PLANS)
+            self.deeds[f"types {plan}"] += 1
+            self.stages = getattr(self, f"_plan_{plan}")()
+        page.type(*self.stages.pop(0)(page.text[:], page.caret))
+        page.flush()
+
+    def _line(self, text: Text) -> int:
+        k = round(self._chance.gauss(self.focus * len(text), max(2.0, len(text) * self._spread)))
+        return max(0, min(len(text) - 1, k))
+
+    def _new_line(self, text: Text) -> int:
+        """Return where a line may be put in: not before the start."""
+        k = self._line(text) if text else 0
+        return k + 1 if text and "|" in text[k] else k
+
+    def _code(self, text: Text, fits: Callable[[str], bool] = lambda row: True) -> int | None:
+        rows = [k for k, row in enumerate(text) if row.strip() and "//" not in row and fits(row)]
+        aim = self._line(text) if text else 0
+        return min(rows, key=lambda k: abs(k - aim)) if rows else None
+
+    def _part_of(self, final: str) -> str:
+        return final[: self._chance.randint(1, len(final) - 1)]
+
+    def _plan_change(self) -> list[Stage]:
+        final = ""
+
+        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+            nonlocal final
+            k = self._code(text, lambda row: row.strip().rstrip(";").endswith(")")
+                           and "DISTANCE" not in row)  # fmt: skip
+            word = text[k].split("|")[-1].strip().split("(")[0] if k is not None else ""
+            if k is None or word not in VALUES:
+                return text, caret, False
+            start = text[k][:3] if text[k][:3] in ("SI|", "SB|") else ""
+            final = start + self._own(VALUES[word].format(next(self._numbers)))
+            text[k] = start + self._part_of(final[len(start) :])
+            return text, k, True
+
+        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+            if final and text:
+                text[caret] = final
+            return text, caret, False
+
+        return [first, last]
+
+    def _plan_kept(self) -> list[Stage]:
+        """What was refused is wanted all the same."""
+        rows = [draft.rows[0] for draft in self.page.drafts if draft.stays]
+        return [lambda text, caret: ([row + " " * (row in rows) for row in text], caret, False)]
+
+    def _plan_new(self) -> list[Stage]:
+        final = self._simple()
+
+        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+            k = self._line(text) + 1 if text else 0
+            k += k < len(text) and "|" in text[k]
+            text.insert(k, self._part_of(final))
+            return text, k, True
+
+        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+            if text:
+                text[caret] = final
+            return text, caret, False
+
+        return [first, last]
+
+    def _plan_lines(self) -> list[Stage]:
+        """Lines one below the other, with Enter behind each."""
+        rows = [self._simple() for _ in range(self._chance.randint(2, 4))]
+        at = 0
+
+        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+            k = self._new_line(text)
+            text.insert(k, rows[0])
+            text.insert(k + 1, "")
+            return text, k + 1, True
+
+        def more(text: Text, caret: int) -> tuple[Text, int, bool]:
+            nonlocal at
+            at += 1
+            if not text:
+                return text, caret, False
+            text[caret] = rows[at]
+            if at == len(rows) - 1:
+                return text, caret, False
+            text.insert(caret + 1, "")
+            return text, caret + 1, True
+
+        return [first, *[more] * (len(rows) - 1)]
+
+    def _plan_around(self) -> list[Stage]:
+        head = self._head()
+        end = {"L": "END_LOOP", "W": "END_WHILE", "I": "ENDIF"}[head[0]]
+        size = self._chance.randint(1, 4)
+
+        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+            k = self._new_line(text)
+            text.insert(k, head)
+            return text, k, False
+
+        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+            rows = [k for k, row in enumerate(text) if row.strip() == head]
+            text.insert(min(len(text), (rows[0] if rows else caret) + 1 + size), end)
+            return text, caret, False
+
+        return [first, last]
+
+    def _plan_cut(self) -> list[Stage]:
+        """One after the other, or pasted before anything is made of it."""
+
+        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+            k = self._code(text)
+            size = self._chance.randint(1, 3)
+            if k is None or any("|" in row for row in text[k : k + size]):
+                return text, caret, False
+            self._cut = text[k : k + size]
+            del text[k : k + size]
+            return text, min(k, len(text) - 1), False
+
+        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+            k = self._new_line(text)
+            text[k:k] = self._cut
+            self._cut = []
+            return text, k, False
+
+        if self._chance.random() < 0.5:
+            return [lambda text, caret: last(*first(text, caret)[:2])]
+        return [first, last]
+
+    def _plan_gone(self) -> list[Stage]:
+        def only(text: Text, caret: int) -> tuple[Text, int, bool]:
+            k = self._code(text, lambda row: "|" not in row)
+            if k is not None:
+                del text[k : k + self._chance.randint(1, 2)]
+            return text, caret, False
+
+        return [only]
+
+    def _plan_unround(self) -> list[Stage]:
+        indent = -1
+
+        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+            nonlocal indent
+            heads = [k for k, row in enumerate(text)
+                     if row.strip().startswith(("LOOP", "WHILE", "IF"))]  # fmt: skip
+            if not heads:
+                return text, caret, False
+            k = self._chance.choice(heads)
+            indent = len(text[k]) - len(text[k].lstrip())
+            del text[k]
+            return text, min(k, len(text) - 1), False
+
+        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+            for k in range(max(0, caret), len(text)):
+                is_here = len(text[k]) - len(text[k].lstrip()) == indent
+                if is_here and text[k].strip().startswith("END"):
+                    del text[k]
+                    break
+            return text, caret, False
+
+        return [first, last]
+
+    def _plan_arm(self) -> list[Stage]:
+        def only(text: Text, caret: int) -> tuple[Text, int, bool]:
+            heads = [k for k, row in enumerate(text) if row.strip().startswith("IF(")]
+            if heads:
+                k = self._chance.choice(heads) + 1 + self._chance.randint(0, 1)
+                text.insert(k, self._own("ELSE"))
+            return text, caret, False
+
+        return [only]
+
+    def _plan_note(self) -> list[Stage]:
+        def only(text: Text, caret: int) -> tuple[Text, int, bool]:
+            k = self._code(text)
+            note = self._own(f"// t{next(self._numbers)}")
+            if k is None or self._chance.random() < 0.5:
+                text.insert(k or 0, note)
+            else:
+                text[k] += "  " + note
+            return text, caret, False
+
+        return [only]
+
+    def _plan_blank(self) -> list[Stage]:
+        def only(text: Text, caret: int) -> tuple[Text, int, bool]:
+            text.insert(self._line(text) if text else 0, "")
+            return text, caret, False
+
+        return [only]
+
+    def _plan_layout(self) -> list[Stage]:
+        def other(row: str) -> str:
+            return row + " " if "//" in row else row.lower().replace(", ", " ,  ")
+
+        return [lambda text, caret: (list(map(other, text)), caret, False)]
+
+    def _plan_two(self) -> list[Stage]:
+        pair = f"{self._simple()}; {self._simple()}"
+
+        def only(text: Text, caret: int) -> tuple[Text, int, bool]:
+            middle = len(text) // 2
+            is_start = bool(text) and "|" in text[middle]
+            text.insert(len(text) if is_start else middle, pair)
+            return text, caret, False
+
+        return [only]
+
+    def _plan_anew(self) -> list[Stage]:
+        """A line is deleted and another written in its place."""
+        final = self._simple()
+
+        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+            words = ("F(", "B(", "L(", "R(", "W(")
+            k = self._code(text, lambda row: row.strip().startswith(words))
+            if k is None:
+                text.append("")
+                k = len(text) - 1
+            text[k] = final[:2]
+            return text, k, True
+
+        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+            if text:
+                text[caret] = final
+            return text, caret, False
+
+        return [first, last]

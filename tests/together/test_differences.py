@@ -1,0 +1,155 @@
+"""From a text to operations: what a person would say is the same instruction keeps its id."""
+
+from __future__ import annotations
+
+from collections import Counter
+from itertools import count
+from random import Random
+
+import pytest
+
+from tests.support.rows import each_row
+from tiniscript.together.differences import operations
+from tiniscript.together.form import Change, Delete, Insert, Move, Operation, data_of, operation_of
+from tiniscript.together.layout import Unparsed, read, text_of
+from tiniscript.together.operations import applied
+
+BASE = "SI|F(1, 80)\nR(0.5, 60)\nB(2, 40)  // back\n\n// again\nW(1)\nS\n"
+SEVEN = "F(1,1)\nF(2,2)\nF(3,3)\nF(4,4)\nF(5,5)\nF(6,6)\nF(7,7)\n"
+LOOP = "LOOP(2)\nB(1,1)\nEND_LOOP\n"
+# What a person does, before, after, the operations (or `*`), and how many instructions stay.
+CASES = [
+    ("a number", BASE, BASE.replace("80", "90"), "replace", 6),
+    ("a word", BASE, BASE.replace("R(", "L("), "replace", 6),
+    ("a LOOP typed around", BASE,
+     BASE.replace("R(", "LOOP(3)\nR(").replace("// back", "// back\nEND_LOOP"), "wrap 2", 6),
+    ("two blocks around", BASE,
+     BASE.replace("R(", "LOOP(3)\nIF(X<1)\nR(").replace("// back", "// back\nENDIF\nEND_LOOP"),
+     "wrap 2, wrap 2", 6),
+    ("a line put in", BASE, BASE.replace("W(1)", "W(1)\nBEEP(1, 440)"), "insert 1", 6),
+    ("a line taken out", BASE, BASE.replace("W(1)\n", ""), "delete 1", 5),
+    ("a comment added", BASE, BASE.replace("R(", "// turn\nR("), "insert 1", 6),
+    ("a comment behind", BASE, BASE.replace("W(1)", "W(1) // wait"), "replace", 6),
+    ("an empty line", BASE, BASE.replace("R(", "\nR("), "replace", 6),
+    ("laid out anew", BASE,
+     "si | f(1,80);r( .5, 60 );b(2,40) // back\n\n\n//again\n   w(1)\ns", "", 6),
+    ("cut and paste", SEVEN, "F(1,1)\nF(5,5)\nF(6,6)\nF(7,7)\nF(2,2)\nF(3,3)\nF(4,4)\n",
+     "move 3", 7),
+    ("a block moved", f"F(1,1)\n{LOOP}F(2,2)\nF(3,3)\n", f"F(1,1)\nF(2,2)\nF(3,3)\n{LOOP}",
+     "move 1", 5),
+    ("a block moved, its head changed", f"F(1,1)\n{LOOP}F(2,2)\nF(3,3)\n",
+     f"F(1,1)\nF(2,2)\nF(3,3)\n{LOOP}".replace("2)\nB", "4)\nB"), "*", 5),
+    ("a block taken away", f"{LOOP}F(2,2)\n", "B(1,1)\nF(2,2)\n", "unwrap", 2),
+    ("a block deleted", f"{LOOP}F(2,2)\n", "F(2,2)\n", "delete 2", 1),
+    ("LOOP to WHILE", LOOP, "WHILE(X<2)\nB(1,1)\nEND_WHILE\n", "replace", 2),
+    ("an ELSE typed in", "IF(X<1)\nF(1,1)\nB(1,1)\nENDIF\n",
+     "IF(X<1)\nF(1,1)\nELSE\nB(1,1)\nENDIF\n", "insert 1", 3),
+    ("an arm deleted", "IF(X<1)\nF(1,1)\nELSE\nB(1,1)\nENDIF\n", "IF(X<1)\nF(1,1)\nENDIF\n",
+     "delete 2", 2),
+    ("into a block", f"F(1,1)\n{LOOP}S\n", "LOOP(2)\nF(1,1)\nB(1,1)\nEND_LOOP\nS\n", "move 1", 4),
+    ("the end further down", f"{LOOP}S\nW(1)\n", "LOOP(2)\nB(1,1)\nS\nEND_LOOP\nW(1)\n",
+     "move 1", 4),
+    ("inside out", "LOOP(3)\nIF(X<1)\nF(1,1)\nENDIF\nEND_LOOP\n",
+     "IF(X<1)\nLOOP(3)\nF(1,1)\nEND_LOOP\nENDIF\n", "*", 3),
+    ("the first of two equal lines", "F(1,1)\nF(1,1)\nS\n", "F(1,1)\nS\n", "delete 1", 2),
+    ("two on one line", "F(1,1)\nS\n", "F(1,1);B(1,1)\nS\n", "insert 1", 2),
+    ("a start", "F(1,1)\nS\n", "SB|F(1,1)\nS\n", "replace", 2),
+    ("a start behind a comment", "// n\nF(1,1)\nS\n", "// n\nSB|F(1,1)\nS\n",
+     "move 1, replace", 3),
+    ("changed and put into a block", "F(1,1)\nB(2,2)\nS\n",
+     "LOOP(2)\nF(1,5)\nB(2,2)\nEND_LOOP\nS\n", "wrap 2, replace", 3),
+    ("a task of the rest", "F(1,1)\nB(2,2)\nS\n", "F(1,1)\nTASK\nB(2,2)\nS\nEND_TASK\n",
+     "wrap 2", 3),
+]  # fmt: skip
+PROGRAMS = 150
+
+
+def said(made: list[Operation]) -> str:
+    found = []
+    for each in made:
+        size = len(each.nodes) if isinstance(each, Insert) else len(getattr(each, "ids", ()))
+        found.append(f"{data_of(each)['do']}{f' {size}' if size else ''}")
+    return ", ".join(found)
+
+
+@each_row("what, before, after, wanted, stay", CASES)
+def test_what_is_the_same_stays(what: str, before: str, after: str, wanted: str, stay: int) -> None:
+    numbers, new_numbers = count(1), count(1)
+    old = read(before, lambda: f"o.{next(numbers)}")
+    made = operations(old, after, lambda: f"n.{next(new_numbers)}")
+    new = applied(old, Change("n:1", tuple(made))).tree
+    assert new.shape() == read(after).shape()
+    assert wanted in ("*", said(made))
+    assert sum(id.startswith("o.") for id in new.below()) == stay
+
+
+def program(chance: Random, size: int, depth: int = 0) -> list[str]:
+    rows: list[str] = []
+    for _ in range(size):
+        kind, k = chance.random(), chance.randint(2, 9)
+        inner = [] if depth > 3 else program(chance, chance.randint(0, 3), depth + 1)
+        if kind < 0.55 or depth > 3:
+            rows.append(f"{chance.choice('FBLR')}({k}, {chance.randint(1, 9)}0)")
+        elif kind < 0.65:
+            rows.append(f"// {chance.choice(('a', 'b', 'go on', 'turn'))}")
+        elif kind < 0.75:
+            rows.append(chance.choice(("S", f"X = {k}")))
+        elif kind < 0.85:
+            rows += [f"LOOP({k})", *inner, "END_LOOP"]
+        elif kind < 0.95:
+            rows += [f"IF(X < {k})", *inner]
+            if chance.random() < 0.4:
+                rows += [f"ELSEIF(X > {k})", *program(chance, 1, depth + 1)]
+            if chance.random() < 0.5:
+                rows += ["ELSE", *program(chance, 1, depth + 1)]
+            rows.append("ENDIF")
+        elif depth == 0:
+            rows += ["TASK", *inner, "END_TASK"]
+        if chance.random() < 0.1:
+            rows.append("")
+    return rows
+
+
+def edited(chance: Random, rows: list[str]) -> list[str]:
+    new = rows[:]
+    for _ in range(chance.randint(1, 4)):
+        kind, i = chance.random(), chance.randrange(len(new) + 1)
+        if kind < 0.3:
+            new[i:i] = program(chance, chance.randint(1, 2), 1)
+        elif kind < 0.5:
+            del new[i : i + chance.randint(1, 4)]
+        elif kind < 0.7:
+            cut = new[i : i + chance.randint(1, 6)]
+            del new[i : i + len(cut)]
+            k = chance.randrange(len(new) + 1)
+            new[k:k] = cut
+        elif kind < 0.85:
+            new.insert(min(len(new), i + chance.randint(0, 5)), "END_LOOP")
+            new.insert(i, "LOOP(7)")
+        elif i < len(new):
+            new[i] = new[i].replace("(", "(1", 1)
+    return new
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
+    chance, tried = Random(seed), Counter[str]()
+    while sum(tried.values()) < PROGRAMS:
+        before = program(chance, chance.randint(0, 20))
+        after = edited(chance, before) if chance.random() < 0.8 else program(chance, 12)
+        numbers, new_numbers = count(1), count(1)
+        try:
+            old = read("\n".join(before), lambda: f"o.{next(numbers)}")  # noqa: B023
+            new = read("\n".join(after))
+        except Unparsed:
+            continue
+        made = operations(old, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
+        assert [operation_of(data_of(each)) for each in made] == made
+        found = applied(old, Change("n:1", tuple(made)))
+        assert found.tree.shape() == new.shape()
+        assert text_of(found.tree) == text_of(new)
+        again = applied(found.tree, Change("n:2", found.back)).tree
+        assert text_of(again) == text_of(old)
+        assert again.below() == old.below()
+        tried.update(type(each).__name__ for each in made or [Delete(())])
+    assert {Insert.__name__, Move.__name__, "Wrap", "Unwrap", "Replace"} <= set(tried)

@@ -1,0 +1,142 @@
+"""However pages edit one program, in whatever network: all end the same, and it is what they wrote.
+
+Pages write with blocks and with the keyboard, undo, cut, paste and give up; messages take up to
+five seconds, are lost, come twice; pages are away for up to a minute and are loaded again; the
+class's computer goes on from its journal. Again and again the program parses, is what its blocks
+say and what is compiled, has no value that nobody typed, nothing twice, and lacks nothing but what
+somebody deleted.
+
+`python -m tests.together.test_histories 10000` has 10,000 deeds; `--lessons` has pupils that work
+near each other, at ordinary speed, and prints how many changes are refused.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from tests.support.campaign import wanted
+from tests.together.world import World
+
+DEEDS = 120  # of a history
+LOOK = 40  # deeds between two looks at the whole program
+LESSON_S = 300.0
+MOST_REFUSED = 0.01
+
+
+def history(seed: int, deeds: int, pages: int) -> World:
+    """Play so many deeds; all that must be true is asserted."""
+    world = World(pages, seed)
+    chance, done = world.chance, 0
+
+    def act(name: str) -> None:
+        nonlocal done
+        pupil = world.pupils[name]
+        pupil.acts()
+        if not pupil.stages:
+            done += 1
+            if done % LOOK == 0:
+                world.check()
+        drafts = len(pupil.page.drafts)
+        if drafts > 2 or (drafts and not pupil.stages and chance.random() < 0.1):
+            pupil.drops()
+        world.at(chance.uniform(0.5, 5), act, name)
+
+    def trouble(name: str) -> None:
+        if chance.random() < 0.6:
+            world.off_until_s[name] = world.now_s + chance.uniform(5, 60)
+            world.happened["breaks"] += 1
+        else:
+            world.reload(name)
+            world.happened["reloads"] += 1
+        world.at(chance.uniform(20, 200), trouble, name)
+
+    def crash() -> None:
+        world.crash()
+        world.at(chance.uniform(100, 900), crash)
+
+    for name in world.pupils:
+        world.at(chance.uniform(0, 3), act, name)
+        world.at(chance.uniform(20, 200), trouble, name)
+        world.ask(name, 0)
+    world.at(chance.uniform(30, 300), crash)
+    world.run(lambda: done >= deeds)
+    world.settle()
+    world.check()
+    world.check_pages()
+    world.check_nothing_is_lost()
+    assert not world.happened["astray"]
+    return world
+
+
+def lesson(seed: int, pages: int, lesson_s: float = LESSON_S) -> World:
+    """Play pupils of a class, who make a change each three seconds, within a few lines."""
+    world = World(pages, seed, lambda chance: chance.uniform(0.03, 0.12), 0.0, 0.05, spread=0.0)
+    chance = world.chance
+
+    def act(name: str) -> None:
+        pupil = world.pupils[name]
+        is_typing = bool(pupil.stages)
+        if not is_typing:
+            lines = max(1, len(pupil.page.text))
+            pupil.focus = max(0.0, min(lines - 1.0, chance.gauss(0.4 * lines, 3.0))) / lines
+        if is_typing:
+            while pupil.stages:
+                pupil.types()
+        elif chance.random() < 0.35:
+            pupil.does_by_blocks()
+        else:
+            pupil.types()
+        if pupil.page.drafts and not pupil.stages:
+            pupil.page.give_up()
+        pause_s = chance.gauss(1.5, 0.5) if pupil.stages or is_typing else chance.gauss(3.0, 1.0)
+        world.at(max(0.5, pause_s), act, name)
+
+    for name in world.pupils:
+        world.at(chance.uniform(0, 3), act, name)
+        world.ask(name, 0)
+    world.run(lambda: world.now_s > lesson_s)
+    world.settle()
+    world.check()
+    world.check_pages()
+    world.check_nothing_is_lost()
+    return world
+
+
+@pytest.mark.sampled("seed", keep=3)
+@pytest.mark.parametrize("seed", range(30))
+def test_all_pages_end_with_the_same_program(seed: int) -> None:
+    history(seed, DEEDS, 2 + seed % 3)
+
+
+def test_pupils_of_ordinary_speed_are_seldom_refused() -> None:
+    made, refused = _counts([lesson(seed, 3) for seed in range(3)])
+    assert made > 300
+    assert refused <= MOST_REFUSED * made, f"{refused} of {made}"
+
+
+def _counts(worlds: list[World]) -> tuple[int, int]:
+    made = sum(pupil.page.count for world in worlds for pupil in world.pupils.values())
+    return made, sum(sum(world.why.values()) for world in worlds)
+
+
+def _tell(worlds: list[World]) -> None:
+    made, refused = _counts(worlds)
+    unseen = sum(world.replaced_unseen for world in worlds)
+    why = sum((world.why for world in worlds), Counter[str]())
+    happened = sum((world.happened for world in worlds), Counter[str]())
+    print(f"{made} changes, refused {refused} ({100 * refused / made:.2f} %) {dict(why)}, "
+          f"values replaced that their page had not seen: {unseen}")  # fmt: skip
+    print(dict(happened))
+
+
+if __name__ == "__main__":
+    given = wanted(10_000, 0, "lessons")
+    if given.lessons:
+        for pages in (2, 3, 4):
+            _tell([lesson(seed, pages, 600) for seed in range(given.seed, given.seed + 3)])
+    else:
+        each = 1000
+        _tell([history(given.seed + k, min(each, given.count - k * each), 4)
+               for k in range(-(-given.count // each))])  # fmt: skip

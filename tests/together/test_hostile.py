@@ -1,0 +1,143 @@
+"""Whatever a page sends: it is refused, or the program is one, and the journal and pages agree."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from itertools import count
+from random import Random
+from typing import Any
+
+import pytest
+
+from tiniscript.together.form import BAD, TOO_LONG, UNPARSED, Refused, change_of, taken_of, tree_of
+from tiniscript.together.layout import read, text_of
+from tiniscript.together.ordering import SharedProgram
+from tiniscript.together.page import Page
+from tiniscript.together.tree import MOST_GONE
+
+SENT = 1500
+TEXT = "SI|F(1, 80)\nLOOP(3)\nB(1, 40)\nEND_LOOP\nIF(X < 1)\nS\nELSE\nW(1)\nENDIF\n"
+VALUES: list[Any] = [
+    None, 0, -1, True, "", "root", "start", "i.1", "i.2", "i.5", "zz", "q.9", "a:1", [], {},
+    ["i.2"], ["i.3", "i.4"], ["root", ""], ["i.3", "i.9"], ["start", ""], ["i.2", "i.2"],
+    "F(1, 80)", "LOOP(2)", "END_LOOP", "F(1,80);S", "// c", "//\nS", "// \u2028S", "// \x0bS",
+    "ELSE", "SI|", "SB|", "x" * 3000, {"id": "q.1", "text": "S"}, {"id": "q.1", "text": "LOOP(2)"},
+    {"id": "i.2", "text": "S", "in": [{"id": "root", "text": "S"}]},
+    [{"id": "q.2", "text": "LOOP(2)", "in": [{"id": "q.2", "text": "S"}]}],
+    [{"id": "q.3", "text": "S", "in": [{"id": "q.4", "text": "S"}]}],
+    [{"id": "q.5", "text": "DEF S"}], [{"id": "q.6", "text": "F(1, 80)", "note": "S"}],
+    [{"id": "i.2", "text": "LOOP(9)", "in": [{"id": "q.7", "text": "S"}]}], [{"id": "q.8"}],
+    {"text": "a:9", "place": "b:3"}, {"i.2": ""},
+]  # fmt: skip
+# What is likely to be taken, for each operation, and any other field.
+LIKELY: dict[str, list[Any]] = {
+    "id": ["i.1", "i.2", "i.3", "i.5", "start", "q.1"], "ids": [["i.1"], ["i.2", "i.3"], ["q.1"]],
+    "at": [["root", ""], ["i.2", ""], ["i.4", "i.6"], ["root", "q.1"]],
+    "nodes": [[{"id": "q.1", "text": "S"}], [{"id": "i.3", "text": "S"}],
+              [{"id": "q.2", "text": "LOOP(2)", "in": [{"id": "q.3", "text": "S"}]}]],
+    "node": [{"id": "q.4", "text": "LOOP(4)"}], "text": ["F(2, 80)", "LOOP(5)", "// c"],
+}  # fmt: skip
+NEEDED = {
+    "insert": ("at", "nodes"), "delete": ("ids",), "move": ("ids", "at"), "wrap": ("ids", "node"),
+    "unwrap": ("id",), "replace": ("id", "text"), "no": (),
+}  # fmt: skip
+FIELDS = ("id", "ids", "at", "nodes", "node", "text", "note", "apart", "end", "arms", "marks")
+
+
+def an_operation(chance: Random) -> Any:
+    found: Any = {"do": chance.choice(list(NEEDED))}
+    for field in NEEDED[found["do"]]:
+        found[field] = chance.choice(LIKELY[field])
+    for field in FIELDS:
+        if chance.random() < 0.07:
+            found[field] = chance.choice(VALUES)
+    return found
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_change_spoils_the_program(seed: int) -> None:
+    chance, ids = Random(seed), count(1)
+    rows: list[Any] = []
+    program = SharedProgram(read(TEXT, lambda: f"i.{next(ids)}"), "e", rows.append)
+    page = Page.of("z", program.news("z", -1, ""))
+    came: Counter[str] = Counter()
+    for k in range(1, SENT + 1):
+        operation = an_operation(chance)
+        uid = f"m:{program.counts.get('m', 0) + 1}"
+        sent = json.loads(json.dumps({"uid": uid, "ops": [operation] * chance.choice((1, 1, 3))}))
+        try:
+            change = change_of(sent)
+        except Refused as refused:
+            came[refused.why] += 1
+            continue
+        program.submit([change])
+        came[str(rows[-1].get("refused", "taken"))] += 1
+        if k % 10 == 0:
+            tree = program.tree
+            assert read(text_of(tree)).shape() == tree.shape()
+            assert sorted(tree.below()) == sorted(tree.nodes)
+            assert tree_of(json.loads(json.dumps(tree.snapshot()))).checksum() == tree.checksum()
+            page.receive(json.loads(json.dumps(program.news("z", page.number, "e"))))
+            assert not page.is_astray
+    assert came["taken"] > SENT / 50
+    assert came[BAD] > SENT / 50
+
+
+@pytest.mark.parametrize("value", VALUES, ids=repr)
+def test_what_is_no_change_is_refused(value: Any) -> None:
+    for data in (value, {"uid": value, "ops": []}, {"uid": "m:1", "ops": value},
+                 {"uid": "m:1", "ops": [value]}, {"uid": "m:1", "ops": [], "if": [value]},
+                 {"uid": "m:1", "ops": [], "since": "1"}):  # fmt: skip
+        if data not in ({"uid": "m:1", "ops": []}, {"uid": "a:1", "ops": []}):
+            with pytest.raises(Refused):
+                change_of(data)
+    for whole in (value, {"tree": value}, {"tree": {"id": "root"}, "gone": value}):
+        with pytest.raises(Refused):
+            tree_of(whole)
+
+
+def test_deep_and_long_programs_are_refused() -> None:
+    program = SharedProgram(read("S\n", lambda: "i.1"), "e")
+    for k in range(1, 100):
+        wrap = {"do": "wrap", "ids": ["i.1"], "node": {"id": f"m.{k}", "text": "LOOP(2)"}}
+        program.submit([change_of({"uid": f"m:{k}", "ops": [wrap]})])
+    assert len(program.tree.nodes) < 50
+    for k in range(100, 200):
+        nodes = [{"id": f"m.{k}00{j}", "text": "BEEP(1, 440)"} for j in range(40)]
+        insert = {"do": "insert", "at": ["root", "start"], "nodes": nodes}
+        program.submit([change_of({"uid": f"m:{k}", "ops": [insert]})])
+    assert len(text_of(program.tree)) <= 20_000
+    assert {why for _, why in program.refused["m"]} == {UNPARSED, TOO_LONG}
+
+
+def test_of_what_has_gone_a_limited_number_is_known_everywhere() -> None:
+    program = SharedProgram(read("S\n", lambda: "i.1"), "e")
+    page = Page.of("z", program.news("z", -1, ""))
+    for k in range(1, 2 * MOST_GONE // 100 + 2):
+        nodes = [{"id": f"m.{k}{j:03}", "text": "W(1)"} for j in range(100)]
+        ids = [each["id"] for each in nodes]
+        changes = [
+            {"do": "insert", "at": ["root", ""], "nodes": nodes},
+            {"do": "delete", "ids": ids},
+        ]
+        program.submit([change_of({"uid": f"m:{k}", "ops": changes})])
+        page.receive(program.news("z", page.number, "e"))
+    assert len(program.tree.gone) == MOST_GONE
+    assert list(page.base.gone.items()) == list(program.tree.gone.items())
+
+
+def test_a_change_counts_once_and_in_its_order() -> None:
+    program = SharedProgram(read("S\n", lambda: "i.1"), "e")
+
+    def beep(k: int) -> Any:
+        nodes = [{"id": f"m.{k}", "text": f"BEEP({k}, 440)"}]
+        insert = {"do": "insert", "at": ["root", "i.1"], "nodes": nodes}
+        return change_of({"uid": f"m:{k}", "ops": [insert]})
+
+    assert not program.submit([beep(2)])  # the first one is on its way
+    assert program.submit([beep(1), beep(2)])
+    assert not program.submit([beep(1), beep(2)])  # it comes twice
+    assert text_of(program.tree) == "S;\nBEEP(2, 440);\nBEEP(1, 440);\n"
+    with pytest.raises(Refused):
+        taken_of({"n": 1, "uid": "m:1", "ops": "no"})

@@ -1,0 +1,129 @@
+"""What a class's computer has decided is on its disk before anybody hears of it."""
+
+from __future__ import annotations
+
+import errno
+import os
+from itertools import count
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from tests.together.world import FIRST
+from tiniscript.together import journal as journals
+from tiniscript.together.form import Change, Replace, Unwrap
+from tiniscript.together.journal import BEFORE_ENDING, Journal
+from tiniscript.together.layout import read, text_of
+from tiniscript.together.ordering import SharedProgram
+from tiniscript.together.tree import START
+
+
+def begun(path: Path) -> tuple[Journal, SharedProgram]:
+    ids = count(1)
+    journal = Journal(path)
+    return journal, journal.begin(read(FIRST, lambda: f"i.{next(ids)}"), "e1")
+
+
+def changed(program: SharedProgram, value: int, page: str = "a") -> bool:
+    """Change the program, or be refused where the value is 0."""
+    uid = f"{page}:{program.counts.get(page, 0) + 1}"
+    operation = Replace("i.8", (("text", f"W({value})"),)) if value else Unwrap("i.99")
+    return program.submit([Change(uid, (operation,))])
+
+
+def same(one: SharedProgram, other: SharedProgram) -> bool:
+    return (one.number, one.counts, one.refused, one.tree.checksum()) == (
+        other.number, other.counts, other.refused, other.tree.checksum()
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, seed: int) -> None:
+    """All that was told is there; of a row that a crash has cut off nobody had heard."""
+    path, chance = tmp_path / "journal", Random(seed)
+    journal, program = begun(path)
+    sizes = [path.stat().st_size]
+    seen = [(program.number, dict(program.counts))]
+    for k in range(12):
+        changed(program, chance.choice((0, 1000 + k)), chance.choice("ab"))
+        sizes.append(path.stat().st_size)
+        seen.append((program.number, dict(program.counts)))
+    journal.close()
+    cut = chance.randint(sizes[0], sizes[-1])
+    os.truncate(path, cut)
+    again = Journal(path).go_on("e2")
+    assert again is not None
+    last = max(k for k, size in enumerate(sizes) if size <= cut)
+    assert (again.number, again.counts) == seen[last]
+    assert again.epoch == "e2"
+    changed(again, 2000)
+    whole = Journal(path).go_on("e3")
+    assert whole is not None
+    assert same(whole, again)
+
+
+def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
+    path = tmp_path / "journal"
+    _, program = begun(path)
+    for value in (5, 0, 6):
+        changed(program, value)
+        there = Journal(path).go_on("e2")
+        assert there is not None
+        assert same(there, program)
+
+
+def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "journal"
+    journal, program = begun(path)
+    write = os.write
+
+    def full(_: int, data: bytes) -> int:
+        raise OSError(errno.ENOSPC, "full")
+
+    monkeypatch.setattr(os, "write", full)
+    assert changed(program, 7)
+    assert journal.is_behind
+    monkeypatch.setattr(os, "write", write)
+    assert changed(program, 8)
+    assert not journal.is_behind
+    there = Journal(path).go_on("e2")
+    assert there is not None
+    assert (there.number, text_of(there.tree)) == (2, text_of(program.tree))
+
+
+def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(journals, "MOST_BYTES", 3000)
+    path = tmp_path / "journal"
+    _, program = begun(path)
+    for value in range(1, 60):
+        changed(program, value)
+        assert path.stat().st_size < 6000
+    assert path.with_name(path.name + BEFORE_ENDING).exists()
+    there = Journal(path).go_on("e2")
+    assert there is not None
+    assert there.tree.checksum() == program.tree.checksum()
+
+
+@pytest.mark.parametrize(
+    "data",
+    [b"", b"{}\n", b"[]\n", b"no\n", b"[" * 100_000 + b"\n", b'{"n":1,"epoch":"e","counts":{}}\n'],
+)
+def test_what_is_no_journal_is_none(tmp_path: Path, data: bytes) -> None:
+    path = tmp_path / "journal"
+    path.write_bytes(data)
+    assert Journal(path).go_on("e2") is None
+
+
+def test_a_forgotten_journal_is_gone(tmp_path: Path) -> None:
+    path = tmp_path / "folder" / "journal"
+    journal, program = begun(path)
+    changed(program, 3)
+    journal.forget()
+    assert not list(path.parent.iterdir())
+    assert Journal(path).go_on("e2") is None
+    assert START in program.tree  # whoever has it goes on with it

@@ -1,0 +1,295 @@
+"""What happens where two pupils meet: who wins, what is refused or a draft, what undo does."""
+
+from __future__ import annotations
+
+import json
+from itertools import count
+from typing import Any
+
+import pytest
+
+from tiniscript.together.form import (
+    CHANGED,
+    CIRCLE,
+    HAS_NEW,
+    At,
+    Delete,
+    Insert,
+    Move,
+    Replace,
+    Unwrap,
+    Wrap,
+    data_of_change,
+)
+from tiniscript.together.layout import read, text_of
+from tiniscript.together.ordering import SharedProgram
+from tiniscript.together.page import Page
+from tiniscript.together.tree import ROOT, Part
+
+TEXT = """SI|F(1, 80)
+LOOP(3)
+B(1, 40)
+R(1, 40)
+END_LOOP
+IF(X < 1)
+S
+ELSE
+W(1)
+ENDIF
+L(1, 60)
+"""
+
+
+class Two:
+    """Ana and Luz edit one program; what Ana does reaches the computer first."""
+
+    def __init__(self, text: str = TEXT) -> None:
+        ids = count(1)
+        self.program = SharedProgram(read(text, lambda: f"i.{next(ids)}"), "e")
+        self.ana, self.luz = (Page.of(name, self.program.news(name, -1, "")) for name in "al")
+
+    def find(self, text: str) -> str:
+        tree = self.program.tree
+        return next(id for id in tree.below() if tree[id].text == text)
+
+    def sends(self, page: Page) -> None:
+        self.program.submit(page.pending)
+        self.hears(page)
+
+    def hears(self, page: Page) -> None:
+        page.receive(self.program.news(page.name, page.number, page.epoch))
+
+    def meet(self) -> str:
+        """Return the program on one line, once both have heard all."""
+        for page in (self.ana, self.luz) * 2:
+            self.sends(page)
+        assert self.ana.base.checksum() == self.luz.base.checksum()
+        assert self.ana.view.checksum() == self.program.tree.checksum()
+        assert self.luz.view.checksum() == self.program.tree.checksum()
+        return " ".join(text_of(self.program.tree).split())
+
+    def inserts(self, page: Page, container: str, behind: str, text: str = "BEEP(1, 440)") -> None:
+        node = Part(page.new_id(), text)
+        assert page.do_by_blocks([Insert(At(container, behind), (node,))])
+
+    def types(self, page: Page, old: str, new: str, is_hot: bool = False) -> None:
+        """Change part of a line, and leave it unless it `is_hot`."""
+        [k] = [k for k, row in enumerate(page.text) if old in row]
+        rows = page.text[:]
+        rows[k] = rows[k].replace(old, new)
+        page.type(rows, k, is_hot)
+        page.flush()
+
+
+@pytest.fixture
+def two() -> Two:
+    return Two()
+
+
+def test_a_delete_spares_what_its_author_has_not_seen(two: Two) -> None:
+    loop = two.find("LOOP(3)")
+    two.inserts(two.ana, loop, two.find("B(1, 40)"))
+    two.luz.do_by_blocks([Delete(tuple(two.luz.view.below(loop)))])
+    assert "LOOP(3); B(1, 40); BEEP(1, 440);" in two.meet()
+    assert two.luz.told[-1][1] == HAS_NEW
+    assert "  BEEP(1, 440);" in two.luz.text
+
+
+def test_an_arm_goes_with_all_that_is_in_it_or_not(two: Two) -> None:
+    two.inserts(two.ana, two.find("IF(X < 1)"), two.find("ELSE"))
+    rows = [row for row in two.luz.text if "ELSE" not in row and "W(1)" not in row]
+    two.luz.type(rows, 0)
+    two.luz.flush()
+    assert "ELSE; BEEP(1, 440); W(1)" in two.meet()
+    assert two.luz.told[-1][1] == HAS_NEW
+
+
+def test_a_block_goes_around_what_was_put_between(two: Two) -> None:
+    first, last = two.find("B(1, 40)"), two.find("R(1, 40)")
+    two.inserts(two.ana, two.find("LOOP(3)"), first)
+    two.luz.do_by_blocks([Wrap((first, last), Part(two.luz.new_id(), "WHILE(X < 2)"))])
+    assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in two.meet()
+
+
+def test_a_place_whose_neighbour_has_gone_is_where_that_stood(two: Two) -> None:
+    two.ana.do_by_blocks([Delete((two.find("R(1, 40)"),))])
+    two.inserts(two.luz, two.find("LOOP(3)"), two.find("R(1, 40)"))
+    assert "B(1, 40); BEEP(1, 440); END_LOOP" in two.meet()
+
+
+def test_the_first_place_of_a_block_that_was_taken_away_stays(two: Two) -> None:
+    two.ana.do_by_blocks([Unwrap(two.find("LOOP(3)"))])
+    two.inserts(two.luz, two.find("LOOP(3)"), "")
+    assert "F(1, 80); BEEP(1, 440); B(1, 40); R(1, 40); IF" in two.meet()
+
+
+def test_two_blocks_that_go_into_each_other_make_no_circle(two: Two) -> None:
+    loop, branch = two.find("LOOP(3)"), two.find("IF(X < 1)")
+    two.ana.do_by_blocks([Move((loop,), At(branch, ""))])
+    two.luz.do_by_blocks([Move((branch,), At(loop, ""))])
+    assert "IF(X < 1); LOOP(3)" in two.meet()
+    assert two.luz.told[-1][1] == CIRCLE
+
+
+def test_of_two_values_the_later_wins_whole_and_undo_gives_back_the_other(two: Two) -> None:
+    two.types(two.ana, "F(1, 80)", "F(2, 80)")
+    two.types(two.luz, "F(1, 80)", "F(1, 99)")
+    assert "F(1, 99)" in two.meet()
+    assert any("F(2, 80)" in str(taken) for taken in two.program.log)
+    assert not two.ana.undo()  # what she wrote is not there any more
+    assert two.luz.undo()
+    assert "F(2, 80)" in two.meet()
+    assert two.ana.undo()  # now it is
+    assert "F(1, 80)" in two.meet()
+
+
+def test_an_undo_that_comes_after_anothers_change_is_refused(two: Two) -> None:
+    two.types(two.luz, "F(1, 80)", "F(1, 99)")
+    two.meet()
+    two.types(two.ana, "F(1, 99)", "F(5, 99)")
+    assert two.luz.undo()
+    assert "F(5, 99)" in two.meet()
+    assert two.luz.told[-1][1] == CHANGED
+
+
+def test_undo_brings_back_what_was_deleted_with_its_ids(two: Two) -> None:
+    loop = two.find("LOOP(3)")
+    before = text_of(two.program.tree)
+    two.ana.do_by_blocks([Delete(tuple(two.ana.view.below(loop)))])
+    two.meet()
+    assert two.ana.undo()
+    two.meet()
+    assert text_of(two.program.tree) == before
+    assert loop in two.program.tree
+
+
+def test_a_line_that_two_have_cut_and_pasted_is_there_once(two: Two) -> None:
+    for page in (two.ana, two.luz):
+        page.type([row for row in page.text if "L(1, 60)" not in row], 0)
+        page.flush()
+    for page, k in ((two.ana, 1), (two.luz, 3)):
+        page.type([*page.text[:k], "L(1, 60)", *page.text[k:]], 0)
+        page.flush()
+    assert two.meet().count("L(1, 60)") == 1
+
+
+def test_a_page_makes_no_change_that_leaves_no_program() -> None:
+    two = Two("DEF TURN\nR(1, 40)\nEND_DEF\nLOOP(2)\nTURN\nEND_LOOP\n")
+    page, turn = two.ana, two.find("TURN")
+    assert not page.do_by_blocks([Move((two.find("DEF TURN"),), At(two.find("LOOP(2)"), ""))])
+    for text in ("S; S", "END_LOOP", "s", "S // note", "LOOP(2)", ""):
+        assert not page.do_by_blocks([Replace(turn, (("text", text),))])
+    assert not page.pending
+
+
+def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(two: Two) -> None:
+    two.types(two.ana, "B(1, 40);", "B(1, 4", is_hot=True)
+    assert not two.ana.pending
+    two.luz.do_by_blocks([Move((two.find("B(1, 40)"),), At(ROOT, two.find("L(1, 60)")))])
+    two.sends(two.luz)
+    two.hears(two.ana)
+    assert two.ana.text[-1] == "  B(1, 4"
+    assert two.ana.caret == len(two.ana.text) - 1
+    two.luz.do_by_blocks([Delete((two.find("B(1, 40)"),))])
+    two.sends(two.luz)
+    two.hears(two.ana)
+    assert two.ana.text[-1] == "  B(1, 4"
+    two.ana.type([*two.ana.text[:-1], "B(1, 45)"], len(two.ana.text) - 1)
+    two.ana.flush()
+    assert two.meet().endswith("L(1, 60); B(1, 45);")
+    assert "i.3" in two.program.tree  # the same instruction
+
+
+def test_a_half_typed_value_is_no_change_though_it_parses(two: Two) -> None:
+    for shown in ("L(1, 6);", "L(1, 9);", "L(1, 95);"):
+        old = next(row for row in two.ana.text if "L(1" in row)
+        two.types(two.ana, old, shown, is_hot=True)
+    assert "L(1, 60)" in two.meet()
+    two.ana.leave()
+    assert "L(1, 95)" in two.meet()
+    assert sum("L(1, 9" in str(taken) for taken in two.program.log) == 1
+
+
+def test_of_lines_typed_one_below_the_other_only_the_last_one_waits(two: Two) -> None:
+    k = two.ana.text.index("L(1, 60);")
+    for row in ("W(2)", "f(3,70)", "LOOP(2)", "BEEP(1, 440)", "END_LOOP"):
+        rows = two.ana.text[:]
+        rows[k:k] = [row] if rows[k] else []
+        rows[k] = row
+        two.ana.type([*rows[: k + 1], "", *rows[k + 1 :]], k + 1, True)
+        two.ana.flush()
+        k = two.ana.caret
+        assert two.ana.text[k] == ""
+        assert len(two.ana.drafts) == 1 + (row in ("LOOP(2)", "BEEP(1, 440)"))
+    two.sends(two.ana)
+    two.hears(two.luz)
+    assert "W(2); F(3, 70); LOOP(2); BEEP(1, 440); END_LOOP; L(1, 60);" in " ".join(
+        " ".join(two.luz.text).split()
+    )
+    two.ana.leave()
+    two.meet()
+    assert two.luz.text[-3:] == ["END_LOOP;", "", "L(1, 60);"]  # the empty line is there for all
+
+
+def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
+    two.luz.do_by_blocks([Delete((two.find("R(1, 40)"),))])
+    two.types(two.ana, "R(1, 40)", "R(2, 40)")
+    for page in (two.luz, two.ana) * 2:
+        two.sends(page)
+    assert "R(2, 40)" in two.ana.text
+    assert "R(2, 40)" not in two.meet()
+    rows = [row + " " if row == "R(2, 40)" else row for row in two.ana.text]
+    two.ana.type(rows, 3)  # wanted all the same
+    two.ana.leave()
+    assert "B(1, 40); R(2, 40); END_LOOP" in two.meet()
+    assert "i.4" in two.program.tree
+
+
+def test_a_page_that_is_loaded_again_goes_on(two: Two) -> None:
+    two.types(two.ana, "F(1, 80)", "F(2, 80)")
+    two.types(two.ana, "W(1);", "W(9)", is_hot=True)
+    kept = json.loads(json.dumps(two.ana.kept()))
+    two.types(two.luz, "L(1, 60)", "L(3, 60)")
+    two.sends(two.luz)
+    two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
+    assert two.ana.text[two.ana.caret] == "  W(9)"
+    two.ana.leave()  # nobody has gone on with that line
+    assert "F(2, 80)" in two.meet()
+    assert "W(1)" in two.meet()
+    assert "L(3, 60)" in " ".join(two.ana.text)
+    two.types(two.ana, "W(9)", "W(95)")
+    assert "W(95)" in two.meet()
+
+
+def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(two: Two) -> None:
+    two.inserts(two.ana, ROOT, two.find("L(1, 60)"))
+    two.program.submit(two.ana.pending)  # and the answer is lost
+    two.types(two.ana, "F(1, 80)", "F(2, 80)")
+    kept = json.loads(json.dumps(two.ana.kept()))
+    two.ana = Page.of("z", two.program.news("z", -1, ""), kept)
+    assert two.meet().count("BEEP(1, 440)") == 1
+    assert "F(2, 80)" in two.meet()
+
+
+def test_a_copy_of_a_page_goes_its_own_way(two: Two) -> None:
+    before: list[Any] = [two.ana.text[:], data(two.ana)]
+    copy = two.ana.copy()
+    two.types(two.ana, "F(1, 80)", "F(2, 80)")
+    two.types(two.ana, "W(1);", "W(", is_hot=True)
+    assert [copy.text, data(copy)] == before
+    two.ana = copy
+    two.types(two.ana, "F(1, 80)", "F(3, 80)")
+    assert "F(3, 80)" in two.meet()
+
+
+def data(page: Page) -> Any:
+    return [page.kept(), list(map(data_of_change, page.pending))]
+
+
+def test_a_page_whose_tree_is_another_one_asks_for_the_whole(two: Two) -> None:
+    two.ana.base.nodes[two.find("F(1, 80)")].text = "F(9, 80)"  # whatever has done that
+    two.hears(two.ana)
+    assert two.ana.is_astray
+    two.ana.receive(two.program.news("a", -1, two.ana.epoch))
+    assert not two.ana.is_astray
+    assert "SI|F(1, 80);" in two.ana.text

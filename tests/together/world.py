@@ -1,0 +1,279 @@
+"""A clock, a class's computer, pages with pupils, and a network that delays, loses and breaks off.
+
+What must be true of the program is looked at as often as wanted.
+"""
+
+from __future__ import annotations
+
+import heapq
+import json
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from itertools import count
+from random import Random
+from typing import Any
+
+from tests.together.pupils import Pupil
+from tiniscript import compile_text, robots
+from tiniscript.base.source import Source
+from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_reading import read as read_blocks
+from tiniscript.syntax.ast import Break, Def, If, Instruction, Loop, Task, While
+from tiniscript.syntax.formatter import format_source
+from tiniscript.syntax.parser import parse
+from tiniscript.together.form import (
+    Delete,
+    Insert,
+    Operation,
+    Replace,
+    Taken,
+    Unwrap,
+    Wrap,
+    change_of,
+    data_of_change,
+    page_and_count,
+)
+from tiniscript.together.layout import read, text_of
+from tiniscript.together.ordering import SharedProgram, program_of
+from tiniscript.together.page import Page
+from tiniscript.together.tree import BLOCK, DO, ROOT, START, Tree
+
+Json = dict[str, Any]
+KIT = robots.load("tinibot").kit
+FIRST = """// Our robot.
+SI|X = 0;
+LOOP(100001);
+  F(100002, 50);
+  IF(DISTANCE < 100003);  // near
+    B(100004, 50);
+  ELSE;
+    R(100005, 50);
+  ENDIF;
+  W(100006);
+END_LOOP;
+
+BEEP(100007, 440);
+S;
+"""
+ASKS_S = 0.5  # between the answer and the next request of a page
+SILENT_S = 9.0  # after which a page asks again
+
+
+class World:
+    """`delay` is of one way; `lost` the part of messages that is. Epochs are those of crashes."""
+
+    def __init__(
+        self, pages: int, seed: int, delay: Callable[[Random], float] = lambda r: r.uniform(0, 5),
+        lost: float = 0.05, asks_s: float = ASKS_S, spread: float = 0.5,
+    ) -> None:  # fmt: skip
+        self.chance = Random(seed)
+        self.now_s = 0.0
+        self.happened: Counter[str] = Counter()
+        self.why: Counter[str] = Counter()  # changes were refused
+        self.replaced_unseen = 0
+        self._queue: list[tuple[float, int, Callable[..., None], tuple[Any, ...]]] = []
+        self._order = count()
+        self._delay, self._lost, self._asks_s = delay, lost, asks_s
+        ids, numbers = count(1), count(200_000)
+        self._rows: list[Json] = []  # the journal
+        self.all_taken: list[Taken] = []
+        self.program = SharedProgram(read(FIRST, lambda: f"i.{next(ids)}"), "e0", self._keep)
+        self._snapshot = self._travelled(self.program.snapshot())
+        self.first = set(self.program.tree.nodes)
+        tree = self.program.tree
+        self.typed = {said for id in self.first for said in (tree[id].text, tree[id].note)}
+        names = "abcd"[:pages]
+        self.pupils = {
+            name: Pupil(Page.of(name, self.program.news(name, -1, "")), self.chance, numbers,
+                        self.typed, self.happened, spread)
+            for name in names
+        }  # fmt: skip
+        self.off_until_s = dict.fromkeys(names, 0.0)
+        self.turn = dict.fromkeys(names, 0)
+
+    def at(self, after_s: float, do: Callable[..., None], *what: Any) -> None:
+        heapq.heappush(self._queue, (self.now_s + after_s, next(self._order), do, what))
+
+    def run(self, is_over: Callable[[], bool]) -> None:
+        while self._queue and not is_over():
+            self.now_s, _, do, what = heapq.heappop(self._queue)
+            do(*what)
+
+    def _travelled(self, data: Json) -> Json:
+        found: Json = json.loads(json.dumps(data))
+        return found
+
+    def _keep(self, row: Json) -> None:
+        self._rows.append(self._travelled(row))
+
+    # -- network ----------------------------------------------------------------------------------
+
+    def ask(self, name: str, turn: int) -> None:
+        """Send what is pending and ask what is new; a page that hears nothing asks again."""
+        if turn != self.turn[name]:
+            return
+        page = self.pupils[name].page
+        if self.now_s < self.off_until_s[name]:
+            self.at(0.5, self.ask, name, turn)
+            return
+        self.at(SILENT_S, self._ask_again, name, turn)
+        if self.chance.random() >= self._lost:
+            sent = self._travelled({"sent": [data_of_change(each) for each in page.pending]})
+            since = -1 if page.is_astray else page.number
+            self.at(self._delay(self.chance), self._reach, name, turn, sent, since, page.epoch)
+
+    def _ask_again(self, name: str, turn: int) -> None:
+        if turn == self.turn[name]:
+            self.turn[name] += 1
+            self.ask(name, self.turn[name])
+
+    def _reach(self, name: str, turn: int, sent: Json, since: int, epoch: str) -> None:
+        self.submit(sent["sent"])
+        news = self._travelled(self.program.news(name, since, epoch))
+        if self.chance.random() >= self._lost and self.now_s >= self.off_until_s[name]:
+            self.at(self._delay(self.chance), self._arrive, name, turn, news)
+
+    def submit(self, sent: Sequence[Json]) -> None:
+        for row in sent:
+            change, program = change_of(row), self.program
+            page, _ = page_and_count(change.uid)
+            decided, before = program.counts.get(page, 0), program.tree
+            if program.submit([change]):
+                self.all_taken.append(program.log[-1])
+                self._count_unseen(before, page, change.since)
+            elif program.counts.get(page, 0) > decided:
+                self.why[program.refused[page][-1][1]] += 1
+
+    def _count_unseen(self, before: Tree, page: str, since: int) -> None:
+        """Count values of others that this page had not seen and has replaced."""
+        for each in self.all_taken[-1].operations:
+            if isinstance(each, Replace) and each.id in before:
+                by = before[each.id].mark(each.fields[0][0])
+                self.replaced_unseen += bool(by) and page_and_count(by)[0] != page and any(
+                    taken.uid == by and taken.number > since for taken in self.all_taken[-50:]
+                )  # fmt: skip
+
+    def _arrive(self, name: str, turn: int, news: Json) -> None:
+        if self.now_s < self.off_until_s[name]:
+            return
+        page = self.pupils[name].page
+        page.receive(news)
+        self.happened["astray"] += page.is_astray and page.epoch == self.program.epoch
+        if turn == self.turn[name]:
+            self.turn[name] += 1
+            self.at(self._asks_s, self.ask, name, self.turn[name])
+
+    def reload(self, name: str) -> None:
+        """The page is loaded again; it has what its browser has kept."""
+        pupil = self.pupils[name]
+        pupil.page.flush()
+        kept = self._travelled(pupil.page.kept())
+        news = self._travelled(self.program.news(name, -1, ""))
+        pupil.page = Page.of(name, news, kept)
+        self.turn[name] += 1
+        self.ask(name, self.turn[name])
+
+    def crash(self) -> None:
+        """The class's computer goes on from its journal."""
+        before = self.program
+        self.program = program_of(self._snapshot, self._keep)
+        self.program.replay(self._rows)
+        assert self.program.tree.checksum() == before.tree.checksum()
+        assert (self.program.number, self.program.counts) == (before.number, before.counts)
+        self.happened["crashes"] += 1
+        self.program.epoch = f"e{self.happened['crashes']}"
+
+    # -- what must be true ------------------------------------------------------------------------
+
+    def settle(self) -> None:
+        """Everybody comes to an end, and hears all."""
+        for pupil in self.pupils.values():
+            pupil.finishes()
+        for _ in range(4):
+            for name, pupil in self.pupils.items():
+                page = pupil.page
+                self.submit(self._travelled({"": list(map(data_of_change, page.pending))})[""])
+                since = -1 if page.is_astray else page.number
+                page.receive(self._travelled(self.program.news(name, since, page.epoch)))
+                page.give_up()  # what was refused only now
+
+    def check(self) -> None:
+        tree = self.program.tree
+        text = text_of(tree)
+        parsed = parse(Source(text))
+        assert not [each for each in parsed.diagnostics if each.is_mistake], text
+        assert format_source(Source(text)) == text
+        self._check_instructions(tree, text, parsed.program.body)
+        assert read(text).shape() == tree.shape()
+        # The page's own blocks say the same program.
+        again = print_blocks(read_blocks(text, KIT)).text
+        one, other = compile_text(_whole(text), KIT), compile_text(_whole(again), KIT)
+        assert one.image and one.image == other.image, (text, again, one.diagnostics)
+        # Nobody's values were mixed; nothing is there twice.
+        for node in tree.nodes.values():
+            assert node.text in self.typed or node.id in (ROOT, START), node.text
+            assert not node.note or node.note in self.typed, node.note
+        ids = tree.below()
+        assert len(ids) == len(set(ids)) == len(tree.nodes)
+        numbered = Counter(tree[id].text for id in ids if re.search("[0-9]", tree[id].text))
+        twice = [said for said, times in numbered.items() if times > 1]
+        assert not twice, twice
+
+    def _check_instructions(self, tree: Tree, text: str, body: Sequence[Instruction]) -> None:
+        """Each node is one instruction of the AST, in order, with the text that it has."""
+        own = [tree[id] for id in tree.below()[1:] if id != START]
+        own = [node for node in own if node.kind in (DO, BLOCK)]
+        walked = list(_walk(body))
+        assert len(own) == len(walked), text
+        for node, (instruction, kind) in zip(own, walked, strict=True):
+            assert node.kind == kind
+            if kind == DO and not isinstance(instruction, Break):
+                span = instruction.span
+                assert text[span.start : span.end] == node.text
+
+    def check_pages(self) -> None:
+        tree = self.program.tree
+        for pupil in self.pupils.values():
+            page = pupil.page
+            assert not page.pending and not page.drafts and not page.is_astray
+            assert page.base.checksum() == page.view.checksum() == tree.checksum()
+            assert "\n".join(page.text) == text_of(tree).rstrip("\n")
+
+    def check_nothing_is_lost(self) -> None:
+        """What was ever there is there, or a delete or an unwrap has taken it."""
+        alive = set(self.first)
+        for taken in self.all_taken:
+            for each in taken.operations:
+                alive |= _added(each)
+                if isinstance(each, Delete):
+                    alive -= set(each.ids)
+                elif isinstance(each, Unwrap):
+                    alive.discard(each.id)
+        assert alive == set(self.program.tree.nodes)
+
+
+def _added(operation: Operation) -> set[str]:
+    if isinstance(operation, Insert):
+        return {id for each in operation.nodes for id in each.ids()}
+    return {operation.node.id} if isinstance(operation, Wrap) else set()
+
+
+def _whole(text: str) -> str:
+    """Let X have a value: the line that gives it one may have been deleted."""
+    start = re.search(r"\b(SI|SB)\|", text)
+    return text.replace(start[0], "X = 0\n", 1) if start else "X = 0\n" + text
+
+
+def _walk(body: Sequence[Instruction]) -> Iterator[tuple[Instruction, str]]:
+    for each in body:
+        if isinstance(each, If):
+            yield each, BLOCK
+            for arm in each.arms:
+                yield from _walk(arm.body)
+            yield from _walk(each.otherwise)
+        elif isinstance(each, Loop | While | Def | Task):
+            yield each, BLOCK
+            yield from _walk(each.body)
+        else:
+            yield each, DO

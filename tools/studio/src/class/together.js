@@ -1,0 +1,321 @@
+// A pupil's text editor, in which others edit, too. The program is a tree that Python keeps in the worker
+// (`studio/page_together.py`); here is what the editor has of it: when a line is finished, what the others have
+// changed, and where they are. What was typed while Python was at work stays: it is never mixed with their changes
+// in one line. Knows CodeMirror.
+
+import { Annotation, ChangeSet, StateEffect, StateField, Transaction } from '@codemirror/state';
+import { Decoration, EditorView, WidgetType } from '@codemirror/view';
+import { made } from '../page/made.js';
+import { post } from '../robot/host.js';
+import { Failed, pause } from '../robot/transport.js';
+
+const HELD_MS = 12_000; // the class holds a request for 8 s
+const AGAIN_MS = 700; // where the class does not answer
+const SLOW_MS = 1500; // where it takes no more changes for now
+const CARET_MS = 300; // between two of its places that others hear
+const FINISHED = ['undo', 'redo', 'input.repair', 'input.blocks']; // changes of lines that nobody is typing
+const COMPOSED_MS = 2000; // that changes of others wait for a composition
+
+/** @typedef {{name: string, mark: number, at: string, writes: boolean}} Other */
+
+/**
+ * @typedef {object} Shown what Python answers
+ * @property {number} version
+ * @property {[number, number, string][]} changes of the text that it was asked with
+ * @property {string[]} ids of the lines
+ * @property {{uid: string}[]} pending
+ * @property {number} since
+ * @property {string} epoch
+ * @property {number} told how many changes were refused
+ * @property {string} why
+ * @property {{name: string}} kept
+ */
+
+/**
+ * @typedef {object} Heard who hears of it
+ * @property {(why: unknown) => void} fails that is a bug
+ * @property {() => void} left this page is not in the group any more
+ * @property {(others: Other[]) => void} others who is here has changed
+ * @property {(why: string) => void} refused a change of this page was
+ * @property {(kept: {name: string}) => void} keep what a page goes on with that is loaded again
+ * @property {(isHeard: boolean) => void} answers whether the class answers
+ */
+
+/** A change that somebody else has made, or the layout. @type {import('@codemirror/state').AnnotationType<boolean>} */
+const brought = Annotation.define();
+/** @type {import('@codemirror/state').StateEffectType<{line: number, other: Other}[]>} */
+const setOthers = StateEffect.define();
+
+class Name extends WidgetType {
+  /** @param {Other} other */
+  constructor(other) {
+    super();
+    this.other = other;
+  }
+
+  /** @param {Name} widget */
+  eq({ other }) {
+    return other.name === this.other.name && other.mark === this.other.mark && other.writes === this.other.writes;
+  }
+
+  toDOM() {
+    const { name, mark, writes } = this.other;
+    const found = made('span', '', writes ? `${name} …` : name);
+    found.className = `cm-mate cm-mate-${mark}`;
+    return found;
+  }
+}
+
+const others = StateField.define({
+  create: () => Decoration.none,
+  update(marks, transaction) {
+    let found = marks.map(transaction.changes);
+    for (const effect of transaction.effects) {
+      if (!effect.is(setOthers)) continue;
+      const { doc } = transaction.state;
+      const ranges = effect.value.filter(({ line }) => line <= doc.lines).flatMap(({ line, other }) => {
+        const { from, to } = doc.line(line);
+        return [
+          Decoration.line({ class: `cm-beside cm-mate-${other.mark}` }).range(from),
+          Decoration.widget({ widget: new Name(other), side: 1 }).range(to),
+        ];
+      });
+      found = Decoration.set(ranges, true);
+    }
+    return found;
+  },
+  provide: (field) => EditorView.decorations.from(field),
+});
+
+// Dark enough for white letters, as beside white and beside black.
+const COLORS = ['#0b4f9e', '#8a3c00', '#0d6040', '#7a2fb8'];
+const looks = EditorView.baseTheme({
+  '.cm-beside': { boxShadow: 'inset 4px 0 var(--mate)' },
+  '.cm-mate': { marginLeft: '1ch', padding: '0 6px', borderRadius: '6px', backgroundColor: 'var(--mate)', color: '#fff', fontSize: '0.85em' },
+  ...Object.fromEntries(COLORS.map((color, k) => [`.cm-mate-${k}`, { '--mate': color }])),
+});
+
+/** Mates as a list of names in their colours. @param {Other[]} all */
+export function named(all) {
+  return all.map(({ name, mark }) => {
+    const found = made('span', '', name);
+    found.className = 'mate';
+    found.style.setProperty('--mate', COLORS[mark] ?? '');
+    return found;
+  });
+}
+
+export class Together {
+  #python;
+  #view;
+  #heard;
+  #isOver = false;
+  #isHot = false; // a key was pressed in the line of the caret since the caret came there
+  #line = 0; // that of the caret, as it was last seen
+  /** What was typed since Python was asked. @type {ChangeSet | null} */
+  #meanwhile = null;
+  /** @type {any[]} */
+  #news = [];
+  /** @type {Promise<void> | null} */
+  #waiting = null;
+  #steps = Promise.resolve();
+  #isSending = false;
+  #saw = 0;
+  /** @type {Other[]} */
+  #others = [];
+  /** @type {Shown} */
+  #shown = { version: 0, changes: [], ids: [], pending: [], since: -1, epoch: '', told: 0, why: '', kept: { name: '' } };
+  #at = '';
+  #caret = 0;
+
+  /**
+   * @param {import('../python.js').Python} python
+   * @param {import('../writing/editor.js').Editor} editor
+   * @param {Heard} heard
+   */
+  constructor(python, editor, heard) {
+    this.#python = python;
+    this.#heard = heard;
+    this.#view = editor.extend([others, looks, EditorView.updateListener.of((update) => this.#updated(update))]);
+  }
+
+  /** Shows the program of a group. @param {any} news of the class @param {unknown} kept by this page, before it was loaded again */
+  async begin(news, kept) {
+    for (;;) {
+      const { doc } = this.#view.state;
+      const shown = await this.#python.ask({ do: 'group_begin', news, kept }, new TextEncoder().encode(doc.toString()));
+      if (doc !== this.#view.state.doc) continue; // somebody has typed meanwhile
+      this.#take(shown, doc.length, null);
+      break;
+    }
+    this.#listen();
+  }
+
+  /** The group is left; the text stays. */
+  end() {
+    if (this.#isOver) return;
+    this.#isOver = true;
+    this.#others = [];
+    this.#view.dispatch({ effects: setOthers.of([]) });
+  }
+
+  /** What is finished becomes the group's. @returns {Promise<void>} */
+  finish() {
+    this.#isHot = false;
+    return this.#step();
+  }
+
+  /** @param {import('@codemirror/view').ViewUpdate} update */
+  #updated(update) {
+    if (this.#isOver) return;
+    const own = update.transactions.filter((each) => each.docChanged && !each.annotation(brought));
+    const line = update.state.doc.lineAt(update.state.selection.main.head).number;
+    if (own.length) {
+      this.#meanwhile = this.#meanwhile?.compose(update.changes) ?? null;
+      const isTyped = this.#view.hasFocus && !own.some((each) => FINISHED.some((event) => each.isUserEvent(event)));
+      const isOtherLine = update.startState.doc.lines !== update.state.doc.lines || (this.#isHot && line !== this.#line);
+      this.#isHot = isTyped;
+      if (!isTyped || isOtherLine) this.#step();
+    } else if (!update.docChanged && this.#isHot && line !== this.#line) {
+      this.finish();
+    }
+    if (update.focusChanged && !this.#view.hasFocus && this.#isHot) this.finish();
+    this.#line = line;
+    this.#tellCaret();
+  }
+
+  /** Has Python take what is in the editor, and what has come; one at a time. @returns {Promise<void>} */
+  #step() {
+    this.#waiting ??= this.#steps = this.#steps.then(async () => {
+      this.#waiting = null;
+      while (!this.#isOver && !(await this.#try())) { /* somebody has typed where others have changed something */ }
+      this.#send();
+    }).catch((why) => {
+      this.end();
+      this.#heard.fails(why);
+    });
+    return this.#waiting;
+  }
+
+  /** @returns {Promise<boolean>} whether what Python answers is shown */
+  async #try() {
+    const began_ms = performance.now();
+    while (this.#view.composing && performance.now() - began_ms < COMPOSED_MS) await pause(100);
+    const { doc, selection } = this.#view.state;
+    const news = this.#news.slice();
+    this.#meanwhile = ChangeSet.empty(doc.length);
+    const caret = doc.lineAt(selection.main.head).number - 1;
+    /** @type {Shown} */
+    const shown = await this.#python.ask({ do: 'group_step', from: this.#shown.version, caret, hot: this.#isHot, news }, new TextEncoder().encode(doc.toString()));
+    const typed = this.#meanwhile;
+    this.#meanwhile = null;
+    if (this.#isOver) return true;
+    if (meet(doc, typed, shown.changes)) return false;
+    this.#news.splice(0, news.length);
+    this.#take(shown, doc.length, typed);
+    return true;
+  }
+
+  /** @param {Shown} shown @param {number} length of the text that it was made of @param {ChangeSet | null} typed since */
+  #take(shown, length, typed) {
+    const { told } = this.#shown;
+    this.#shown = shown;
+    const changes = ChangeSet.of(shown.changes.map(([from, to, insert]) => ({ from, to, insert })), length);
+    const after = typed && !typed.empty ? changes.map(typed) : changes;
+    this.#view.dispatch({ changes: after, annotations: [brought.of(true), Transaction.addToHistory.of(false)] });
+    this.#mark();
+    this.#heard.keep(shown.kept);
+    if (shown.told > told && this.#shown.version > 1) this.#heard.refused(shown.why);
+  }
+
+  #mark() {
+    const places = this.#others.map((other) => ({ line: this.#shown.ids.indexOf(other.at) + 1, other })).filter(({ line }) => line > 0);
+    this.#view.dispatch({ effects: setOthers.of(places) });
+  }
+
+  // -- the class --
+
+  #request() {
+    const { since, epoch, kept } = this.#shown;
+    return { do: 'group', page: kept.name, since, epoch, saw: this.#saw };
+  }
+
+  /** Hears what is new, for as long as this page is in the group. */
+  async #listen() {
+    while (!this.#isOver) {
+      await this.#ask({ waits: true }, { signal: AbortSignal.timeout(HELD_MS) });
+    }
+  }
+
+  /** Sends changes until all of them are decided. */
+  async #send() {
+    if (this.#isSending) return;
+    this.#isSending = true;
+    while (!this.#isOver && this.#shown.pending.length) {
+      const answer = await this.#ask({ changes: this.#shown.pending });
+      if (answer?.slow) await pause(SLOW_MS);
+    }
+    this.#isSending = false;
+  }
+
+  /** @param {Record<string, unknown>} more @param {RequestInit} [options] @returns {Promise<any>} */
+  async #ask(more, options) {
+    let answer;
+    try {
+      answer = await post({ ...this.#request(), ...more }, options);
+    } catch (why) {
+      if (this.#isOver) return null;
+      this.#heard.answers(false);
+      await pause(why instanceof Failed ? SLOW_MS : AGAIN_MS);
+      return null;
+    }
+    if (this.#isOver) return null;
+    if (answer.left) {
+      this.end();
+      this.#heard.left();
+      return null;
+    }
+    this.#heard.answers(true);
+    await this.#hear(answer);
+    return answer;
+  }
+
+  /** @param {any} news */
+  async #hear(news) {
+    const isOther = JSON.stringify(news.others) !== JSON.stringify(this.#others);
+    this.#saw = Math.max(this.#saw, news.saw);
+    this.#others = news.others;
+    if (isOther) {
+      this.#mark();
+      this.#heard.others(news.others);
+    }
+    if (!news.whole && !news.changes.length && !this.#shown.pending.length) return;
+    this.#news.push(news);
+    await this.#step();
+  }
+
+  /** Tells the others where the caret is, now and then. */
+  #tellCaret() {
+    const at = this.#shown.ids[this.#line - 1] ?? '';
+    const told = JSON.stringify([at, this.#isHot]);
+    if (told === this.#at || !this.#shown.kept.name) return;
+    this.#at = told;
+    clearTimeout(this.#caret);
+    const isHot = this.#isHot;
+    this.#caret = window.setTimeout(() => {
+      if (!this.#isOver) this.#ask({ at, writes: isHot });
+    }, CARET_MS);
+  }
+}
+
+/** Whether something was typed in a line that is changed. @param {import('@codemirror/state').Text} doc @param {ChangeSet} typed @param {[number, number, string][]} changes */
+function meet(doc, typed, changes) {
+  const lines = new Set();
+  typed.iterChangedRanges((from, to) => {
+    for (let k = doc.lineAt(from).number; k <= doc.lineAt(to).number; k += 1) lines.add(k);
+  });
+  return changes.some(([from, to]) => {
+    for (let k = doc.lineAt(from).number; k <= doc.lineAt(to).number; k += 1) if (lines.has(k)) return true;
+    return false;
+  });
+}
