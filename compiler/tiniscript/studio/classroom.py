@@ -49,6 +49,7 @@ from tiniscript.studio.serving import REQUEST_BYTES
 
 OWN_NAME_CHARACTERS, MOST_COLOUR = 16, 31  # of the robot that a pupil calls their own
 
+
 class OwnRobot(NamedTuple):
     """What a pupil has made of the virtual robot: `colour` is a number of the page's colours."""
 
