@@ -10,6 +10,7 @@ import ast
 import importlib._bootstrap_external as bootstrap
 import importlib.util
 import re
+import sys
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
@@ -91,6 +92,8 @@ class Packer:
         parents = (name.rsplit(".", k)[0] for k in range(name.count(".") + 1))
         if name in self._seen or not NOT_HERE.isdisjoint(parents) or name.startswith(LEFT_OUT):
             return []
+        if name.startswith("_py") and f"_{name[3:]}" in sys.builtin_module_names:
+            return []  # `_pydatetime`, which takes the place of `_datetime` where there is none
         self._seen.add(name)
         path = name.replace(".", "/")
         for candidate in (f"{path}/__init__.py", f"{path}.py"):
