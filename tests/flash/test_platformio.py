@@ -103,7 +103,7 @@ def test_tests_are_for_a_computer(native: Path) -> None:
 
 
 SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber", "uno_elegoo4",
-            "uno_tinibot2", "nano_tinibot2", "mega_tinibot2")  # fmt: skip
+            "uno_sumo", "uno_tinibot2", "nano_tinibot2", "mega_tinibot2")  # fmt: skip
 
 NEW_NANOS = {"nano_new": "nano", "nano_new_liner": "nano_liner",
              "nano_new_tinibot2": "nano_tinibot2"}  # fmt: skip

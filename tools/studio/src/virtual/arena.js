@@ -1,6 +1,6 @@
 // Draws a world and the robot in it. Knows shapes; what a robot does, the firmware decides.
 
-import { drawRobot } from './robot_drawing.js';
+import { drawRival, drawRobot } from './robot_drawing.js';
 import { dot, path } from '../page/shapes.js';
 import { robotOf, ROBOTS, WORLDS } from '../page/words.js';
 import { drawWorld, lightTile } from '../world/floor.js';
@@ -172,6 +172,7 @@ export class Arena {
     pen.setTransform(this.#place);
     pen.lineCap = pen.lineJoin = 'round';
     lightTile(pen, world, x, y);
+    world.rivals.forEach((rival, k) => drawRival(pen, rival, state?.rivals[k] ?? [rival.x_cm, rival.y_cm, rival.heading]));
     this.#drawBody(x, y, heading, state);
     this.#drawMark();
   }
