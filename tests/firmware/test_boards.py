@@ -115,7 +115,7 @@ def on_board(name: str, chip: str, *changes: tuple[str, str]) -> Robot:
 @pytest.mark.parametrize(("name", "chip"), [
     ("tinibot", "uno"), ("tinibot", "nano"), ("tinibot", "mega"),
     ("liner", "nano"), ("liner", "mega"), ("grabber", "mega"),
-    ("elegoo4", "uno"), ("elegoo4", "nano"), ("elegoo4", "mega"),
+    ("elegoo4", "uno"), ("elegoo4", "nano"), ("elegoo4", "mega"), ("sumo", "uno"),
 ])  # fmt: skip
 def test_shipped_robots_drive(name: str, chip: str) -> None:
     robot = on_board(name, chip)

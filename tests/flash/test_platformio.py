@@ -103,9 +103,11 @@ def test_tests_are_for_a_computer(native: Path) -> None:
 
 
 SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber", "uno_elegoo4",
-            "uno_tinibot2", "nano_tinibot2", "mega_tinibot2")  # fmt: skip
+            "nano_elegoo4", "mega_elegoo4", "uno_sumo", "nano_sumo", "mega_sumo", "uno_tinibot2",
+            "nano_tinibot2", "mega_tinibot2")  # fmt: skip
 
 NEW_NANOS = {"nano_new": "nano", "nano_new_liner": "nano_liner",
+             "nano_new_elegoo4": "nano_elegoo4", "nano_new_sumo": "nano_sumo",
              "nano_new_tinibot2": "nano_tinibot2"}  # fmt: skip
 # Boards of PlatformIO, and where Arduino's `boards.txt` has them.
 ARDUINO_BOARDS = {

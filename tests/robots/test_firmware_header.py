@@ -89,6 +89,8 @@ def test_shipped_headers_are_for_every_board_that_they_fit() -> None:
         ("liner", ["nano", "mega"]),
         ("grabber", ["mega"]),
         ("tinibot2", ["uno", "nano", "mega"]),
+        ("elegoo4", ["uno", "nano", "mega"]),
+        ("sumo", ["uno", "nano", "mega"]),
         ("tinibot32", ["esp32dev"]),
         ("tinibotc3", ["esp32c3"]),
     ):

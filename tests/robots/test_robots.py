@@ -19,7 +19,7 @@ FOLDER = Path(robots.__file__).parent
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.toml")}
 FINGERPRINTS = {"tinibot": 0x231B, "liner": 0xFC65, "grabber": 0x74B5,
                 "tinibot2": 0x231B, "tinibot32": 0x231B, "tinibotc3": 0x231B,
-                "elegoo4": 0x73BC}  # fmt: skip
+                "elegoo4": 0x73BC, "sumo": 0x742B}  # fmt: skip
 
 
 def edited(name: str, old: str, new: str) -> str:

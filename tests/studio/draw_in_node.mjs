@@ -12,6 +12,9 @@ class Pen {
   fillStyle = '';
   strokeStyle = '';
 
+  save() {}
+  restore() {}
+  scale() {}
   beginPath() { this.#numbers = []; }
   closePath() {}
   moveTo(...place) { this.#numbers.push(...place); }

@@ -235,3 +235,46 @@ def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
     assert "cm from the left and 50 cm from the bottom, and is facing to the right." in heard
     page.select_option("#world", "obstacles")
     assert not page.locator("#score").is_visible()
+
+
+ASLEEP = """[floor]
+width_cm = 200
+height_cm = 100
+border = false
+[start]
+x_cm = 40
+y_cm = 50
+[[rings]]
+x_cm = 70
+y_cm = 50
+radius_cm = 48
+edge_cm = 5
+[[rivals]]
+x_cm = 80
+y_cm = 50
+power_percent = 0
+"""
+RIVAL, DARK = "9a4fc0", "3b434c"
+
+
+def test_a_bout_is_seen_and_heard_and_how_it_ends(listening: Page) -> None:
+    page = listening
+    page.set_input_files(
+        "#world_file", {"name": "bout.toml", "mimeType": "", "buffer": ASLEEP.encode()}
+    )
+    page.locator("#world option:checked", has_text="bout").wait_for(state="attached")
+    assert count(page, RIVAL) > 100 and count(page, DARK) > 1000
+    for program, score, said in (
+        (
+            "// robot: sumo\nSI|F(5, 80)",
+            "⇥ 1/1   100   ★★★",
+            "The rival was pushed out of the ring.",
+        ),
+        ("// robot: sumo\nSI|B(2, 80)", "⇥ 0/1   0   ☆☆☆", "The robot fell out of the ring."),
+    ):
+        write(page, program)
+        page.click("#run")
+        page.locator("#doing", has_text=said).wait_for()
+        in_phase(page, "ended")
+        assert page.locator("#score").inner_text() == score
+        assert said in page.locator("#where").inner_text()

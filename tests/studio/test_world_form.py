@@ -71,6 +71,12 @@ def test_random_forms_keep_every_number() -> None:
             "flags": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "reach_cm": number(1, 300),
                        "rests": chance.random() < 0.5} for _ in range(chance.randrange(3))],
             "seconds": chance.choice([0, number(1, 600)]),
+            "rings": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "radius_cm": number(20, 90),
+                       "edge_cm": number(0, 9)} for _ in range(chance.randrange(3))],
+            "rivals": [{"x_cm": number(0, 200), "y_cm": number(0, 150),
+                        "heading": number(-180, 180), "length_cm": number(5, 50),
+                        "width_cm": number(5, 50), "speed_cm_s": number(1, 200),
+                        "power_percent": number(0, 100)} for _ in range(chance.randrange(4))],
         }  # fmt: skip
         assert is_near(as_tuples(form_of(read(toml_of(form), "own"))), as_tuples(form))
 

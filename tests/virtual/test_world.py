@@ -36,10 +36,10 @@ def refused(text: str) -> list[str]:
     return lines["en"]
 
 
-def test_eleven_worlds_are_shipped_and_have_names_in_both_languages() -> None:
+def test_twelve_worlds_are_shipped_and_have_names_in_both_languages() -> None:
     assert worlds.names() == [
         "obstacles", "corridor", "dance", "delivery", "free", "gaps", "light", "line", "maze",
-        "parking", "ring",
+        "parking", "ring", "sumo",
     ]  # fmt: skip
     for name in worlds.names():
         world = worlds.load(name.upper())

@@ -119,6 +119,11 @@ def _mirror(world: World) -> World:
         boxes=tuple(tuple(map(mirror, box)) for box in world.boxes),
         lines=tuple(line._replace(points=tuple(map(mirror, line.points))) for line in world.lines),
         lamps=tuple(lamp._replace(place=mirror(lamp.place)) for lamp in world.lamps),
+        rings=tuple(ring._replace(place=mirror(ring.place)) for ring in world.rings),
+        rivals=tuple(
+            rival._replace(start=Pose(*mirror(Point(*rival.start[:2])), -rival.start.heading))
+            for rival in world.rivals
+        ),
     )
 
 

@@ -246,6 +246,7 @@ class Simulation:
             "bumps": robot.driving.bumps,
             "touches": touched and list(touched),
             "score": self._score.state(),
+            "rivals": [list(pose) for pose in robot.driving.rivals],
             "actuators": [None if (value := robot.actuators.get(k)) is None else value / ONE
                           for k in range(len(kit.actuators))],
             "turned": dict(robot.sensing.turned),

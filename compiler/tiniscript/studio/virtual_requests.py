@@ -14,7 +14,7 @@ from tiniscript.studio import checking, playing, recordings
 from tiniscript.studio.simulation import Marks, Simulation
 from tiniscript.studio.world_form import form_of, toml_of
 from tiniscript.virtual import worlds
-from tiniscript.virtual.driving import Driving
+from tiniscript.virtual.bout import driving_in
 from tiniscript.virtual.world import World, WorldRefused
 from tiniscript.virtual.worlds import read as read_world
 
@@ -102,7 +102,7 @@ def _write_world(fields: Answer, data: bytes) -> Answer:
     except WorldRefused as refused:
         return {"refused": describe(refused, fields["language"])}
     body = checking.profile_of(fields["robot"]).body
-    return {"text": text, "is_blocked": Driving(body, world.obstacles(), world.start).is_blocked()}
+    return {"text": text, "is_blocked": driving_in(body, world).is_blocked()}
 
 
 def _open_run(fields: Answer, data: bytes) -> Answer:

@@ -13,8 +13,9 @@ from tiniscript.base.fixed_point import ONE
 from tiniscript.base.languages import SOURCE_LANGUAGE, ByLanguage, languages
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
-from tiniscript.virtual.worlds import LARGEST_CM, MOST_PARTS, MOST_POINTS, MOST_S
+from tiniscript.virtual.worlds import LARGEST_CM, MOST_PARTS, MOST_POINTS, MOST_RIVALS, MOST_S
 
+KINDS = ("walls", "boxes", "lines", "lamps", "flags", "rings", "rivals")
 DECIMALS = 3  # that a world's file may have
 Form = dict[str, Any]
 
@@ -23,6 +24,7 @@ def limits() -> dict[str, int]:
     """Return how many parts of a kind a world may have, how many points a part, and its numbers."""
     return {
         "parts": MOST_PARTS,
+        "rivals": MOST_RIVALS,
         "points": MOST_POINTS,
         "cm": LARGEST_CM // ONE,
         "seconds": MOST_S // ONE,
@@ -49,6 +51,12 @@ def form_of(world: World) -> Form:
         "flags": [{"x_cm": flag.place.x, "y_cm": flag.place.y, "reach_cm": flag.reach_cm,
                    "rests": flag.needs_rest} for flag in world.flags],
         "seconds": world.seconds,
+        "rings": [{"x_cm": ring.place.x, "y_cm": ring.place.y, "radius_cm": ring.radius_cm,
+                   "edge_cm": ring.edge_cm} for ring in world.rings],
+        "rivals": [{"x_cm": rival.start.x_cm, "y_cm": rival.start.y_cm,
+                    "heading": rival.start.heading, "length_cm": rival.length_cm,
+                    "width_cm": rival.width_cm, "speed_cm_s": rival.speed_cm_s,
+                    "power_percent": rival.power_percent} for rival in world.rivals],
     }  # fmt: skip
 
 
@@ -70,11 +78,7 @@ def toml_of(form: Form) -> str:
         _table("[start]", form["start"]),
         _table("[light]", {"ambient_percent": form["ambient_percent"]}),
         *([_table("[task]", {"seconds": form["seconds"]})] if form["seconds"] else []),
-        *(
-            _table(f"[[{kind}]]", part)
-            for kind in ("walls", "boxes", "lines", "lamps", "flags")
-            for part in form[kind]
-        ),
+        *(_table(f"[[{kind}]]", part) for kind in KINDS for part in form[kind]),
         _table("[labels]", labels),
     ]
     return "\n".join(tables)

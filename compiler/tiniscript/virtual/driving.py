@@ -104,6 +104,7 @@ class Driving:
         self.left = self.right = 0.0  # actual speed of the wheels, in percent
         self.corners = [start]  # straight lines join them; they show the way
         self.bumps = 0  # how many contacts have begun
+        self.has_fallen = False  # out of a ring
         self.driven_cm = 0.0
         self._pose = start
         self._near: Sequence[Segment] = obstacles  # all that may come near,
@@ -111,6 +112,23 @@ class Driving:
         self._kept_ms = 0.0  # when it was there
         self._free_cm = 0.0  # no point of the body touches anything before it has gone so far
         self._is_touching = self.touch_point(start) is not None
+
+    @property
+    def rivals(self) -> list[Pose]:
+        """Return where other bodies are, in the order of the world."""
+        return []
+
+    @property
+    def pushed_out(self) -> int:
+        """Return how many of them have left the ring."""
+        return 0
+
+    def others(self) -> list[Segment]:
+        """Return their outlines: what a sensor sees besides what stands."""
+        return []
+
+    def rest(self) -> None:
+        """Nothing moves any more: the robot's time is over."""
 
     def is_blocked(self) -> bool:
         """Whether the robot is inside an obstacle."""
@@ -162,16 +180,19 @@ class Driving:
         for pose in drive.way:
             self.driven_cm += math.dist(pose[:2], before[:2])
             before = pose
-            last = self.corners[-1]
-            if len(self.corners) > 1 and self._is_straight(self.corners[-2], last, pose):
-                self.corners[-1] = pose
-            elif pose[:2] != last[:2]:
-                self.corners.append(pose)
-        if len(self.corners) > MOST_CORNERS:
-            self.corners = [*self.corners[:-1:2], self.corners[-1]]
+            self._keep_corner(pose)
         is_touching = self._free_cm < TOUCH_CM and self.touch_point(self._pose) is not None
         self.bumps += is_touching and not self._is_touching
         self._is_touching = is_touching
+
+    def _keep_corner(self, pose: Pose) -> None:
+        last = self.corners[-1]
+        if len(self.corners) > 1 and self._is_straight(self.corners[-2], last, pose):
+            self.corners[-1] = pose
+        elif pose[:2] != last[:2]:
+            self.corners.append(pose)
+        if len(self.corners) > MOST_CORNERS:
+            self.corners = [*self.corners[:-1:2], self.corners[-1]]
 
     @staticmethod
     def _is_straight(first: Pose, second: Pose, third: Pose) -> bool:

@@ -12,6 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 from PIL.PngImagePlugin import PngInfo
 
 from tiniscript.robots.kinematics import Pose
+from tiniscript.virtual.bout import rival_hull
 from tiniscript.virtual.driving import Hull
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
@@ -21,13 +22,17 @@ LONGEST_SIDE = 1200  # pixels of the longer side
 MARGIN = 24
 PAPER, FLOOR, WALL, BOX = "#ffffff", "#f5f2ea", "#37414b", "#8a97a3"
 LINE, LAMP, GLOW = "#202020", "#f5b400", "#fdf3c8"
+RING, EDGE, RIVAL = "#3b434c", "#ffffff", "#d8b4f0"
 WAY, BEGIN, ROBOT, TEXT = "#1273de", "#2a9d55", "#e8590c", "#37414b"
 RULERS = (10, 20, 50, 100, 200, 500, 1000)  # centimetres
 
 
-def png(world: World, hull: Hull, corners: Sequence[Pose], pose: Pose, title: str) -> bytes:
+def png(
+    world: World, hull: Hull, corners: Sequence[Pose], pose: Pose, title: str,
+    rivals: Sequence[Pose] = (),
+) -> bytes:  # fmt: skip
     """Return the picture; straight lines join `corners`, and `pose` is where the robot is now."""
-    return _Sheet(world).render(hull, corners, pose, title)
+    return _Sheet(world).render(hull, corners, pose, title, rivals)
 
 
 class _Sheet:
@@ -53,12 +58,17 @@ class _Sheet:
             self.margin + (self.world.height_cm - y) * self.scale,
         )
 
-    def render(self, hull: Hull, corners: Sequence[Pose], pose: Pose, title: str) -> bytes:
+    def render(
+        self, hull: Hull, corners: Sequence[Pose], pose: Pose, title: str, rivals: Sequence[Pose]
+    ) -> bytes:
         world, draw = self.world, self.draw
         top_left, bottom_right = Point(0, world.height_cm), Point(world.width_cm, 0)
         draw.rectangle((*self.at(top_left), *self.at(bottom_right)), fill=FLOOR)
         for lamp in world.lamps:
             self._disc(lamp.place, lamp.reach_cm / 4, GLOW)
+        for ring in world.rings:
+            self._disc(ring.place, ring.radius_cm, EDGE)
+            self._disc(ring.place, ring.radius_cm - ring.edge_cm, RING)
         for line in world.lines:
             self._row(line.points, LINE, line.width_cm * self.scale)
         for box in world.boxes:
@@ -75,6 +85,11 @@ class _Sheet:
             self._disc(lamp.place, 2.5, LAMP)
         self._row([*corners, pose], WAY, 2.5 * OVERSAMPLING)
         self._disc(corners[0], 1.5, BEGIN)
+        for rival, place in zip(world.rivals, rivals, strict=False):
+            body = rival_hull(rival)
+            outline = [self.at(point) for point in body.outline(place)]
+            draw.polygon(outline, fill=RIVAL, outline=WALL, width=2 * OVERSAMPLING)
+            self._disc(body.spine(place).b, 1.2, WALL)
         draw.polygon(
             [self.at(point) for point in hull.outline(pose)],
             outline=ROBOT,

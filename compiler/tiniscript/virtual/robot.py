@@ -18,7 +18,7 @@ from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.ports import ESP32S
 from tiniscript.robots.profile import Robot, language_number
-from tiniscript.virtual.driving import Driving
+from tiniscript.virtual.bout import driving_in
 from tiniscript.virtual.module import (
     NOWHERE,
     PATH,
@@ -87,7 +87,7 @@ class VirtualRobot:
         self.settings = settings
         self.now_ms = 0
         self.chance = Random(settings.seed)
-        self.driving = Driving(profile.body, world.obstacles(), world.start)
+        self.driving = driving_in(profile.body, world)
         discs = profile.board.discs
         self.wheels: Wheels | None = None
         if discs:
@@ -96,7 +96,9 @@ class VirtualRobot:
         if self.driving.is_blocked():
             place = f"x_cm = {world.start.x_cm:g}, y_cm = {world.start.y_cm:g}"
             raise WorldRefused(("start_blocked", {"path": "start", "place": place}))
-        self.sensing = Sensing(profile, world, settings.noise, self.chance, settings.told)
+        self.sensing = Sensing(
+            profile, world, settings.noise, self.chance, settings.told, self.driving.others
+        )
         self.is_running = False
         self.started_ms: int | None = None  # when its first program began
         self.ended_ms: int | None = None  # when its newest program ended
@@ -148,6 +150,7 @@ class VirtualRobot:
     def rest(self) -> None:
         """End its time: it no longer moves, whatever its firmware does."""
         self._halt("STOP")
+        self.driving.rest()
         self.is_at_rest = True
         self._told = len(self._traced.events)
 

@@ -1,6 +1,6 @@
-"""How far a robot has come with the flags of its world, in their order, and what that is worth.
+"""How far a robot has come with the flags and the rivals of its world, and what that is worth.
 
-Knows robots and flags. The same run has the same score, however often it is looked at.
+Knows robots, flags and rivals. The same run has the same score, however often it is looked at.
 """
 
 from __future__ import annotations
@@ -11,51 +11,65 @@ from typing import Any
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
 
-FLAG_POINTS, BUMP_POINTS, SECOND_POINTS = 100, 10, 5  # points; for each second that is left
+FLAG_POINTS, BUMP_POINTS, SECOND_POINTS = 100, 10, 5  # a rival as a flag; each second left
 LOOK_PAUSE_MS = 5  # between two looks
 
 
 class Score:
-    """What a robot has done with the flags of a world since its program began.
+    """What a robot has done with the flags and the rivals of a world since its program began.
 
     Where it stands once the program has ended counts, too.
     """
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._taken = self._bumps = self._ms = 0
+        self._taken = self._pushed = self._bumps = self._ms = 0
+        self._has_fallen = False
 
     @property
     def is_whole(self) -> bool:
-        return self._taken == len(self._world.flags)
+        world = self._world
+        return self._taken == len(world.flags) and self._pushed == self._rivals
+
+    @property
+    def _rivals(self) -> int:
+        """Return how many are to be pushed out: none where there is nothing to fall from."""
+        return len(self._world.rivals) if self._world.rings else 0
 
     def look(self, robot: VirtualRobot) -> None:
-        """See where the robot is now. What it does with all flags taken counts no more."""
-        if self.is_whole or robot.now_ms % LOOK_PAUSE_MS:
+        """See where the robot is now. What it does with all done, or fallen, counts no more."""
+        if self.is_whole or self._has_fallen or robot.now_ms % LOOK_PAUSE_MS:
             return
         if robot.started_ms is None:
             return
         self._bumps = robot.driving.bumps
         self._ms = (robot.now_ms if robot.is_running else robot.ended_ms or 0) - robot.started_ms
-        flag = self._world.flags[self._taken]
         x_cm, y_cm, _ = robot.pose
+        self._has_fallen = robot.driving.has_fallen
+        self._pushed = robot.driving.pushed_out
+        if self._taken == len(self._world.flags):
+            return
+        flag = self._world.flags[self._taken]
         stands = not (robot.driving.left or robot.driving.right)
         if math.hypot(x_cm - flag.place.x, y_cm - flag.place.y) <= flag.reach_cm:
             self._taken += stands or not flag.needs_rest
 
     def state(self) -> dict[str, Any] | None:
-        """Return what is to be shown, or None where there are no flags."""
+        """Return what is to be shown, or None where there is nothing to do."""
         world = self._world
-        if not world.flags:
+        if not world.flags and not self._rivals:
             return None
         left_s = world.seconds - self._ms / 1000
         is_in_time = not world.seconds or left_s >= 0
-        points = FLAG_POINTS * self._taken - BUMP_POINTS * self._bumps
+        points = FLAG_POINTS * (self._taken + self._pushed) - BUMP_POINTS * self._bumps
         if self.is_whole:
             points += SECOND_POINTS * max(0, math.floor(left_s))
         return {
             "taken": self._taken,
             "of": len(world.flags),
+            "pushed": self._pushed,
+            "rivals": self._rivals,
+            "has_fallen": self._has_fallen,
             "points": max(0, points),
             "stars": self.is_whole * (1 + (not self._bumps) + is_in_time),
         }

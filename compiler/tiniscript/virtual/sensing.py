@@ -1,13 +1,14 @@
 """The readings of a robot's sensors, calculated from its pose in a world.
 
-Knows how sensors measure light, distance, a line and a touch. Readings are thousandths, as in the
-machine. A sensor without a place in the robot's body gives the readings that it is told.
+Knows how sensors measure light, distance, a line, a white edge and a touch. Readings are
+thousandths, as in the machine. A sensor without a place in the robot's body gives the readings
+that it is told.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from random import Random
 
 from tiniscript.base.fixed_point import ONE
@@ -40,9 +41,11 @@ class Sensing:
         noise: float = 0.0,
         chance: Random | None = None,
         told: Mapping[int, Sequence[int]] | None = None,
+        others: Callable[[], Sequence[Segment]] = tuple,
     ) -> None:
         self.robot = robot
         self.world = world
+        self._others = others  # outlines of what moves besides the robot
         self.noise = noise
         self.obstacles = world.obstacles()
         self.lines = [
@@ -99,19 +102,23 @@ class Sensing:
         if place.sees == "light":
             value = device.low + (self._light(eye, heading) + off) * span
             return round(value / ONE) * ONE if span > MOST_FINE_STEPS * ONE else value
-        is_there = self._is_black(eye) if place.sees == "line" else self._is_touched(place, pose)
+        if place.sees == "touch":
+            is_there = self._is_touched(place, pose)
+        else:
+            is_there = self._is_black(eye) == (place.sees == "line")
         return float(device.high if is_there else device.low)
 
     def _distance_cm(self, eye: Point, heading: float) -> float:
-        nearest = nearest_seen(self.obstacles, eye, heading, CONE_RADIANS)
+        nearest = nearest_seen([*self.obstacles, *self._others()], eye, heading, CONE_RADIANS)
         return FARTHEST_CM if nearest is None else min(max(nearest, NEAREST_CM), FARTHEST_CM)
 
     def _light(self, eye: Point, heading: float) -> float:
         """Return 0 to 1: lamps by their distance and angle, none through an obstacle."""
         level = self.world.ambient
+        obstacles = [*self.obstacles, *self._others()] if self.world.lamps else []
         for lamp in self.world.lamps:
             ray = Segment(eye, lamp.place)
-            if any(crosses(ray, obstacle) for obstacle in self.obstacles):
+            if any(crosses(ray, obstacle) for obstacle in obstacles):
                 continue
             away = math.dist(eye, lamp.place)
             angle = math.atan2(lamp.place.y - eye.y, lamp.place.x - eye.x) - heading
@@ -129,7 +136,7 @@ class Sensing:
                 and distance(segment, x, y) <= half_cm
             ):
                 return True
-        return False
+        return any(ring.is_dark(x, y) for ring in self.world.rings)
 
     def _is_touched(self, place: Place, pose: Pose) -> bool:
         """Return whether the body touches something on the side where a bumper sits."""
@@ -140,7 +147,8 @@ class Sensing:
                 obstacle for obstacle in self.obstacles if distance(obstacle, *pose[:2]) < reach_cm
             ]
             self._near = pose, near
-        contact = self.hull.contact(pose, self._near[1]) if self._near[1] else None
+        near = [*self._near[1], *self._others()]
+        contact = self.hull.contact(pose, near) if near else None
         if contact is None or contact.gap_cm >= TOUCH_CM:
             return False
         (_, _, heading), point = pose, contact.obstacle_point

@@ -1,4 +1,5 @@
-"""The types of a world: a floor with walls, boxes, lines, lamps and flags; and why one is refused.
+"""The types of a world: a floor with walls, boxes, lines, lamps, flags, rings and rivals; and why
+one is refused.
 
 Lengths are centimetres: x goes to the right and y up, from the lower left corner of the floor.
 Knows the shapes. Knows no TOML and no files (`worlds`) and no robots.
@@ -6,6 +7,7 @@ Knows the shapes. Knows no TOML and no files (`worlds`) and no robots.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -42,11 +44,48 @@ class Flag(NamedTuple):
     needs_rest: bool
 
 
+class Ring(NamedTuple):
+    """A dark disc with a white edge, `edge_cm` of its radius; whose middle leaves it falls out."""
+
+    place: Point
+    radius_cm: float
+    edge_cm: float
+
+    def is_dark(self, x_cm: float, y_cm: float) -> bool:
+        return self._distance(x_cm, y_cm) < self.radius_cm - self.edge_cm
+
+    def holds(self, x_cm: float, y_cm: float) -> bool:
+        return self._distance(x_cm, y_cm) <= self.radius_cm
+
+    def outline(self, corners: int) -> list[Point]:
+        """Return points around it; the last is the first."""
+        angles = [2 * math.pi * k / corners for k in (*range(corners), 0)]
+        x, y = self.place
+        return [
+            Point(x + self.radius_cm * math.cos(angle), y + self.radius_cm * math.sin(angle))
+            for angle in angles
+        ]
+
+    def _distance(self, x_cm: float, y_cm: float) -> float:
+        return math.hypot(x_cm - self.place.x, y_cm - self.place.y)
+
+
+class Rival(NamedTuple):
+    """Another body, which drives at `power_percent` of its speed, and pushes and is pushed."""
+
+    start: Pose
+    length_cm: float
+    width_cm: float
+    speed_cm_s: float
+    power_percent: float
+
+
 class World(NamedTuple):
     """A world. `walls` are rows of points, `boxes` corners; the robot begins at `start`.
 
     `ambient` is the light without lamps, 0 to 1. `labels` has the name in each language.
-    `flags` are to be taken in their order, within `seconds`, if that is not 0.
+    `flags` are to be taken in their order, and `rivals` pushed out of the `rings`, within
+    `seconds`, if that is not 0.
     """
 
     name: str
@@ -62,6 +101,8 @@ class World(NamedTuple):
     ambient: float
     flags: tuple[Flag, ...] = ()
     seconds: float = 0
+    rings: tuple[Ring, ...] = ()
+    rivals: tuple[Rival, ...] = ()
 
     def obstacles(self) -> list[Segment]:
         """Return everything that a robot cannot drive through."""

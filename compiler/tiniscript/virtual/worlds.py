@@ -16,10 +16,11 @@ from tiniscript.robots.profile import ProfileRefused, Reason
 from tiniscript.robots.refusals import printable_value
 from tiniscript.robots.toml_table import Table, root_of
 from tiniscript.virtual.geometry import Point
-from tiniscript.virtual.world import Flag, Lamp, Line, World, WorldRefused
+from tiniscript.virtual.world import Flag, Lamp, Line, Ring, Rival, World, WorldRefused
 
 LARGEST_CM = 2000 * ONE
-MOST_PARTS = 100  # walls, and as many boxes, lines, lamps and flags
+MOST_PARTS = 100  # walls, and as many boxes, lines, lamps, flags and rings
+MOST_RIVALS = 3
 MOST_S = 600 * ONE  # for its flags
 MOST_POINTS = 200  # of a wall or a line
 LABEL_CHARACTERS = 60
@@ -86,15 +87,19 @@ def _read(root: Table, name: str) -> World:
         ambient,
         _parts(root, "flags", _flag),
         seconds,
+        _parts(root, "rings", _ring),
+        _parts(root, "rivals", _rival, MOST_RIVALS),
     )
 
 
-def _parts(root: Table, key: str, read: Callable[[Table], T]) -> tuple[T, ...]:
+def _parts(
+    root: Table, key: str, read: Callable[[Table], T], most: int = MOST_PARTS
+) -> tuple[T, ...]:
     tables = root.tables(key)
-    if len(tables) > MOST_PARTS:
-        root.complain("too_many_parts", key, found=str(len(tables)), most=str(MOST_PARTS))
+    if len(tables) > most:
+        root.complain("too_many_parts", key, found=str(len(tables)), most=str(most))
     matches = []
-    for table in tables[:MOST_PARTS]:
+    for table in tables[:most]:
         matches.append(read(table))
         table.finish()
     return tuple(matches)
@@ -150,6 +155,24 @@ def _lamp(table: Table) -> Lamp:
 def _flag(table: Table) -> Flag:
     reach_cm = _number(table, "reach_cm", ONE, LARGEST_CM, default=12)
     return Flag(_place(table), reach_cm, table.yes_no("rests", False))
+
+
+def _ring(table: Table) -> Ring:
+    """Return a ring; an edge has its room in the disc."""
+    radius_cm = _number(table, "radius_cm", 5 * ONE, LARGEST_CM, "radius_cm = 60")
+    edge_cm = _number(table, "edge_cm", 0, 100 * ONE, default=5)
+    return Ring(_place(table), radius_cm, min(edge_cm, radius_cm))
+
+
+def _rival(table: Table) -> Rival:
+    place = _place(table)
+    heading = _number(table, "heading", -360 * ONE, 360 * ONE)
+    length_cm, width_cm = (
+        _number(table, key, 5 * ONE, 50 * ONE, default=11) for key in ("length_cm", "width_cm")
+    )
+    speed_cm_s = _number(table, "speed_cm_s", ONE, 200 * ONE, default=40)
+    power_percent = _number(table, "power_percent", 0, 100 * ONE, default=60)
+    return Rival(Pose(*place, heading), length_cm, width_cm, speed_cm_s, power_percent)
 
 
 def _labels(table: Table, name: str) -> dict[str, str]:

@@ -53,7 +53,8 @@ import { watched } from './page/progress.js';
  * @property {string} fault
  * @property {number} bumps
  * @property {[number, number] | null} touches where it touches something
- * @property {{taken: number, of: number, points: number, stars: number} | null} score of the flags of its world
+ * @property {{taken: number, of: number, pushed: number, rivals: number, has_fallen: boolean, points: number, stars: number} | null} score of the flags and the rivals of its world
+ * @property {[number, number, number][]} rivals where each is, and its heading
  * @property {(number | null)[]} actuators null of one that has not been set, or is released
  * @property {Record<string, number>} [turned] how far an actuator that carries a sensor has turned to the left, in degrees
  * @property {number | null} at where the program is, or what it does next where it is held

@@ -21,6 +21,8 @@
 #include "kits/grabber.h"
 #elif defined(tiniscript_elegoo4)
 #include "kits/elegoo4.h"
+#elif defined(tiniscript_sumo)
+#include "kits/sumo.h"
 #elif defined(tiniscript_tinibot2)
 #include "kits/tinibot2.h"
 #elif __has_include("kits/own.h") && !defined(tiniscript_tinibot)

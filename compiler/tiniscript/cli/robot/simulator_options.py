@@ -107,7 +107,7 @@ def draw_picture(options: Namespace, robot: VirtualRobot, language: str) -> None
     driving = robot.driving
     label = robot.profile.labels[language]["robot"]
     title = f"{label} - {robot.world.labels[language]}"
-    image = png(robot.world, driving.hull, driving.corners, robot.pose, title)
+    image = png(robot.world, driving.hull, driving.corners, robot.pose, title, driving.rivals)
     outputs.write(Path(options.plot), image, "unwritable_at --plot")
 
 

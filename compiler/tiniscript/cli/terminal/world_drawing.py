@@ -27,7 +27,8 @@ from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
 
-WALLS, LAMP = "", "bold yellow"
+WALLS, LAMP, RIVAL = "", "bold yellow", "bold magenta"
+RING_CORNERS = 48
 
 
 class WorldPicture(Picture):
@@ -107,8 +108,11 @@ class WorldSketch(Sketch):
         hull = Canvas(columns, rows)
         outline = driving.hull.outline(pose, 16)
         hull.lines(map(ground.dot, [*outline, outline[0]]))
+        rivals = Canvas(columns, rows)
+        for segment in driving.others():
+            rivals.lines(map(ground.dot, segment))
         way = ground.way(driving.corners, pose)
-        lines = merge_layers([(hull, ROBOT), (way, WAY), (ground.walls, WALLS)])
+        lines = merge_layers([(hull, ROBOT), (rivals, RIVAL), (way, WAY), (ground.walls, WALLS)])
         for lamp in self.world.lamps:
             put_letter(lines, ground.dot(lamp.place), "*", LAMP)
         put_letter(lines, ground.dot(pose), ARROWS[round((pose.heading - 90) / 45) % 8], ROBOT)
@@ -134,6 +138,8 @@ class Floor:
             self.walls.lines(map(self.dot, segment))
         for line in world.lines:
             self.walls.lines(map(self.dot, line.points))
+        for ring in world.rings:
+            self.walls.lines(map(self.dot, ring.outline(RING_CORNERS)))
 
     def dot(self, point: Point | Pose) -> Dot:
         """Return where a place lies on the canvas."""

@@ -192,7 +192,7 @@ class _Finished:
         return lines
 
     def _looks(self, place: Place, x: float, y: float) -> list[str]:
-        if place.sees == "line":  # down, to the floor
+        if place.sees in ("line", "white"):  # down, to the floor
             return [f'<circle cx="{x:g}" cy="{y:g}" r="9" fill="{PARTS}" stroke="{LINE}"{BELOW}/>']
         turn = radians(place.heading)
         tip_x, tip_y = x - ARROW * sin(turn), y - ARROW * cos(turn)

@@ -17,11 +17,13 @@ export function worldPicture(world) {
   const border = world.has_border ? '#6b4a2f' : '#c8d2dc';
   const floor = drawn('g', { transform: `translate(0 ${height_cm}) scale(1 -1)`, 'stroke-linecap': 'round', 'stroke-linejoin': 'round' },
     drawn('rect', { width: width_cm, height: height_cm, fill: '#fffdf6', stroke: border, 'stroke-width': 5 }),
+    ...world.rings.flatMap(({ x_cm, y_cm, radius_cm, edge_cm }) => [disc(x_cm, y_cm, radius_cm + 2, '#8b97a3'), disc(x_cm, y_cm, radius_cm, '#fff'), disc(x_cm, y_cm, Math.max(0, radius_cm - edge_cm), '#3b434c')]),
     ...world.lamps.flatMap(({ x_cm, y_cm }) => [disc(x_cm, y_cm, 20, '#ffe9a3'), disc(x_cm, y_cm, 7, '#e08a1e')]),
     ...world.lines.map(({ points }) => row(points, 'none', '#20242a')),
     ...world.boxes.map((box) => row([...cornersOf(box), ...cornersOf(box).slice(0, 1)], '#c79a6b', '#6b4a2f')),
     ...world.walls.map(({ points }) => row(points, 'none', '#6b4a2f')),
     ...world.flags.map(({ x_cm: x, y_cm: y }) => row([[x, y - 6], [x, y + 20], [x + 18, y + 13], [x, y + 6]], '#ffd84d', '#0d6040')),
+    ...world.rivals.map(({ x_cm, y_cm }) => disc(x_cm, y_cm, 11, '#9a4fc0')),
     disc(start.x_cm, start.y_cm, 11, '#2a9d6f'),
   );
   return drawn('svg', { viewBox: `-3 -3 ${width_cm + 6} ${height_cm + 6}`, 'aria-hidden': 'true' }, floor);

@@ -1,7 +1,7 @@
 // Draws a world and the robot in it. Knows shapes; what a robot does, the firmware decides.
 
 import { Moods } from './moods.js';
-import { drawRobot } from './robot_drawing.js';
+import { drawRival, drawRobot } from './robot_drawing.js';
 import { COLOURS } from '../page/own_robot.js';
 import { pageState } from '../page/page_state.js';
 import { dot, path } from '../page/shapes.js';
@@ -183,6 +183,7 @@ export class Arena {
     pen.setTransform(this.#place);
     pen.lineCap = pen.lineJoin = 'round';
     lightTile(pen, world, x, y);
+    world.rivals.forEach((rival, k) => drawRival(pen, rival, state?.rivals[k] ?? [rival.x_cm, rival.y_cm, rival.heading]));
     this.#drawBody(x, y, heading, state);
     this.#drawMark();
   }

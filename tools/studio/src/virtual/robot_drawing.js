@@ -18,6 +18,7 @@ import { CALM } from './moods.js';
 
 const CONE = (15 * Math.PI) / 180; // of an ultrasonic sensor, to both sides
 const WHEEL = { length: 8, width: 3, tread: 1.6 };
+const USUAL_CM = 9; // from the middle between its wheels to its back
 const LOOK_CM = 14; // of a ray of light
 const GREEN = ['#2a9d6f', '#0d4f38'];
 const EYE = { back: 4.6, apart: 3.1, radius: 2.6, pupil: 1.4, room: 1.05, stroke: 0.8, wide: 7.5 }; // in cm, of a robot that is so wide to each side
@@ -35,13 +36,53 @@ export function drawRobot(pen, robot, state, seen) {
   });
   const [body = '', edge = ''] = state?.fault ? ['#c8372a', '#5c130c'] : seen.colours ?? GREEN;
   path(pen, robot.outline, edge, 0.8, body);
-  const side = robot.wheel_base_cm / 2;
-  drawWheel(pen, side, seen.rolled[0]);
-  drawWheel(pen, -side, seen.rolled[1]);
+  const side = robot.wheel_base_cm / 2, size = sizeOf(robot);
+  drawWheel(pen, side, seen.rolled[0], size);
+  drawWheel(pen, -side, seen.rolled[1], size);
   drawFace(pen, robot, seen.face ?? CALM, body, edge);
+  pen.save();
+  pen.scale(size, size);
   path(pen, [[4.2, 0], [0.6, 2], [0.6, -2]], '#fff', 0.4, '#fff');
   drawLamps(pen, robot, state, edge);
   drawBuzzer(pen, seen.isBeeping);
+  pen.restore();
+  if (state) drawFeelers(pen, robot, state);
+}
+
+/** How large what is on a robot is: on a short one it has less room. @param {Robot} robot */
+function sizeOf(robot) {
+  return Math.min(1, Math.max(...robot.outline.map(([x = 0]) => -x)) / USUAL_CM);
+}
+
+/**
+ * Another body that drives, from above: its wheels at its sides, and where it looks.
+ * @param {Pen} pen
+ * @param {import('../world/parts.js').Rival} rival
+ * @param {number[]} pose
+ */
+export function drawRival(pen, { length_cm, width_cm }, [x = 0, y = 0, heading = 0]) {
+  const round = Math.min(length_cm, width_cm) / 2, half = length_cm / 2;
+  pen.save();
+  pen.translate(x, y);
+  pen.rotate((heading * Math.PI) / 180);
+  for (const side of [-1, 1]) {
+    pen.fillStyle = '#20242a';
+    pen.beginPath();
+    pen.roundRect(-2.5, side * (width_cm / 2 - 0.6) - 1, 5, 2, 0.6);
+    pen.fill();
+  }
+  pen.beginPath();
+  pen.roundRect(-half, -width_cm / 2 + 0.8, length_cm, width_cm - 1.6, Math.min(round, width_cm / 2 - 0.8));
+  pen.fillStyle = '#9a4fc0';
+  pen.strokeStyle = '#5b2179';
+  pen.lineWidth = 0.8;
+  pen.fill();
+  pen.stroke();
+  for (const across of [-1.7, 1.7]) {
+    dot(pen, half - 2.6, across, 1.3, '#fff');
+    dot(pen, half - 2.1, across, 0.6, '#20242a');
+  }
+  pen.restore();
 }
 
 /** In the order of the state's. @param {Robot} robot */
@@ -49,9 +90,9 @@ function actuatorsOf(robot) {
   return robot.devices.filter((each) => each.role === 'actuator');
 }
 
-/** @param {Pen} pen @param {number} y @param {number} rolled */
-function drawWheel(pen, y, rolled) {
-  const { length, width, tread } = WHEEL;
+/** @param {Pen} pen @param {number} y @param {number} rolled @param {number} size */
+function drawWheel(pen, y, rolled, size) {
+  const length = WHEEL.length * size, width = WHEEL.width * size, { tread } = WHEEL;
   pen.fillStyle = '#20242a';
   pen.beginPath();
   pen.roundRect(-length / 2, y - width / 2, length, width, 1);
@@ -140,25 +181,44 @@ function drawJaws(pen, robot, part) {
   }
 }
 
+/** @typedef {{x_cm: number, y_cm: number, heading: number, sees: string, turns_with: string}} Sensor where it sits */
+
+/**
+ * The sensors that have a place, each with its device and its reading.
+ * @param {Robot} robot
+ * @param {RobotState} state
+ * @param {(place: Sensor, value: number, device: Robot['devices'][number]) => void} draw
+ */
+function forSensors(robot, state, draw) {
+  /** @type {Record<string, Sensor | undefined>} */
+  const places = robot.places;
+  robot.devices.filter((device) => device.role === 'sensor').forEach((device, k) => {
+    const place = places[device.text], reading = state.readings[k];
+    if (place && reading) draw(place, reading.value, device);
+  });
+}
+
+/** What feels the floor, or a touch. @param {Pen} pen @param {Robot} robot @param {RobotState} state */
+function drawFeelers(pen, robot, state) {
+  const radius = 1.4 * sizeOf(robot);
+  forSensors(robot, state, ({ x_cm, y_cm, sees }, value) => {
+    if (sees === 'distance' || sees === 'light') return;
+    dot(pen, x_cm, y_cm, radius, '#123b2c');
+    dot(pen, x_cm, y_cm, radius * 0.75, value ? '#ff6b57' : '#b9c2cb');
+  });
+}
+
 /** What each sensor looks at, and how much it finds. @param {Pen} pen @param {Robot} robot @param {RobotState} state */
 function drawSenses(pen, robot, state) {
-  /** @type {Record<string, {x_cm: number, y_cm: number, heading: number, sees: string, turns_with: string} | undefined>} */
-  const places = robot.places;
   const turned = state.turned ?? {};
-  robot.devices.filter((device) => device.role === 'sensor').forEach((device, k) => {
-    const place = places[device.text];
-    const reading = state.readings[k];
-    if (!place || !reading) return;
+  forSensors(robot, state, (place, value, device) => {
     const { x_cm: x, y_cm: y } = place;
     const along = ((place.heading + (turned[place.turns_with] ?? 0)) * Math.PI) / 180;
-    if (place.sees === 'distance') {
-      cone(pen, x, y, along, reading.value, '#e0452f33');
-    } else if (place.sees === 'light') {
+    if (place.sees === 'distance') cone(pen, x, y, along, value, '#e0452f33');
+    else if (place.sees === 'light') {
       const most = device.arguments[0]?.high || 1;
-      const strength = Math.round(40 + 160 * Math.min(1, reading.value / most));
+      const strength = Math.round(40 + 160 * Math.min(1, value / most));
       cone(pen, x, y, along, LOOK_CM, `#e08a1e${strength.toString(16).padStart(2, '0')}`);
-    } else {
-      dot(pen, x, y, 1.4, reading.value ? '#c8372a' : '#7c8894');
     }
   });
 }

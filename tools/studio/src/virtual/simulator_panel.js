@@ -22,7 +22,7 @@ import { devicesOf, nameOf } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
 import { WorldChoice } from '../world/choice.js';
 import { showRows, written } from '../page/rows.js';
-import { starsShown, Where } from './where.js';
+import { howEnded, starsShown, Where } from './where.js';
 import { WorldDrawing } from '../world/drawing.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
@@ -638,6 +638,8 @@ export class SimulatorPanel {
       return line ? text('say_fault', { line, what }) : text('robot_fault', { what });
     }
     if (this.#wasStopped) return text('robot_stopped');
+    const ended = state.score && howEnded(state.score);
+    if (ended) return ended;
     const held = state.is_held && this.#place()?.line;
     if (phase === 'paused' && held) return text('robot_held', { line: held });
     if (phase === 'paused') return text('robot_paused');
@@ -666,7 +668,8 @@ export class SimulatorPanel {
 
   /** What is to be done in this world, if there is such a thing. */
   #task() {
-    const { flags, seconds } = this.#shapes;
+    const { flags, seconds, rings, rivals } = this.#shapes;
+    if (rings.length && rivals.length && !flags.length) return text(seconds ? 'task_sumo_in_time' : 'task_sumo', { seconds });
     if (!flags.length) return '';
     return text(seconds ? 'task_in_time' : 'task', { count: flags.length, seconds });
   }
@@ -676,8 +679,9 @@ export class SimulatorPanel {
     const place = element('score', HTMLElement);
     hide(place, !score);
     if (!score) return;
-    const { taken, of, points, stars } = score;
-    say(place, `⚑ ${taken}/${of}   ${points}   ${starsShown(stars)}`);
+    const { taken, of, pushed, rivals, points, stars } = score;
+    const done = [of && `⚑ ${taken}/${of}`, rivals && `⇥ ${pushed}/${rivals}`].filter(Boolean).join('  ');
+    say(place, `${done}   ${points}   ${starsShown(stars)}`);
     place.classList.toggle('whole', stars > 0);
   }
 

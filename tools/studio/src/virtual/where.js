@@ -1,4 +1,5 @@
-// What a screen reader hears of a run: where the robot is, what it bumps into, which flags it takes.
+// What a screen reader hears of a run: where the robot is, what it bumps into, which flags it takes,
+// and how a bout ends.
 // Knows the robot's state; shows nothing.
 
 import { element } from '../page/elements.js';
@@ -18,6 +19,7 @@ export class Where {
   #phase = 'off';
   #bumps = 0;
   #taken = 0;
+  #ended = '';
 
   /** @param {RobotState | null} state @param {Phase} phase */
   tell(state, phase) {
@@ -25,6 +27,7 @@ export class Where {
     this.#phase = phase;
     if (!state || phase === 'off') {
       this.#bumps = this.#taken = 0;
+      this.#ended = '';
       this.#last = performance.now();
       return;
     }
@@ -34,6 +37,9 @@ export class Where {
     const found = [];
     if (bumps > this.#bumps && !isNew) found.push(text('where_bump'));
     if (taken > this.#taken && !isNew) found.push(text('score_flags', { taken, of: score?.of ?? 0 }));
+    const ended = score ? howEnded(score) : '';
+    if (ended !== this.#ended && ended && !isNew) found.push(ended);
+    this.#ended = ended;
     this.#bumps = bumps;
     this.#taken = taken;
     const isLate = phase === 'running' && performance.now() - this.#last > EVERY_MS;
@@ -52,10 +58,17 @@ function placeSaid([x = 0, y = 0, heading = 0]) {
 }
 
 /** @param {NonNullable<RobotState['score']>} score what a run is worth, for eyes and ears */
-function scoreSaid({ stars, points, taken, of }) {
-  const rows = [text('score_flags', { taken, of }), text('score_points', { points })];
+function scoreSaid(score) {
+  const { stars, points, taken, of } = score;
+  const rows = [of ? text('score_flags', { taken, of }) : '', howEnded(score), text('score_points', { points })].filter(Boolean);
   if (stars) rows.push(text('score_stars', { stars, most: STARS }));
   return rows.join(' ');
+}
+
+/** @param {NonNullable<RobotState['score']>} score @returns {string} how its bout has ended, or nothing */
+export function howEnded({ pushed, rivals, has_fallen }) {
+  if (has_fallen) return text('score_fallen');
+  return rivals && pushed === rivals ? text('score_pushed') : '';
 }
 
 /** @param {number} stars */

@@ -296,8 +296,8 @@ export class WorldDrawing {
       return;
     }
     const part = handle >= 0 ? this.#chosen : partAt(before, place, reach_cm);
-    this.#choose(part ?? FLOOR, handle);
     if (part) this.#begin(event, { how: 'move', part, point: handle, from: place, before, base: before, way: [] });
+    this.#choose(part ?? FLOOR, handle);
   }
 
   /** @param {PointerEvent} event @param {Drag} drag */
@@ -340,6 +340,7 @@ export class WorldDrawing {
       return;
     }
     this.#change(world, drag.before);
+    if (this.isOn) this.#show();
   }
 
   /** What a finger moves is again where it was; returns whether there was such a thing. */
@@ -393,6 +394,8 @@ export class WorldDrawing {
   }
 
   #show() {
+    this.#mark();
+    if (this.#drag) return; // other tools would move the floor from under the finger
     const world = this.#page.world();
     const { kind } = this.#chosen;
     const parts = partsOf(world);
@@ -405,6 +408,5 @@ export class WorldDrawing {
     element('world_undo', HTMLButtonElement).disabled = !this.#before.length;
     element('world_redo', HTMLButtonElement).disabled = !this.#after.length;
     showNumbers(this.#numbers, world, this.#chosen, (changed) => this.#change(changed));
-    this.#mark();
   }
 }

@@ -16,7 +16,7 @@ const DASH_CM = 6; // of the white line in the middle of a street
 const PAPER = '#fffdf6', NIGHT = '#27324b';
 const TILES = ['#fbeefc', '#e3f0fd', '#fff3cf'], LIT = ['#f3b8f7', '#a9d3fb', '#ffe08a']; // as on the picture of a dance
 /** What the floor of a world is. @type {Record<string, 'night' | 'tiles' | 'kitchen' | 'city' | 'ring'>} */
-const THEMES = { light: 'night', dance: 'tiles', obstacles: 'kitchen', delivery: 'city', ring: 'ring' };
+const THEMES = { light: 'night', dance: 'tiles', obstacles: 'kitchen', delivery: 'city', ring: 'ring', sumo: 'ring' };
 
 /**
  * @param {Pen} pen
@@ -30,6 +30,7 @@ export function drawWorld(pen, world, goals, taken, isChanged) {
   if (isChanged) drawGrid(pen, world);
   for (const goal of goals) drawGoal(pen, goal);
   world.flags.forEach((flag, k) => drawFlag(pen, flag, k - taken, k + 1));
+  for (const ring of world.rings) drawRing(pen, ring);
   for (const line of world.lines) path(pen, line.points, '#20242a', line.width_cm);
   for (const { x_cm: x, y_cm: y } of world.lamps) {
     const reach = THEMES[world.name] === 'night' ? [46, 30, 17] : [];
@@ -106,6 +107,15 @@ function drawGrid(pen, { width_cm, height_cm }) {
     if (at < width_cm) path(pen, [[at, 0], [at, height_cm]], color, 0.4);
     if (at < height_cm) path(pen, [[0, at], [width_cm, at]], color, 0.4);
   }
+}
+
+/** @param {Pen} pen @param {import('./parts.js').Ring} ring */
+function drawRing(pen, { x_cm: x, y_cm: y, radius_cm, edge_cm }) {
+  dot(pen, x, y, radius_cm, '#fff');
+  pen.strokeStyle = '#8b97a3';
+  pen.lineWidth = 0.5;
+  pen.stroke();
+  dot(pen, x, y, Math.max(0, radius_cm - edge_cm), '#3b434c');
 }
 
 /** @param {Pen} pen @param {Goal} goal */

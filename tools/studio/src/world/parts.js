@@ -11,6 +11,8 @@ import { WORLD_LIMITS } from '../page/words.js';
 /** @typedef {{points: Place[], width_cm: number}} Line */
 /** @typedef {{x_cm: number, y_cm: number, reach_cm: number}} Lamp */
 /** @typedef {{x_cm: number, y_cm: number, reach_cm: number, rests: boolean}} Flag `rests`: the robot is to stand there */
+/** @typedef {{x_cm: number, y_cm: number, radius_cm: number, edge_cm: number}} Ring dark, with a white edge */
+/** @typedef {{x_cm: number, y_cm: number, heading: number, length_cm: number, width_cm: number, speed_cm_s: number, power_percent: number}} Rival */
 /**
  * @typedef {object} World
  * @property {string} name
@@ -26,12 +28,14 @@ import { WORLD_LIMITS } from '../page/words.js';
  * @property {Lamp[]} lamps
  * @property {Flag[]} flags to be taken in their order
  * @property {number} seconds for them; 0 is as long as it takes
+ * @property {Ring[]} rings
+ * @property {Rival[]} rivals to be pushed out of the rings
  */
-/** @typedef {'walls' | 'boxes' | 'lines' | 'lamps' | 'flags'} Kind of what can be added */
+/** @typedef {'walls' | 'boxes' | 'lines' | 'lamps' | 'flags' | 'rings' | 'rivals'} Kind of what can be added */
 /** @typedef {{kind: Kind | 'floor' | 'start', index: number}} Part */
 
 /** @type {readonly Kind[]} */
-export const KINDS = ['walls', 'boxes', 'lines', 'lamps', 'flags'];
+export const KINDS = ['walls', 'boxes', 'lines', 'lamps', 'flags', 'rings', 'rivals'];
 /** @type {Part} */
 export const FLOOR = { kind: 'floor', index: 0 };
 /** @type {Part} */
@@ -57,6 +61,8 @@ export const NUMBERS = {
   lines: [['width_cm', 0.1, 100]],
   lamps: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['reach_cm', 1, LARGEST_CM]],
   flags: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['reach_cm', 1, LARGEST_CM]],
+  rings: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['radius_cm', 5, LARGEST_CM], ['edge_cm', 0, 100]],
+  rivals: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['heading', -360, 360], ['length_cm', 5, 50], ['width_cm', 5, 50], ['speed_cm_s', 1, 200], ['power_percent', 0, 100]],
 };
 
 /** What a kind of part is, or not: its key. @type {Partial<Record<Part['kind'], string>>} */
@@ -196,7 +202,7 @@ function toFloor({ start, width_cm, height_cm }) {
  * @returns {World | null} null where there is no room for one more
  */
 export function withDrawn(world, kind, way) {
-  if (world[kind].length >= WORLD_LIMITS.parts) return null;
+  if (world[kind].length >= (kind === 'rivals' ? WORLD_LIMITS.rivals : WORLD_LIMITS.parts)) return null;
   const half = Math.min(20, neat(world.width_cm / 4));
   const places = way.map(([x, y]) => /** @type {Place} */ ([neat(x), neat(y)]));
   const from = places[0] ?? [neat(world.width_cm / 2), neat(world.height_cm / 2)];
@@ -212,6 +218,8 @@ export function withDrawn(world, kind, way) {
     lines: () => ({ points: isTap ? across : simple(places), width_cm: 2 }),
     lamps: () => ({ x_cm: from[0], y_cm: from[1], reach_cm: 100 }),
     flags: () => ({ x_cm: from[0], y_cm: from[1], reach_cm: 12, rests: false }),
+    rings: () => ({ x_cm: from[0], y_cm: from[1], radius_cm: isTap ? 60 : Math.max(5, neat(Math.hypot(to[0] - from[0], to[1] - from[1]))), edge_cm: 4 }),
+    rivals: () => ({ x_cm: from[0], y_cm: from[1], heading: 0, length_cm: 11, width_cm: 11, speed_cm_s: 40, power_percent: 50 }),
     boxes: () => ({ x_cm: neat((from[0] + to[0]) / 2), y_cm: neat((from[1] + to[1]) / 2), length_cm: width_cm, width_cm: height_cm, heading: 0 }),
   }[kind]();
   return { ...world, [kind]: [...world[kind], part] };
@@ -246,16 +254,17 @@ export function partAt(world, place, reach_cm) {
   for (const part of partsOf(world)) {
     const value = valueOf(world, part);
     if (part.kind === 'floor') continue;
+    else if (part.kind === 'rings') found.push([part, Math.abs(Math.hypot(value.x_cm - place[0], value.y_cm - place[1]) - value.radius_cm + value.edge_cm / 2) - value.edge_cm / 2]);
     else if (part.kind === 'boxes') found.push([part, outside(value, place)]);
     else if (value.points) found.push([part, fromWay(value.points, place) - (value.width_cm ?? 2) / 2]);
-    else found.push([part, Math.hypot(value.x_cm - place[0], value.y_cm - place[1]) - (part.kind === 'start' ? ROBOT_CM : 4)]);
+    else found.push([part, Math.hypot(value.x_cm - place[0], value.y_cm - place[1]) - (part.kind === 'start' ? ROBOT_CM : part.kind === 'rivals' ? value.width_cm / 2 : 4)]);
   }
   const near = found.map(([part, far]) => /** @type {[Part, number]} */ ([part, Math.max(0, far)])).filter(([, far]) => far <= reach_cm);
   near.sort(([one, near_cm], [other, far_cm]) => near_cm - far_cm || ORDER.indexOf(one.kind) - ORDER.indexOf(other.kind) || other.index - one.index);
   return near[0]?.[0] ?? null;
 }
 
-const ORDER = ['start', 'flags', 'lamps', 'walls', 'boxes', 'lines'];
+const ORDER = ['start', 'rivals', 'flags', 'lamps', 'walls', 'boxes', 'lines', 'rings'];
 
 /** @param {Place[]} points @param {Place} place @param {number} reach_cm @returns {number} the point that is nearest, or -1 */
 export function pointAt(points, place, reach_cm) {

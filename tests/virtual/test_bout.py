@@ -1,0 +1,328 @@
+"""A robot and its rivals in a ring: they push each other, and none is ever inside another."""
+
+from __future__ import annotations
+
+import math
+import random
+from pathlib import Path
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.virtual_robot import robot_in
+from tiniscript import compile, robots
+from tiniscript.robots.kinematics import Pose, move_pose
+from tiniscript.studio.simulation import Simulation
+from tiniscript.virtual import worlds
+from tiniscript.virtual.bout import Bout, driving_in
+from tiniscript.virtual.driving import Driving
+from tiniscript.virtual.geometry import gap_between
+from tiniscript.virtual.sensing import Sensing
+from tiniscript.virtual.world import Rival, World
+from tiniscript.virtual.worlds import read
+
+SUMO = robots.load("sumo")
+RING = """
+[floor]
+width_cm = 200
+height_cm = 200
+border = false
+[start]
+x_cm = 60
+y_cm = 100
+[[rings]]
+x_cm = 100
+y_cm = 100
+radius_cm = 80
+edge_cm = 5
+"""
+HEAD_ON = "[[rivals]]\nx_cm = 100\ny_cm = 100\nheading = 180\nspeed_cm_s = 45\npower_percent = {}\n"
+ASLEEP = HEAD_ON.format(0)
+
+
+def bout(text: str, robot: str = "sumo") -> Bout:
+    found = driving_in(robots.load(robot).body, read(text, "ring"))
+    assert isinstance(found, Bout)
+    return found
+
+
+def crowded(draw: random.Random) -> World:
+    """Rivals, walls and a robot, none in another."""
+    text = RING.replace("border = false", f"border = {draw.choice(['true', 'false'])}")
+    for x, y in draw.sample([(100, 60), (100, 100), (140, 120), (90, 150)], draw.randint(1, 3)):
+        text += (
+            f"[[rivals]]\nx_cm = {x}\ny_cm = {y}\nheading = {draw.randint(-180, 180)}\n"
+            f"length_cm = {draw.randint(8, 24)}\nwidth_cm = {draw.randint(8, 20)}\n"
+            f"power_percent = {draw.randint(0, 100)}\nspeed_cm_s = {draw.randint(20, 80)}\n"
+        )
+    if draw.random() < 0.5:
+        text += "[[walls]]\npoints = [[20, 130], [70, 130]]\n"
+        text += "[[boxes]]\nx_cm = 175\ny_cm = 90\nlength_cm = 12\nwidth_cm = 40\n"
+    return read(text, "crowded")
+
+
+def powers(draw: random.Random) -> list[tuple[int, float, float]]:
+    """Times in ms and what the motors get from then on."""
+    times = sorted(draw.sample(range(8000), 12))
+    return [(ms, draw.randint(-100, 100), draw.choice([100, 60, 0, -80])) for ms in times]
+
+
+def rivals_of(driving: Driving) -> list[Pose]:
+    return list(driving.rivals)
+
+
+# -- the same, however often it is looked at -------------------------------------------------------
+
+
+@pytest.mark.sampled("seed", keep=3)
+@pytest.mark.parametrize("seed", range(12))
+def test_who_looks_changes_nothing(seed: int) -> None:
+    draw = random.Random(seed)
+    world, moves, body = crowded(draw), powers(draw), robots.load(draw.choice(robots.names())).body
+    ends = []
+    for looks in (0, 3, 40):
+        driving, watch = driving_in(body, world), random.Random(seed + looks)
+        for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
+            driving.set_motors(ms, left, right)
+            for at in sorted(watch.sample(range(ms, until), min(looks, until - ms))):
+                driving.look(at) if watch.random() < 0.5 else driving.go_on(at)
+        ends.append((driving.go_on(9000), rivals_of(driving), driving.bumps, driving.has_fallen))
+    assert ends[0] == ends[1] == ends[2]
+
+
+@pytest.mark.parametrize("name", robots.names())
+def test_a_program_among_rivals_does_the_same_again(name: str) -> None:
+    """Of every robot, in the shipped world and from its own sensors."""
+    image = compile("SI|LOOP(40);M(80,60);W(0.1);M(-20,90);W(0.05);END_LOOP", name).image
+    ends = []
+    for pauses in ([7000], [13] * 500 + [500]):
+        simulation = Simulation(name, worlds.load("sumo"), image)
+        for pause in pauses:
+            simulation.go(pause)
+        state = simulation.state()
+        ends.append({key: state[key] for key in ("now_ms", "pose", "rivals", "score", "readings")})
+    assert ends[0] == ends[1]
+
+
+# -- bodies ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.sampled("seed", keep=4)
+@pytest.mark.parametrize("seed", range(24))
+def test_no_body_is_ever_inside_another(seed: int) -> None:
+    draw = random.Random(seed)
+    world, moves = crowded(draw), powers(draw)
+    driving = driving_in(robots.load(draw.choice(robots.names())).body, world)
+    assert isinstance(driving, Bout)
+    touched = 0
+    for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
+        driving.set_motors(ms, left, right)
+        for at in range(ms, until, 7):
+            driving.go_on(at)
+            bodies = driving.bodies()
+            for k, (hull, pose) in enumerate(bodies):
+                for other, place in bodies[:k]:
+                    apart = gap_between(hull.spine(pose), other.spine(place))[0]
+                    gap = apart - hull.radius_cm - other.radius_cm
+                    assert gap > -1e-3, f"{at} ms"
+                    touched += gap < 0.1
+                contact = hull.contact(pose, driving.obstacles)
+                assert contact is None or contact.gap_cm > -1e-3, f"{at} ms"
+    assert touched or not any(each.power_percent for each in world.rivals)
+
+
+@pytest.mark.parametrize("power", [20, 60, 100])
+@pytest.mark.parametrize("heading", [0, 30, 90, 180])
+def test_a_rival_that_is_pushed_goes_where_it_is_pushed(heading: int, power: int) -> None:
+    """Whichever way it stands: with its wheels most of all, aside the least."""
+    driving = bout(RING + ASLEEP.replace("180", str(heading)))
+    [before] = driving.rivals
+    driving.set_motors(0, power, power)
+    driving.go_on(6000 * 20 // power)
+    [after] = driving.rivals
+    assert after.x_cm > before.x_cm + 2
+    free = bout(RING + ASLEEP.replace("x_cm = 100\ny_cm = 100", "x_cm = 100\ny_cm = 20"))
+    free.set_motors(0, power, power)
+    assert driving.driven_cm < free.go_on(6000 * 20 // power).x_cm - 60 - 2, "it is slowed down"
+
+
+@pytest.mark.parametrize("speed", [20, 45, 90])
+@pytest.mark.parametrize("mine", [30, 55, 80])
+@pytest.mark.parametrize("its", [30, 55, 80])
+def test_the_stronger_one_pushes_the_other_back(mine: int, its: int, speed: int) -> None:
+    """Head on: that of more power goes ahead, however fast each of them is alone."""
+    rival = HEAD_ON.format(its).replace("speed_cm_s = 45", f"speed_cm_s = {speed}")
+    driving = bout(RING.replace("x_cm = 60", "x_cm = 80") + rival)
+    driving.set_motors(0, mine, mine)
+    met = driving.go_on(900)
+    later = driving.go_on(1500)
+    way = later.x_cm - met.x_cm
+    assert (way > 0.5) == (mine > its) and (way < -0.5) == (mine < its)
+
+
+def test_a_body_alone_goes_as_it_does_without_a_ring() -> None:
+    """A rival that is far away, and asleep, changes nothing."""
+    far = RING.replace("x_cm = 60", "x_cm = 30") + ASLEEP.replace("x_cm = 100", "x_cm = 170")
+    draw = random.Random(5)
+    for _ in range(20):
+        left, right = draw.randint(-100, 100), draw.randint(-100, 100)
+        driving = bout(far)
+        driving.set_motors(0, left, right)
+        expected = move_pose(SUMO.body, Pose(30, 100, 0), left, right, 400)
+        assert driving.go_on(400) == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_rival_begins_when_the_robot_first_moves() -> None:
+    driving = bout(RING + HEAD_ON.format(60))
+    before = rivals_of(driving)
+    driving.go_on(3000)
+    driving.set_motors(3000, 0, 0)
+    driving.go_on(4000)
+    assert rivals_of(driving) == before
+    driving.set_motors(4000, 10, 0)
+    driving.go_on(4500)
+    assert rivals_of(driving) != before
+    driving.rest()
+    before = rivals_of(driving)
+    driving.go_on(9000)
+    assert rivals_of(driving) == before, "its time is over"
+
+
+def test_a_rival_stays_in_a_ring_where_nobody_pushes_it() -> None:
+    draw = random.Random(8)
+    for _ in range(6):
+        text = RING.replace("x_cm = 60", "x_cm = 8")  # the robot is outside, and seen
+        heading, power = draw.randint(-180, 180), draw.choice([30, 60, 100])
+        driving = bout(text + HEAD_ON.format(power).replace("180", str(heading)))
+        driving.has_fallen = True  # and that ends nothing here
+        driving.set_motors(0, 1, 0)
+        for at in range(0, 20_000, 50):
+            driving.go_on(at)
+            [rival] = driving.rivals
+            assert math.dist(rival[:2], (100, 100)) < 80
+
+
+# -- what is sensed --------------------------------------------------------------------------------
+
+
+def test_a_distance_sensor_sees_where_a_rival_is() -> None:
+    draw = random.Random(6)
+    seen = 0
+    for _ in range(200):
+        x, y = draw.uniform(40, 160), draw.uniform(40, 160)
+        text = RING + f"[[rivals]]\nx_cm = {x:.3f}\ny_cm = {y:.3f}\n"
+        driving = bout(text)
+        pose = Pose(draw.uniform(30, 170), draw.uniform(30, 170), draw.uniform(0, 360))
+        reading = Sensing(SUMO, read(text, "ring"), others=driving.others).look(2, pose) / 1000
+        along = math.radians(pose.heading)
+        eye = (pose.x_cm + 5 * math.cos(along), pose.y_cm + 5 * math.sin(along))
+        far = math.dist(eye, (x, y)) - 5.5
+        off = math.atan2(y - eye[1], x - eye[0]) - along
+        off = abs((off + math.pi) % (2 * math.pi) - math.pi)
+        if off < math.radians(15) and far > 3:
+            seen += 1
+            assert reading == pytest.approx(far, abs=0.3)
+        elif off > math.radians(60) and far > 10:
+            assert reading == 400
+    assert seen > 8
+
+
+def test_what_is_black_and_what_is_white() -> None:
+    """A dark ring, its edge, and the floor around it; a line is black anywhere."""
+    world = read(RING + ASLEEP + "[[lines]]\npoints = [[20, 20], [195, 20]]\n", "ring")
+    liner = robots.load("liner")
+    for x_cm, is_black in ((100, True), (172, True), (177, False), (179, False), (190, False)):
+        pose = Pose(x_cm, 100, 90)
+        black = liner.body._replace(
+            places={"LINE_L": liner.body.places["LINE_L"]._replace(x_cm=0, y_cm=0)}
+        )
+        white = SUMO.body._replace(
+            places={"LINE_L": SUMO.body.places["LINE_L"]._replace(x_cm=0, y_cm=0)}
+        )
+        assert Sensing(liner._replace(body=black), world).look(0, pose) == is_black
+        assert Sensing(SUMO._replace(body=white), world).look(0, pose) == (not is_black)
+        assert Sensing(SUMO._replace(body=white), world).look(0, Pose(x_cm, 20, 0)) == 0
+
+
+@pytest.mark.parametrize("power", [40, 60, 100])
+def test_the_edge_is_seen_before_the_robot_is_out(power: int) -> None:
+    """Wherever it drives to, and in time to stop: at full speed, too."""
+    draw = random.Random(power)
+    world = worlds.load("sumo")._replace(rivals=())
+    [ring] = world.rings
+    asleep = Rival(Pose(ring.place.x, ring.place.y, 0), 11, 11, 40, 0)
+    for _ in range(10):
+        heading = draw.uniform(0, 360)
+        along = math.radians(heading)
+        place = (ring.place.x + 20 * math.cos(along), ring.place.y + 20 * math.sin(along))
+        driving = driving_in(
+            SUMO.body, world._replace(rivals=(asleep,), start=Pose(*place, heading))
+        )
+        sensing = Sensing(SUMO, world)
+        driving.set_motors(0, power, power)
+        seen_ms = next(
+            at for at in range(0, 20_000, 10)
+            if sensing.look(0, pose := driving.go_on(at)) or sensing.look(1, pose)
+        )  # fmt: skip
+        assert seen_ms > 300 and not driving.has_fallen
+        driving.go_on(seen_ms + 150)
+        assert not driving.has_fallen, "150 ms are enough for a program and its motors"
+        driving.go_on(seen_ms + 4000)
+        assert driving.has_fallen
+
+
+# -- how it ends -----------------------------------------------------------------------------------
+
+
+def ended(program: str, text: str, ms: int = 9000) -> dict[str, int]:
+    simulation = Simulation("sumo", read(text, "own"), compile(program, "sumo").image)
+    simulation.go(ms)
+    found: dict[str, int] = simulation.state()["score"]
+    return found
+
+
+def test_who_is_pushed_out_and_who_falls() -> None:
+    text = RING + ASLEEP + "[task]\nseconds = 20\n"
+    won = ended("F(9, 80)", text)
+    assert (won["pushed"], won["rivals"], won["stars"], won["has_fallen"]) == (1, 1, 3, False)
+    assert won["points"] > 100
+    still = ended("W(1)", text)
+    assert (still["pushed"], still["stars"], still["has_fallen"]) == (0, 0, False)
+    fallen = ended("B(9, 80)", text)
+    assert (fallen["pushed"], fallen["stars"], fallen["has_fallen"]) == (0, 0, True)
+    flag = "[[flags]]\nx_cm = 0\ny_cm = 100\nreach_cm = 10\n"  # beyond the edge
+    assert ended("B(9, 80)", text + flag)["taken"] == 0
+    both = ended("B(2, 80);F(20, 80)", text, 25_000)
+    assert (both["pushed"], both["stars"], both["has_fallen"]) == (0, 0, True), "it counts no more"
+
+
+def test_the_example_pushes_the_rival_of_the_world_out() -> None:
+    text = (ROOT / "examples" / "sumo.ts").read_text(encoding="utf-8")
+    simulation = Simulation("sumo", worlds.load("sumo"), compile(text).image)
+    simulation.go(1000 * int(worlds.load("sumo").seconds))
+    score = simulation.state()["score"]
+    assert (score["pushed"], score["stars"], score["has_fallen"]) == (1, 3, False)
+
+
+def test_a_world_says_what_is_wrong_with_its_rivals(tmp_path: Path) -> None:
+    from tiniscript.robots.refusals import describe
+    from tiniscript.virtual.world import WorldRefused
+
+    for wrong, said in (
+        (ASLEEP * 4, "rivals has 4 parts. Keep at most 3"),
+        ("[[rivals]]\nx_cm = 5\n", "rivals[1].y_cm is missing"),
+        (ASLEEP + "lenght_cm = 7\n", "Did you mean length_cm?"),
+        ("[[rings]]\nx_cm = 5\ny_cm = 5\n", "rings[2].radius_cm is missing"),
+    ):
+        with pytest.raises(WorldRefused) as caught:
+            read(RING + wrong, "wrong")
+        assert any(said in line for line in describe(caught.value, "en")), describe(
+            caught.value, "en"
+        )
+
+
+def test_a_robot_that_begins_in_a_rival_is_refused() -> None:
+    from tiniscript.virtual.world import WorldRefused
+
+    with pytest.raises(WorldRefused, match="start_blocked"):
+        robot_in(read(RING + ASLEEP.replace("x_cm = 100\n", "x_cm = 66\n"), "tight"), "sumo")
