@@ -30,7 +30,7 @@ def begin(fields: Answer, data: bytes) -> Answer:
     except (Refused, KeyError, TypeError, ValueError, AttributeError):
         page = Page.of(name, news)
     _before, _newest = None, (1, page)
-    return _shown(page, 1, data.decode())
+    return _shown(page, 1, data.decode(), None)
 
 
 def step(fields: Answer, data: bytes) -> Answer:
@@ -50,7 +50,7 @@ def step(fields: Answer, data: bytes) -> Answer:
     for news in fields["news"]:
         page.receive(news)
     _before, _newest = found, (_newest[0] + 1, page)
-    return _shown(page, _newest[0], text)
+    return _shown(page, _newest[0], text, caret)
 
 
 def _rows(text: str, hot: int | None) -> list[str]:
@@ -59,13 +59,13 @@ def _rows(text: str, hot: int | None) -> list[str]:
     return rows[:-1] if not rows[-1] and hot != len(rows) - 1 else rows
 
 
-def _shown(page: Page, version: int, text: str) -> Answer:
+def _shown(page: Page, version: int, text: str, caret: int | None) -> Answer:
     wanted = "\n".join(page.text)
-    if page.text and page.text[-1]:
+    if page.text and page.text[-1] and (caret is None or text.endswith("\n")):
         wanted += "\n"
     return {
         "version": version,
-        "changes": changes(text, wanted),
+        "changes": changes(text, wanted, None if caret is None else (caret, page.caret)),
         "ids": page.ids_of_lines(),
         "pending": [data_of_change(each) for each in page.pending[:MOST_CHANGES]],
         "since": -1 if page.is_astray else page.number,
@@ -76,22 +76,31 @@ def _shown(page: Page, version: int, text: str) -> Answer:
     }
 
 
-def changes(old: str, new: str) -> list[tuple[int, int, str]]:
+def changes(old: str, new: str, caret: tuple[int, int] | None = None) -> list[tuple[int, int, str]]:
     """Return what makes the new text of the old: from, to and what is put in, in units of UTF-16.
 
-    A line that has changed keeps what is the same in it, where its caret and its undo are.
+    A line that has changed keeps what is the same in it, where its caret and its undo are. `caret`:
+    the line that the caret is in, in both; where that is the same, it is not touched.
     """
     a, b = _with_ends(old), _with_ends(new)
+    if caret is None or a[caret[0] : caret[0] + 1] != b[caret[1] : caret[1] + 1]:
+        return _between(a, b, 0)
+    i, j = caret
+    return _between(a[:i], b[:j], 0) + _between(a[i:], b[j:], sum(map(_units, a[:i])))
+
+
+def _between(a: list[str], b: list[str], start: int) -> list[tuple[int, int, str]]:
+    """Return the changes of lines of which the first begins at `start`."""
     found: list[tuple[int, int, str]] = []
-    starts = [0]
+    starts = [start]
     for row in a:
         starts.append(starts[-1] + _units(row))
     for tag, i1, i2, j1, j2 in SequenceMatcher(None, a, b, autojunk=False).get_opcodes():
         if tag == "equal":
             continue
         if tag == "replace" and i2 - i1 == j2 - j1:
-            for one, other, start in zip(a[i1:i2], b[j1:j2], starts[i1:i2], strict=True):
-                found += _within(one, other, start)
+            for one, other, begin_at in zip(a[i1:i2], b[j1:j2], starts[i1:i2], strict=True):
+                found += _within(one, other, begin_at)
         else:
             found.append((starts[i1], starts[i2], "".join(b[j1:j2])))
     return found
@@ -112,7 +121,7 @@ def _within(old: str, new: str, start: int) -> list[tuple[int, int, str]]:
 
 
 def _units(text: str) -> int:
-    return len(text.encode("utf-16-le")) // 2
+    return len(text) + sum(sign > "\uffff" for sign in text)
 
 
 ASKED = {"group_begin": begin, "group_step": step}

@@ -217,7 +217,8 @@ class Page:
 
     def type(self, text: list[str], caret: int, is_hot: bool = False) -> None:
         """The editor has this text now. Nothing is made of it before `flush`."""
-        self.text, self.caret, self.is_hot = text, caret, is_hot
+        self.text, self.is_hot = text, is_hot
+        self.caret = min(caret, max(0, len(text) - 1))
 
     def leave(self) -> None:
         """The caret has left its line: by Enter, an arrow, a press elsewhere, or the run button."""
@@ -241,7 +242,11 @@ class Page:
         for choice in (held, hunks):
             if self._make_changes(hunks, choice):
                 self.drafts = self._drafts(choice)
-                break
+                at = [(draft, self.caret - hunk.first)
+                      for draft, hunk in zip(self.drafts, choice, strict=True)
+                      if hunk.first <= self.caret < hunk.last]  # fmt: skip
+                self._show(self.caret, at[0] if at else None)
+                return
         self._show(self.caret)
 
     def give_up(self) -> None:
@@ -468,9 +473,12 @@ class Page:
 
     # -- what is shown ----------------------------------------------------------------------------
 
-    def _show(self, caret: int | None = None) -> None:
-        """Lay the lines of the program and of the drafts out anew; the caret stays in its line."""
-        stays_at = self._caret_item(caret) if caret is not None else None
+    def _show(self, caret: int | None = None, at: tuple[Draft, int] | None = None) -> None:
+        """Lay the lines of the program and of the drafts out anew; the caret stays in its line,
+        which may be `at` a line of a draft."""
+        stays_at: tuple[Any, int] | None = at
+        if at is None and caret is not None:
+            stays_at = self._caret_item(caret)
         program = lines(self.view)
         present = {key for line in program for key in line.keys}
         hidden = {key for draft in self.drafts for key in draft.covers}
@@ -504,14 +512,13 @@ class Page:
 
     def _caret_item(self, caret: int) -> tuple[Any, int] | None:
         """Return the draft that has the line of the caret, and which of its lines; or its keys."""
-        if not 0 <= caret < len(self.text):
-            return None
-        row = self.text[caret]
-        for draft in self.drafts:
-            if row in draft.rows:
-                return draft, draft.rows.index(row)
         shown = self._shown()
-        return (shown[caret].keys, 0) if caret < len(shown) and shown[caret].keys else None
+        if not 0 <= caret < len(shown):
+            return None
+        draft = shown[caret].draft
+        if draft is not None:
+            return draft, sum(item.draft is draft for item in shown[:caret])
+        return (shown[caret].keys, 0) if shown[caret].keys else None
 
     def ids_of_lines(self) -> list[str]:
         """Return whose each line is that is shown: the id of an instruction, or nothing."""

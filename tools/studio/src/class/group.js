@@ -77,7 +77,7 @@ export class Group {
     const said = JSON.stringify(groups);
     if (this.#there.dataset['groups'] === said) return;
     this.#there.dataset['groups'] = said;
-    this.#there.replaceChildren(...groups.map(({ name, members }) => button('', () => this.#join(name), members.length ? `${shown(name)} (${members.map(shown).join(', ')})` : shown(name))));
+    this.#there.replaceChildren(...groups.map(({ name, members }) => button('', () => this.#join(name), members.length ? `${shown(name)} (${members.map((each) => shown(each)).join(', ')})` : shown(name))));
   }
 
   leave() {
@@ -115,10 +115,13 @@ export class Group {
       });
       pageState.group.set(group);
       this.#show('group_in');
-      await together.begin(answer, before ?? null);
-      document.documentElement.dataset['group'] = 'in';
-    } catch (why) {
-      this.#end();
+      await together.begin(answer, before ?? null).then(() => {
+        document.documentElement.dataset['group'] = 'in';
+      }, (why) => {
+        this.leave();
+        say(this.#said, bugSaid(why));
+      });
+    } catch {
       this.#show('class_silent');
     } finally {
       this.#isJoining = false;

@@ -222,7 +222,13 @@ export class Together {
     this.#shown = shown;
     const changes = ChangeSet.of(shown.changes.map(([from, to, insert]) => ({ from, to, insert })), length);
     const after = typed && !typed.empty ? changes.map(typed) : changes;
-    this.#view.dispatch({ changes: after, annotations: [brought.of(true), Transaction.addToHistory.of(false)] });
+    const { selection, doc } = this.#view.state;
+    const isFirst = doc.lineAt(selection.main.head).from === selection.main.head; // what is put in there is before its line
+    this.#view.dispatch({
+      changes: after,
+      selection: selection.map(after, isFirst ? 1 : -1),
+      annotations: [brought.of(true), Transaction.addToHistory.of(false)],
+    });
     this.#mark();
     this.#heard.keep(shown.kept);
     if (shown.told > told && this.#shown.version > 1) this.#heard.refused(shown.why);

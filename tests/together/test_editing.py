@@ -1,0 +1,154 @@
+"""What an editor makes of the answers of the page's Python, which come late.
+
+Two editors are typed into, character by character, while answers are on their way. What was typed
+meanwhile in another line stays; in the same line the answer is void, and the next one goes on from
+the one before. In the end both have the same text.
+"""
+
+from __future__ import annotations
+
+import json
+from itertools import count
+from random import Random
+from typing import Any
+
+import pytest
+
+from tests.together.world import FIRST
+from tiniscript.studio import page_together, worker
+from tiniscript.together.form import change_of
+from tiniscript.together.layout import read, text_of
+from tiniscript.together.ordering import SharedProgram
+
+Json = dict[str, Any]
+BACK = "\b"
+KEYS = [BACK] * 6 + list("1957;X \U0001f916")
+TURNS = 150
+
+
+class Editor:
+    """The text with a caret, and what `together.js` does with it."""
+
+    def __init__(self, name: str, program: SharedProgram) -> None:
+        self.program = program
+        self.text, self.at, self.is_hot = "", 0, False
+        self.keys: list[str] = []  # that are to be pressed
+        self.news: list[Json] = []
+        self.python: tuple[Any, Any] = (None, None)
+        self.shown = self.ask({"do": "group_begin", "news": {**program.news(name, -1, ""),
+                                                             "page": name}})  # fmt: skip
+        self.change(self.shown["changes"])
+
+    def ask(self, request: Json) -> Json:
+        """Each page has a Python of its own."""
+        page_together._newest, page_together._before = self.python
+        answer: Json = json.loads(worker.answer(json.dumps(request), self.text.encode()))
+        self.python = page_together._newest, page_together._before
+        return answer
+
+    def change(self, changes: list[tuple[int, int, str]]) -> None:
+        """Change the text, in units of UTF-16; the caret goes with it."""
+        units = self.text.encode("utf-16-le")
+        for start, end, put in reversed(changes):
+            data = put.encode("utf-16-le")
+            caret = len(self.text[: self.at].encode("utf-16-le")) // 2
+            is_first = self.at == 0 or self.text[self.at - 1] == "\n"  # of its line
+            if caret > end or (caret == end and (start < end or is_first)):
+                caret += len(data) // 2 - (end - start)
+            elif caret > start:
+                caret = start
+            units = units[: 2 * start] + data + units[2 * end :]
+            self.text = units.decode("utf-16-le")
+            self.at = len(units[: 2 * caret].decode("utf-16-le", "ignore"))
+
+    @property
+    def line(self) -> int:
+        return self.text.count("\n", 0, self.at)
+
+    def step(self) -> Json:
+        request = {"do": "group_step", "from": self.shown["version"], "caret": self.line,
+                   "hot": self.is_hot, "news": self.news}  # fmt: skip
+        return self.ask(request)
+
+    def take(self, answer: Json) -> None:
+        self.news, self.shown = [], answer
+        self.change(answer["changes"])
+
+    def hears(self) -> None:
+        """Send what is pending, and hear what is new."""
+        self.program.submit(list(map(change_of, self.shown["pending"])))
+        name = self.shown["kept"]["name"]
+        news = self.program.news(name, self.shown["since"], self.shown["epoch"])
+        self.news.append(json.loads(json.dumps(news)))
+
+    def types(self, chance: Random) -> bool:
+        """Press a key, of an instruction below a line or any; return whether a line is finished."""
+        if not self.keys and chance.random() < 0.7:
+            end = self.text.find("\n", chance.randint(0, len(self.text)))
+            self.goes_to(end if end >= 0 else len(self.text))
+            self.keys = list(f"\n{chance.choice(('F', 'b', 'L'))}({chance.randint(1, 99)}, 50)")
+            self.keys += ["\n"] * (chance.random() < 0.5)
+        key, line = self.keys.pop(0) if self.keys else chance.choice(KEYS), self.line
+        if key == BACK:
+            self.text, self.at = (
+                self.text[: max(0, self.at - 1)] + self.text[self.at :],
+                self.at - 1,
+            )
+            self.at = max(0, self.at)
+        else:
+            self.text, self.at = self.text[: self.at] + key + self.text[self.at :], self.at + 1
+        was_hot, self.is_hot = self.is_hot, True
+        return self.line != line and was_hot
+
+    def goes_to(self, at: int) -> None:
+        line, self.at = self.line, at
+        self.is_hot = self.is_hot and self.line == line
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
+    chance, ids = Random(seed), count(1)
+    program = SharedProgram(read(FIRST, lambda: f"i.{next(ids)}"), "e")
+    editors = [Editor(name, program) for name in ("m1", "m2")]
+    assert {editor.text for editor in editors} == {FIRST}
+    for _ in range(TURNS):
+        editor = chance.choice(editors)
+        for _ in range(chance.randint(1, 6)):
+            if editor.types(chance):
+                editor.take(editor.step())
+        if chance.random() < 0.3:
+            editor.goes_to(chance.randint(0, len(editor.text)))
+        if chance.random() < 0.5:
+            editor.hears()
+        answer = editor.step()
+        if chance.random() < 0.3:  # somebody has typed where that changes something: it is void
+            editor.types(chance)
+            answer = editor.step()
+        row = editor.text.split("\n")[editor.line]
+        editor.take(answer)
+        if editor.is_hot:  # nobody touches the line that is being typed
+            assert editor.text.split("\n")[editor.line] == row
+    for editor in editors:
+        editor.is_hot = False
+        editor.take(editor.step())
+    while any(editor.shown["pending"] or editor.shown["since"] != program.number
+              for editor in editors):  # fmt: skip
+        for editor in editors:
+            editor.hears()
+            editor.take(editor.step())
+    assert program.number > 1
+    for editor in editors:
+        page = editor.python[0][1]
+        assert page.base.checksum() == program.tree.checksum()
+        assert page.drafts or "\n".join(page.text) + "\n" == text_of(program.tree)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_changes_make_the_new_text_of_the_old(seed: int) -> None:
+    chance = Random(seed)
+    rows = ["F(1, 80);", "f(1,80)", "", "  B(2, 40);", "// \U0001f916 a", "// b \x0b c", "W(1)"]
+    old, new = ("\n".join(chance.choices(rows, k=chance.randint(0, 8))) for _ in range(2))
+    units = old.encode("utf-16-le")
+    for start, end, put in reversed(page_together.changes(old, new)):
+        units = units[: 2 * start] + put.encode("utf-16-le") + units[2 * end :]
+    assert units.decode("utf-16-le") == new
