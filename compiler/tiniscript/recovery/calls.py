@@ -25,7 +25,16 @@ from tiniscript.base.words import (
 )
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.meanings import ASKING, CALLED, LONG_S, MOST_POWER, Names, heard_as, plain
+from tiniscript.recovery.meanings import (
+    ASKING,
+    CALLED,
+    LONG_S,
+    MOST_POWER,
+    NEAR,
+    Names,
+    heard_as,
+    plain,
+)
 from tiniscript.recovery.writing import without_note
 
 _VALUE = r"[^(),;{}\n]*(?:\([^()\n]*\)[^(),;{}\n]*)*"
@@ -87,7 +96,8 @@ def run_on(source: Source, names: Names) -> list[Diagnostic]:
             calls = [*_ANY_CALL.finditer(piece[0])]
             words = [plain(re.match(r"\w+", call[0])[0]) for call in calls]  # type: ignore[index]
             known = [word if names.is_name(word) else names.meant(word) for word in words]
-            are_calls = {*known} <= {*CALLED, *words, ""} and not {*words} & {*ASKING, "UNTIL"}
+            near = {*words, *(names.meant(word, NEAR) for word in words)}  # `Antil(LINE_R)`
+            are_calls = {*known} <= {*CALLED, *words, ""} and not near & {*ASKING, "UNTIL"}
             if len(calls) > 1 and are_calls and not all(known):
                 begin = start + piece.start()
                 ends = [(it.end(), other.start()) for it, other in pairwise(calls)]

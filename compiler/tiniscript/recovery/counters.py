@@ -56,7 +56,7 @@ def counters(source: Source) -> list[Diagnostic]:
             in_header = [it.text for it in row[item.start : item.end]].count(item.name)
             is_used = words[item.name] > in_header + ends[item.name]
             header = row[item.start : item.end]
-            is_of_c = any(it.text == ";" for it in header)
+            is_of_c = any(it.text == ";" for it in header) and not row[item.end :]
             if is_used or is_of_c or any(lexicon_meaning(it.text, "each") for it in header):
                 span = Span(spans[item.start].start, spans[item.end - 1].end)
                 diagnostics.append(
