@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_class import joined
+from tests.studio.test_page_class import joined, said
 from tests.support import studio
-from tests.support.studio import Class, Pages, image, write
+from tests.support.pty_robot import PtyRobot
+from tests.support.studio import Class, Pages, drives, image, write
 from tests.support.waiting import until
-from tiniscript import compile
+from tiniscript import compile, robots
 from tiniscript.studio.class_keeping import MOST_PUPILS
 
 if TYPE_CHECKING:
@@ -175,6 +176,32 @@ def test_a_broken_network_loses_nothing(two: tuple[Page, Page]) -> None:
     ana.context.set_offline(False)
     for page in two:
         has(page, "F(1, 80);", "W(4);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(5);")
+
+
+def test_each_drives_and_each_stops_the_robot_of_the_group(
+    two: tuple[Page, Page], taught: Class
+) -> None:
+    ana, luz = two
+    begins(two)
+    with PtyRobot(robots.load("tinibot").kit) as robot:
+        taught.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
+        for page in two:
+            page.click("#side_real")
+        ana.click("[data-text=class_ask]")
+        ana.locator("html[data-robot=connected]").wait_for(state="attached")
+        said(luz, "Ana drives ")
+        drives(ana, robot)
+        luz.click("#stop")
+        until(lambda: not robot.moves, "the robot stands")
+        luz.locator("#class_pupil [data-text=link_connect]").click()
+        luz.locator("html[data-robot=connected]").wait_for(state="attached")
+        said(ana, "Luz drives ")
+        drives(luz, robot)
+        ana.keyboard.press("Escape")
+        until(lambda: not robot.moves, "the robot stands")
+        taught.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
+        for page in two:
+            page.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
 
 def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:

@@ -42,7 +42,6 @@ MOST_IDS = 2000  # of an operation: what a delete of a whole program lists
 MOST_CHARACTERS = 2000  # of an instruction or a comment
 DEEPEST = 40
 _NAME = re.compile(r"[a-z0-9]{1,12}[.:][0-9]{1,9}|root|start")  # of a node, and of a change
-_LINE_END = re.compile("[\r\n\v\f\x1c-\x1e\x85\u2028\u2029]")  # what splits lines anywhere
 
 
 class Refused(Exception):
@@ -312,13 +311,13 @@ def _marks(found: object) -> tuple[tuple[str, str], ...]:
 
 
 def _value(found: object, name: str) -> Any:
-    """Return a field; `APART` is a bool, all others are one line of text."""
+    """Return a field; `APART` is a bool. That a text is one line is seen when it is read again."""
     value = _field(found, name, name != APART and "")
     if name == APART:
         if type(value) is not bool:
             raise Refused(BAD)
         return value
-    if not isinstance(value, str) or len(value) > MOST_CHARACTERS or _LINE_END.search(value):
+    if not isinstance(value, str) or len(value) > MOST_CHARACTERS:
         raise Refused(BAD)
     if name != TEXT and value and not value.startswith("//"):
         raise Refused(BAD)
