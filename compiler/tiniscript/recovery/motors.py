@@ -21,7 +21,8 @@ from tiniscript.recovery.writing import without_note
 
 _SET = re.compile(r"(?P<name>[^\W\d][\w.]*)[ \t]*\([ \t]*(?P<power>-?\d+)[ \t]*%?[ \t]*\)")
 _SWITCHED = re.compile(
-    r"(?P<name>[^\W\d][\w.]*)[ \t]*(?:\([ \t]*(?P<number>\d*\.?\d*)[ \t]*%?[ \t]*\))?"
+    r"(?P<name>[^\W\d][\w.]*)[ \t]*"
+    r"(?:\([ \t]*(?:(?P<number>\d+(?:\.\d+)?|\.\d+)[ \t]*(?:%[ \t]*)?)?\))?"
 )
 _LEAST_MS = 100  # of a wait: less are seconds
 _POWERS = range(10, 101)  # of a motor that is switched on: less is rather a time

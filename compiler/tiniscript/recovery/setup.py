@@ -23,7 +23,7 @@ _LONGEST_START = 8  # words that say how a program starts
 _CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
 _BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
 _HEAD_IN_WORDS = re.compile(r"(?i)(s[ií]|sb)[ \t]*[,.:!]?[ \t]+(?=[^\W\d])")
-_FRAME = re.compile(r"\s*((?:\w+[ \t]+)?(\w+)[ \t]*\([ \t]*(?:void)?[ \t]*\))\s*\{")
+_FRAME = re.compile(r"\s*((?:\w+[ \t]+)?(\w+)[ \t]*\([ \t]*(?:void[ \t]*)?\))\s*\{")
 _BEGUN_INSIDE = re.compile(r"(?i)\s*(S[IB])\b[ \t]*\|?[ \t]*")
 _INSIDE = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that are open before it
 
