@@ -75,6 +75,7 @@ MODULES = (
     _python("link", "tests/link", "tests/sharing", "tests/modules", "tests/cli/test_keys.py", "tests/firmware/test_owners.py"),
     _python("robots", "tests/robots", "tests/wiring"), _python("flash"),
     _python("lessons", "tests/lessons", "tests/cli/test_lesson_command.py"),
+    _python("together", "tests/together", "tests/studio/test_groups.py"),
     _python("studio"), _python("cli", "tests/cli", "tests/wiring", "tests/project/test_windows.py"),
     Module("machine", (f"{_CPP}/vm/*.cpp",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_edges.py", "tests/vm/test_cpp_agreement.py", "tests/vm/test_cpp_chips.py")),
     Module("machine-avr", (f"{_CPP}/vm/*.S",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_chips.py", "tests/vm/test_cpp_avr_arithmetic.py")),

@@ -33,7 +33,7 @@ from tools.generate.poster import posters
 from tools.site.documents import INDEX_PAGE
 
 COMMAND = "python -m tools.generate"
-KITS = ("tinibot", "liner", "grabber")  # that differ
+KITS = ("tinibot", "liner", "grabber", "elegoo4", "sumo")  # that differ
 ROBOTS = ROOT / "compiler" / "tiniscript" / "robots"
 
 
