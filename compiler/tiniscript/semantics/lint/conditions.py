@@ -28,7 +28,7 @@ from tiniscript.semantics.lint.look import STANDING_STATEMENTS, Around, Look
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import BINARY, OPPOSITES, SIGN_OF
 
-SHORT_MS = 1000  # ms: a loop looks again after so long
+SHORT_MS = LONG_STEP_MS = 1000  # ms: a loop looks again after so long
 _SAME_OPS = frozenset(("TIME", "MIN", "MAX", "RANDOM"))  # of which some are the same anyway
 _CHANGING_OPS = frozenset(("SENSOR", "TIME", "RANDOM"))
 # By the way that the robot goes, what is true where the robot stands, and what comes true.
@@ -150,7 +150,7 @@ class _Conditions:
         compared = self._comparison(loop.condition)
         if compared and not self._report_known(compared, head):
             if not around.asked & _sensors(loop.condition):
-                self._report_turned_while(loop, compared, head)
+                self._report_turned_while(loop, compared)
         self._report_known_of_both(loop.condition, head)
 
     def check_if(self, statement: ir.If, outermost: ir.Loop | ir.While | None) -> None:
@@ -164,21 +164,27 @@ class _Conditions:
             if outermost is not None and _is_endless(outermost):
                 self._report_frozen_if(arm, outermost)
 
-    def _report_turned_while(self, loop: ir.While, compared: Comparison, head: Span) -> None:
+    def _report_turned_while(self, loop: ir.While, compared: Comparison) -> None:
         """`WHILE(DISTANCE < 10); F(0.2, 60); END_WHILE`: what ends it does not come that way."""
+        way, end = self._turned(loop, compared)
+        if end:
+            device, _, number = compared
+            turned = compared._replace(op=_opposite(end))
+            is_short = all(_lasts_ms(item) < LONG_STEP_MS for item in loop.body)
+            fix = f"WHILE({turned})" if is_short and not answer_of(turned) else ""
+            number_is = "near" if way == "F" else "beyond"
+            values = {"sensor": device.name, number_is: as_text(number), "fix": fix}
+            self._look.report(codes.TURNED_ROUND, self._look.head(loop.span), **values)
+
+    def _turned(self, loop: ir.While, compared: Comparison) -> tuple[str, str]:
+        """Return the way that all moves of a loop go, and what else would end it, if anything."""
         moves = [item for item in loop.body if not isinstance(item, STANDING_STATEMENTS)]
         ways = {item.direction if isinstance(item, ir.Move) else "" for item in moves}
-        if len(ways) != 1 or any(isinstance(it, ir.Move) and it.until for it in moves):
-            return
+        is_watched = any(isinstance(item, ir.Move) and item.until for item in moves)
+        if len(ways) != 1 or is_watched or not looks_ahead(compared.device):
+            return "", ""
         (way,) = ways
-        device, op, number = compared
-        end = _REVERSED_COMPARATORS.get(way, {}).get(_opposite(op))
-        if end and looks_ahead(device):
-            turned = compared._replace(op=_opposite(end))
-            number_is = "near" if way == "F" else "beyond"
-            fix = "" if answer_of(turned) else f"WHILE({turned})"
-            values = {"sensor": device.name, number_is: as_text(number), "fix": fix}
-            self._look.report(codes.TURNED_ROUND, head, **values)
+        return way, _REVERSED_COMPARATORS.get(way, {}).get(_opposite(compared.op), "")
 
     def _report_frozen_while(self, loop: ir.While) -> None:
         condition = loop.condition
@@ -200,7 +206,9 @@ class _Conditions:
         if held:
             values["sensor"] = held[name]
             asked = self._condition_text(condition, held, loop.span, "WHILE")
-            values["fix"] = f"WHILE({asked})" if asked else ""
+            compared = self._comparison(self._asking(condition, held))
+            is_turned = compared is not None and bool(self._turned(loop, compared)[1])
+            values["fix"] = f"WHILE({asked})" if asked and not is_turned else ""
         elif [term.op for term in condition[:-1]] == ["VARIABLE", "NUMBER"]:
             is_down = condition[-1].op in ("GT", "GE")
             values["step"] = f"{name} = {name} {'-' if is_down else '+'} 1"
@@ -324,6 +332,16 @@ class _Conditions:
     def _comparison(self, condition: ir.Expression) -> Comparison | None:
         return comparison(condition, self._kit)
 
+    def _asking(self, condition: ir.Expression, held: Mapping[str, str]) -> ir.Expression:
+        """Return a condition that asks the sensors in place of the variables that hold them."""
+        numbers = {device.name: k for k, device in enumerate(self._kit.readings)}
+        return tuple(
+            ir.Term("SENSOR", numbers[held[self._program.variables[term.value]]])
+            if term.op == "VARIABLE"
+            else term
+            for term in condition
+        )
+
     def _condition_text(
         self, condition: ir.Expression, held: Mapping[str, str], span: Span, word: str,
         direction: str = "",
@@ -332,13 +350,7 @@ class _Conditions:
 
         Nothing where it is none to write, as where a move in this direction never makes it true.
         """
-        numbers = {device.name: k for k, device in enumerate(self._kit.readings)}
-        asking = tuple(
-            ir.Term("SENSOR", numbers[held[self._program.variables[term.value]]])
-            if term.op == "VARIABLE"
-            else term
-            for term in condition
-        )
+        asking = self._asking(condition, held)
         comes = can_come_true(asking, direction, self._kit)
         text = self._look.condition(span, word)
         if not comes and (comes is not None or direction):
@@ -349,6 +361,13 @@ class _Conditions:
 def _opposite(op: str) -> str:
     """Return what is TRUE where a comparison is not."""
     return BINARY[OPPOSITES[SIGN_OF[op]]][1]
+
+
+def _lasts_ms(statement: ir.Statement) -> int:
+    """Return how long a move by its time lasts; 0 where that is not known."""
+    if not isinstance(statement, ir.Move) or statement.unit:
+        return 0
+    return known_value(statement.time) or 0
 
 
 def _runs_once(loop: ir.Loop | ir.While) -> bool:

@@ -70,10 +70,9 @@ def _lasts(statement: ir.Statement) -> int:
 
 def _report_over(loop: ir.While, asked: Comparison, past: int, look: Look) -> None:
     later = asked._replace(number=past + asked.number)
-    head = Span(loop.span.start, loop.span.start + len("WHILE"))
     values = {"already": as_text(past), "answer": "answer_no"}
     values |= {"more": as_text(asked.number), "later": f"WHILE({later})"}
-    look.report(codes.KNOWN_ANSWER, head, **values)
+    look.report(codes.KNOWN_ANSWER, look.head(loop.span), **values)
 
 
 def _is_over(asked: Comparison, past: int) -> bool:

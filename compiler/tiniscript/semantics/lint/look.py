@@ -52,6 +52,15 @@ class Look:
     def variables(self) -> Variables:
         return Variables(self.program, self.kit)
 
+    def head(self, span: Span) -> Span:
+        """Return the header that a block begins with, up to the end of its brackets."""
+        text, depth = self.source[span], 0
+        for k, sign in enumerate(text):
+            depth += (sign == "(") - (sign == ")")
+            if sign == ")" and not depth:
+                return Span(span.start, span.start + k + 1)
+        return span
+
     def condition(self, span: Span, word: str) -> str:
         """Return what is in the brackets after `word`, the last of that name in `span`.
 

@@ -164,7 +164,7 @@ def report_empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
         if "//" in text or is_noted:
             continue
         word = "IF" if isinstance(statement, ir.If) else "LOOP"
-        span = Span(statement.span.start, statement.span.start + _end_of_head(text))
+        span = look.head(statement.span)
         after = _leading_instructions(body[k + 1 :], source)
         before = (
             [] if after else _leading_instructions(body[k - 1 :: -1] if k else (), source)[::-1]
@@ -177,16 +177,6 @@ def report_empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
             if 0 < len(rows) <= MOST_EXAMPLE_INSTRUCTIONS:
                 values[name] = "; ".join((shown, *rows, end))
         look.report(codes.EMPTY_BLOCK, span, **values)
-
-
-def _end_of_head(text: str) -> int:
-    """Return the place after the brackets of a header at the beginning of a right text."""
-    depth = 0
-    for k, sign in enumerate(text):
-        depth += (sign == "(") - (sign == ")")
-        if sign == ")" and not depth:
-            return k + 1
-    return len(text)
 
 
 def _is_empty(statement: ir.Statement) -> bool:
