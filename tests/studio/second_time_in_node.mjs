@@ -271,7 +271,7 @@ const PARTS = {
   async panel() {
     globalThis.getComputedStyle = () => ({ getPropertyValue: (name) => name });
     let notes = [];
-    const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], seconds: 0, name: 'w' };
+    const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };
     class Choice { shapes = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
     class Drawing { said = ''; allow() {} forget() {} letGo() {} end() {} }
     const notingClass = (name) => function made() { return noting(notes, name); };
@@ -284,7 +284,7 @@ const PARTS = {
     };
     const page = freshPage({
       Arena: beginning('arena'), Plot: beginning('plot'), Where: notingClass('where'), Sounds: notingClass('sounds'),
-      starsShown: String, WorldChoice: Choice, WorldDrawing: Drawing, offer() {}, pictured() {}, dialPicture() {},
+      starsShown: String, howEnded: String, WorldChoice: Choice, WorldDrawing: Drawing, offer() {}, pictured() {}, dialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -1127,7 +1127,7 @@ const PARTS = {
     const { WorldDrawing } = await page.load('world/drawing.js');
     const empty = (name) => ({
       name, labels: { en: name }, width_cm: 200, height_cm: 100, has_border: true, ambient_percent: 50, seconds: 0,
-      start: { x_cm: 30, y_cm: 30, heading: 0 }, walls: [], boxes: [], lines: [], lamps: [], flags: [],
+      start: { x_cm: 30, y_cm: 30, heading: 0 }, walls: [], boxes: [], lines: [], lamps: [], flags: [], rings: [], rivals: [],
     });
     let world = empty('w0');
     const choice = { isOwn: false, write: async () => ({ text: 'w' }), keepOwn: async () => true };
@@ -1142,7 +1142,7 @@ const PARTS = {
     page.byId('world_draw').click();
     const presses = (id, detail = 1) => page.byId(`world_${id}`).dispatchEvent(Object.assign(new Event('click'), { detail }));
     const types = (key) => page.byId('arena').dispatchEvent(Object.assign(new Event('keydown'), { key, preventDefault() {} }));
-    const KINDS = ['walls', 'boxes', 'lines', 'lamps', 'flags'];
+    const KINDS = ['walls', 'boxes', 'lines', 'lamps', 'flags', 'rings', 'rivals'];
     let worlds = 0;
     const acts = {
       adds: (chance) => presses(`add_${chance.of(KINDS)}`, 0),
@@ -1292,7 +1292,7 @@ const PARTS = {
       let now_ms = 0;
       for (let k = isGood ? 5 : 2 + chance.below(20); k > 0; k -= 1) {
         now_ms += chance.below(900);
-        const state = { now_ms, began_ms: 0, pose: [chance.below(100), chance.below(100), chance.below(360)], motors: [chance.below(100), 50], is_running: chance() < 0.8, touches: null,
+        const state = { now_ms, began_ms: 0, pose: [chance.below(100), chance.below(100), chance.below(360)], motors: [chance.below(100), 50], is_running: chance() < 0.8, touches: null, rivals: world.rivals.map((each) => [each.x_cm, each.y_cm, each.heading]),
           score: { taken: isGood ? 0 : chance.below(3), of: 3, points: 0, stars: 0 }, actuators: [], readings: [], fault: '' };
         arena.follow(state);
         if (!isGood && chance() < 0.3) arena.say(`${chance.below(9)}`, now_ms);
@@ -1697,13 +1697,13 @@ const PARTS = {
 
   // Run and STOP are pressed at any time: the last one counts.
   async presses() {
-    const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], seconds: 0, name: 'w' };
+    const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };
     class Choice { shapes = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
     class Drawing { said = ''; allow() {} forget() {} letGo() {} end() {} }
     const notingClass = (name) => function made() { return noting([], name); };
     const page = freshPage({
       Arena: notingClass('arena'), Plot: notingClass('plot'), Where: notingClass('where'), Sounds: notingClass('sounds'),
-      starsShown: String, WorldChoice: Choice, WorldDrawing: Drawing, offer() {}, pictured() {}, dialPicture() {},
+      starsShown: String, howEnded: String, WorldChoice: Choice, WorldDrawing: Drawing, offer() {}, pictured() {}, dialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');

@@ -249,7 +249,7 @@ SUGGESTIONS = """
 ^ @strange end @word? @word? $
     | TS023 offered here | found={said}; right={end}; fix={end}
     | for each paso in 4⏎F(1, 50)⏎end => found=end
-^ @strange end @word? @word? $ | = | | to square⏎F(1,50)⏎end⏎square => found=END
+^ @strange end @word? @word? $ | = | | square⏎F(1,50)⏎end⏎square => found=END
 ^ @pressed | TS120 | *=button | wait for button => asked=button
 ^ @strange @word .
     | TS102 member | found={member}; right={done}; usage={done_usage?}
