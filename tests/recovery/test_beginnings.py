@@ -129,7 +129,7 @@ def test_a_button_that_stops_starts_nothing(text: str) -> None:
     assert not any("SB|" in each.values.get("fix", "") for each in check(text))
 
 
-FRAMES = ("void setup()", "setup()", "int main(void)", "void  SETUP ( )", "def inicio()")
+FRAMES = ("void setup()", "setup()", "void  SETUP ( )", "def inicio()")
 BODIES = ("F(1, 80);", "SI|F(1, 80);", "SI\nF(1, 80)", "F(1, 80); // }", "SB", "", "W(1)\nS")
 
 

@@ -90,7 +90,7 @@ def _framed(source: Source) -> Diagnostic | None:
     What is in its brackets begins the program; `void loop()` after it is a loop.
     """
     head = _FRAME.match(source.text)
-    if head is None or not (head[2] == "main" or lexicon_concept(plain(head[2])) == "START"):
+    if head is None or lexicon_concept(plain(head[2])) != "START":
         return None
     depth = at = 0
     for line in source.text[head.end() - 1 :].splitlines(keepends=True):
