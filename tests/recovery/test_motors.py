@@ -72,3 +72,8 @@ def test_motors_on_and_off_after_a_wait_are_a_move(off: str, place: str) -> None
 @pytest.mark.parametrize("text", ["F(2);W(2);S", "F(50);W(2)", "F(2, 50);W(2);S", "F(50);S;W(2)"])
 def test_no_motor_is_on_without_a_power_a_wait_and_an_end(text: str) -> None:
     assert "F(2, 50)" not in [each.values.get("fix") for each in check(text) if each.repair]
+
+
+def test_a_word_of_the_program_switches_no_motor() -> None:
+    wrong = "DEF GO(X);F(X, 60);END_DEF;GO(50);W(2);S;F(2 80)"
+    assert [each.values.get("fix") for each in check(wrong)] == ["F(2, 80)"]

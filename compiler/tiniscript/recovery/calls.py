@@ -44,6 +44,7 @@ _THOUSANDS = re.compile(r"([1-9]\d{0,2})((?:,\d{3})+)")
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 _ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
 _RUN_ON = re.compile(rf"(?:\b\w+[ \t]*\({_VALUE}(?:,{_VALUE})*\)[ \t]*){{2,}}(?=[;}}|]|$)")
+_DEF = re.compile(r"(?i)\bDEF\s+(\w+)")
 _POINT = re.compile(r"(?<=\d)[ \t]*\.[ \t]+(?=[-\d.])")
 _PERCENT = re.compile(r"[ \t]*%$")
 _TIMED = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
@@ -69,9 +70,10 @@ def misplaced_values(source: Source) -> list[Diagnostic]:
     """Return what is told of calls whose values are in another form."""
     diagnostics = []
     start = 0
+    taught = {match[1].upper() for match in _DEF.finditer(source.text)}
     for line in source.text.split("\n"):
         for call in _calls(without_note(line)[0], start):
-            if re.search(rf"(?i)\bDEF\s+{call.word.text}\b", source.text):
+            if call.word.text in taught:
                 continue  # its values may be those of the DEF
             readings = (
                 _points(call),

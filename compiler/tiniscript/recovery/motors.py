@@ -24,6 +24,7 @@ _SWITCHED = re.compile(
     r"(?P<name>[^\W\d][\w.]*)[ \t]*"
     r"(?:\([ \t]*(?:(?P<number>\d+(?:\.\d+)?|\.\d+)[ \t]*(?:%[ \t]*)?)?\))?"
 )
+_DEF = re.compile(r"(?i)\bDEF\s+(\w+)")
 _LEAST_MS = 100  # of a wait: less are seconds
 _POWERS = range(10, 101)  # of a motor that is switched on: less is rather a time
 _PIECE = re.compile(r"[^;{}|\n]+")
@@ -107,6 +108,7 @@ def _seconds(number: str) -> str:
 
 def _switches(text: str) -> Iterator[_Switch]:
     start = 0
+    taught = {plain(match[1]) for match in _DEF.finditer(text)}
     for line in text.split("\n"):
         for piece in _PIECE.finditer(without_note(line)[0]):
             match = _SWITCHED.fullmatch(piece[0].strip())
@@ -114,6 +116,7 @@ def _switches(text: str) -> Iterator[_Switch]:
                 begin = start + piece.start() + piece[0].index(match[0])
                 word = plain(match["name"].rpartition(".")[2])
                 meant = word if word in WORDS else next((it.concept for it in meanings(word)), "")
+                meant = "" if word in taught else meant
                 span = Span(begin, begin + len(match[0]))
                 yield _Switch(meant, match["number"] or "", match["name"], span)
         start += len(line) + 1

@@ -28,7 +28,7 @@ from tiniscript.semantics.lint.look import STANDING_STATEMENTS, Around, Look
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import BINARY, OPPOSITES, SIGN_OF
 
-SHORT_MS = LONG_STEP_MS = 1000  # ms: a loop looks again after so long
+SHORT_MS = 1000  # ms: a loop looks again after so long
 _SAME_OPS = frozenset(("TIME", "MIN", "MAX", "RANDOM"))  # of which some are the same anyway
 _CHANGING_OPS = frozenset(("SENSOR", "TIME", "RANDOM"))
 # By the way that the robot goes, what is true where the robot stands, and what comes true.
@@ -170,7 +170,7 @@ class _Conditions:
         if end:
             device, _, number = compared
             turned = compared._replace(op=_opposite(end))
-            is_short = all(_lasts_ms(item) < LONG_STEP_MS for item in loop.body)
+            is_short = all(_lasts_ms(item) < SHORT_MS for item in loop.body)
             fix = f"WHILE({turned})" if is_short and not answer_of(turned) else ""
             number_is = "near" if way == "F" else "beyond"
             values = {"sensor": device.name, number_is: as_text(number), "fix": fix}

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
-from tiniscript.base.fixed_point import as_text
+from tiniscript.base.fixed_point import HIGHEST, as_text
 from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
@@ -19,7 +19,7 @@ from tiniscript.semantics.optimizer import known_value
 
 _LESS = ("LT", "LE")
 _NARROWS = ("MIN", "MAX")
-_SIDES = ({"LT", "GT"},)  # of one number: it alone is left for ELSE
+_SIDES = {"LT", "GT"}  # of one number: it alone is left for ELSE
 _THROW = ("NUMBER", "NUMBER", "RANDOM")
 
 Bounds = tuple[int, int]
@@ -71,7 +71,8 @@ def _lasts(statement: ir.Statement) -> int:
 def _report_over(loop: ir.While, asked: Comparison, past: int, look: Look) -> None:
     later = asked._replace(number=past + asked.number)
     values = {"already": as_text(past), "answer": "answer_no"}
-    values |= {"more": as_text(asked.number), "later": f"WHILE({later})"}
+    if later.number <= HIGHEST:
+        values |= {"more": as_text(asked.number), "later": f"WHILE({later})"}
     look.report(codes.KNOWN_ANSWER, look.head(loop.span), **values)
 
 
@@ -85,17 +86,12 @@ def _is_over(asked: Comparison, past: int) -> bool:
 def _report_narrowed(value: ir.Expression, statement: ir.Statement | ir.Task, look: Look) -> None:
     """`MAX(80, MIN(20, DISTANCE))` is 80 at each distance."""
     for outer, inner, numbers in _nested(value):
-        if outer == inner:
-            continue
         limit, other = numbers
-        if (other <= limit) if outer == "MAX" else (other >= limit):
+        if outer != inner and (other < limit if outer == "MAX" else other > limit):
             found = f"{outer}({as_text(limit)}, {inner}({as_text(other)}, …))"
-            fix = f"{outer}({as_text(other)}, {inner}({as_text(limit)}, …))"
-            if limit != other:
-                look.report(
-                    codes.KNOWN_ANSWER, statement.span, found=found, number=as_text(limit),
-                    narrow=fix,
-                )  # fmt: skip
+            narrow = f"{outer}({as_text(other)}, {inner}({as_text(limit)}, …))"
+            values = {"found": found, "number": as_text(limit), "narrow": narrow}
+            look.report(codes.KNOWN_ANSWER, statement.span, **values)
 
 
 def _nested(value: ir.Expression) -> Iterator[tuple[str, str, Bounds]]:
@@ -124,7 +120,7 @@ def _report_no_room(statement: ir.If, look: Look) -> None:
     """`IF(D > 50) … ELSEIF(D < 50) … ELSE`: D is hardly ever 50."""
     for one, other in pairwise(statement.arms) if statement.has_else else ():
         first, second = one.condition, other.condition
-        is_same = first[:-1] == second[:-1] and {first[-1].op, second[-1].op} in _SIDES
+        is_same = first[:-1] == second[:-1] and {first[-1].op, second[-1].op} == _SIDES
         if is_same and first[-2].op == "NUMBER" and _is_fine(first[:-2], first[-2].value, look):
             text = look.condition(other.span, "ELSEIF")
             name = text.partition("<")[0].partition(">")[0].strip()
