@@ -43,7 +43,8 @@ _COMMA = re.compile(r",(?![^()]*\))")  # outside of inner brackets
 _THOUSANDS = re.compile(r"([1-9]\d{0,2})((?:,\d{3})+)")
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 _ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
-_RUN_ON = re.compile(rf"(?:\b\w+[ \t]*\({_VALUE}(?:,{_VALUE})*\)[ \t]*){{2,}}(?=[;}}|]|$)")
+_APART_CALL = re.compile(rf"[ \t]*(?P<call>{_ANY_CALL.pattern})")
+_PIECE = re.compile(r"[^;{}|]+")
 _DEF = re.compile(r"(?i)\bDEF\s+(\w+)")
 _POINT = re.compile(r"(?<=\d)[ \t]*\.[ \t]+(?=[-\d.])")
 _PERCENT = re.compile(r"[ \t]*%$")
@@ -94,23 +95,34 @@ def run_on(source: Source, names: Names) -> list[Diagnostic]:
     diagnostics = []
     start = 0
     for line in source.text.split("\n"):
-        for piece in _RUN_ON.finditer(without_note(line)[0]):
-            calls = [*_ANY_CALL.finditer(piece[0])]
-            words = [plain(re.match(r"\w+", call[0])[0]) for call in calls]  # type: ignore[index]
+        for piece in _PIECE.finditer(without_note(line)[0]):
+            calls = _only_calls(piece[0])
+            words = [plain(call["call"].partition("(")[0].strip()) for call in calls]
             known = [word if names.is_name(word) else names.meant(word) for word in words]
             near = {*words, *(names.meant(word, NEAR) for word in words)}  # `Antil(LINE_R)`
             are_calls = {*known} <= {*CALLED, *words, ""} and not near & {*ASKING, "UNTIL"}
             if len(calls) > 1 and are_calls and not all(known):
                 begin = start + piece.start()
-                ends = [(it.end(), other.start()) for it, other in pairwise(calls)]
+                first, last = calls[0].start("call"), calls[-1].end()
+                ends = [(it.end(), other.start("call")) for it, other in pairwise(calls)]
                 edits = tuple(Edit(Span(begin + a, begin + b), ";") for a, b in ends)
-                values = {"before": calls[0][0], "fix": ";".join(call[0] for call in calls)}
-                place = Span(begin, begin + len(piece[0]))
+                values = {"before": calls[0]["call"], "fix": ";".join(it["call"] for it in calls)}
+                place = Span(begin + first, begin + last)
                 at = Span(begin + ends[0][0] - 1, begin + ends[0][0])
                 repair = Repair(edits, False)
                 diagnostics.append(Diagnostic(codes.MISSING_SEPARATOR, at, values, place, repair))
         start += len(line) + 1
     return diagnostics
+
+
+def _only_calls(piece: str) -> list[re.Match[str]]:
+    """Return the calls of a text of calls alone, nothing where it has something else."""
+    calls: list[re.Match[str]] = []
+    at = 0
+    while call := _APART_CALL.match(piece, at):
+        calls.append(call)
+        at = call.end()
+    return [] if piece[at:].strip() else calls
 
 
 def _calls(body: str, start: int) -> Iterator[_Call]:
