@@ -40,6 +40,8 @@ ADVISED = [
     ("WHILE(DISTANCE < 10);F(0.2, 60);END_WHILE", "TS824"),
     ("SHOW(RANDOM(1, 6));LOOP(RANDOM(1, 6));W(1);END_LOOP", "TS843"),
     ("D = LIGHT_L;IF(D > 50);S;W(1);ELSEIF(D < 50);W(1);ELSE;W(2);ENDIF", "TS825"),
+    ("X = MAX(80, MIN(20, DISTANCE));F(1, X)", "TS827"),
+    ("IF(RANDOM(1, 2) = 1);S;W(1);ELSEIF(RANDOM(1, 2) = 2);W(1);ENDIF", "TS843"),
     ("W(9);WHILE(TIME < 5);BEEP(1, 440);END_WHILE", "TS827"),
     ("IF(DISTANCE < 15);B(1, 70);ENDIF;F(10, 50)", "TS805"),
     ("WHILE(TIME < 10000);F(1, 50);B(1, 50);END_WHILE", "TS811"),
@@ -370,7 +372,9 @@ def test_an_else_between_two_numbers_has_room(value: str, first: int, second: in
 def test_a_number_is_thrown_anew_at_each_random(throw: str) -> None:
     arms = f"IF({throw} = 1);F(1, 60);ELSEIF({throw} = 2);L(1, 60);ENDIF"
     assert "TS843" in warned(arms)
-    assert "TS843" in warned(f"LOOP(2);SHOW({throw});LOOP({throw});W(1);END_LOOP;END_LOOP")
+    again = f"SHOW({throw});LOOP({throw});W(1);END_LOOP"
+    for place in ("{}", "LOOP(2);{};END_LOOP", "TASK;{};END_TASK;F(3, 60)", "DEF A;{};END_DEF;A"):
+        assert "TS843" in warned(place.format(again)), place
     assert "TS843" not in warned(f"N = {throw};SHOW(N);{arms.replace(throw, 'N')}")
     assert "TS843" not in warned(f"SHOW({throw});W(1);LOOP({throw});W(1);END_LOOP")
 

@@ -13,7 +13,7 @@ from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.semantics import ir
-from tiniscript.semantics.lint import conditions, moves, numbers, tasks, useless
+from tiniscript.semantics.lint import conditions, known, moves, numbers, tasks, useless
 from tiniscript.semantics.lint.look import Around, Look
 from tiniscript.syntax.lexer import Scan
 
@@ -52,7 +52,12 @@ TABLE = (
         ir.If, conditions.check_if),
     Row((codes.FROZEN_WHILE,), ir.Show, conditions.check_show),
     Row((codes.ASKED_ONCE,), PROGRAM, conditions.report_asked_once),
-    Row((codes.KNOWN_ANSWER, codes.EXACT, codes.NEW_THROW), PROGRAM, conditions.report_known),
+    # what is the same whatever the robot meets
+    Row((codes.KNOWN_ANSWER,), PROGRAM, known.report_past_clock),
+    Row((codes.KNOWN_ANSWER,), STATEMENT, known.report_narrowed),
+    Row((codes.EXACT,), ir.If, known.report_no_room),
+    Row((codes.NEW_THROW,), ir.If, known.report_thrown_arms),
+    Row((codes.NEW_THROW,), BODY, known.report_thrown_again),
     # what comes of a move
     Row((codes.LATE_CHECK, codes.IDLE_STOP), BODY, moves.report_late_conditions),
     Row((codes.UNSEEN_MOTORS,), BODY, moves.report_unseen_motors),

@@ -29,7 +29,6 @@ from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import BINARY, OPPOSITES, SIGN_OF
 
 SHORT_MS = 1000  # ms: a loop looks again after so long
-_SAME_OPS = frozenset(("TIME", "MIN", "MAX", "RANDOM"))  # of which some are the same anyway
 _CHANGING_OPS = frozenset(("SENSOR", "TIME", "RANDOM"))
 # By the way that the robot goes, what is true where the robot stands, and what comes true.
 _REVERSED_COMPARATORS = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
@@ -73,16 +72,6 @@ def report_asked_once(look: Look) -> None:
         from tiniscript.semantics.lint import once
 
         once.report_asked_once(look, remote)
-
-
-def report_known(look: Look) -> None:
-    """A program that calculates little and asks for no clock loads nothing for it."""
-    ops = {term.op for it in look.statements for value in ir.expressions(it) for term in value}
-    has_else = any(isinstance(it, ir.If) and it.has_else and it.arms[1:] for it in look.statements)
-    if has_else or ops & _SAME_OPS:
-        from tiniscript.semantics.lint import known
-
-        known.report_known(look)
 
 
 class _Conditions:

@@ -1,7 +1,7 @@
 """Warns of what is the same whatever the robot meets, where something else was meant.
 
 A clock that is past a number, MIN and MAX the wrong way round, an ELSE that its questions leave no
-room, and a RANDOM that is thrown again. Only programs with such words load this.
+room, and a RANDOM that is thrown again.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import TIME, Comparison, comparison, is_between
-from tiniscript.semantics.lint.look import Look
+from tiniscript.semantics.lint.look import Around, Look
 from tiniscript.semantics.optimizer import known_value
 
 _LESS = ("LT", "LE")
@@ -22,32 +22,17 @@ _NARROWS = ("MIN", "MAX")
 _SIDES = {"LT", "GT"}  # of one number: it alone is left for ELSE
 _THROW = ("NUMBER", "NUMBER", "RANDOM")
 
-Bounds = tuple[int, int]
-
-
-def report_known(look: Look) -> None:
-    """Report all of a program; of one with tasks nobody knows what is first."""
-    program = look.program
-    for statement in look.statements:
-        for value in ir.expressions(statement):
-            _report_narrowed(value, statement, look)
-        if isinstance(statement, ir.If):
-            _report_no_room(statement, look)
-            _report_thrown_arms(statement, look)
-    inner = (each for it in ir.all_statements(program) for each in ir.bodies(it))
-    for body in (program.body, *inner):
-        _report_thrown_again(body, look)
-    if not program.tasks:
-        _report_past_clock(program.body, look)
-
 
 # -- the clock ------------------------------------------------------------------------------------
 
 
-def _report_past_clock(body: ir.Body, look: Look) -> None:
-    """`WHILE(TIME < 10) … END_WHILE`, then `WHILE(TIME < 5)`: the clock does not begin again."""
+def report_past_clock(look: Look) -> None:
+    """`WHILE(TIME < 10) … END_WHILE`, then `WHILE(TIME < 5)`: the clock does not begin again.
+
+    Says nothing of a program with tasks: nobody knows what is first.
+    """
     past = 0
-    for statement in body:
+    for statement in () if look.program.tasks else look.program.body:
         if isinstance(statement, ir.While):
             asked = comparison(statement.condition, look.kit)
             if asked is None or asked.device is not TIME or asked.op not in _LESS:
@@ -83,9 +68,10 @@ def _is_over(asked: Comparison, past: int) -> bool:
 # -- MIN and MAX ----------------------------------------------------------------------------------
 
 
-def _report_narrowed(value: ir.Expression, statement: ir.Statement | ir.Task, look: Look) -> None:
+def report_narrowed(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
     """`MAX(80, MIN(20, DISTANCE))` is 80 at each distance."""
-    for outer, inner, numbers in _nested(value):
+    found_in = (each for value in ir.expressions(statement) for each in _nested(value))
+    for outer, inner, numbers in found_in:
         limit, other = numbers
         if outer != inner and (other < limit if outer == "MAX" else other > limit):
             found = f"{outer}({as_text(limit)}, {inner}({as_text(other)}, …))"
@@ -94,7 +80,7 @@ def _report_narrowed(value: ir.Expression, statement: ir.Statement | ir.Task, lo
             look.report(codes.KNOWN_ANSWER, statement.span, **values)
 
 
-def _nested(value: ir.Expression) -> Iterator[tuple[str, str, Bounds]]:
+def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
     """Give each MIN or MAX of a number and of one with a number: both words, both numbers."""
     stack: list[tuple[str, int | None]] = []  # what made a value, and the number that it has
     for op, number in value:
@@ -116,7 +102,7 @@ def _nested(value: ir.Expression) -> Iterator[tuple[str, str, Bounds]]:
 # -- ELSE -----------------------------------------------------------------------------------------
 
 
-def _report_no_room(statement: ir.If, look: Look) -> None:
+def report_no_room(statement: ir.If, around: Around, look: Look) -> None:
     """`IF(D > 50) … ELSEIF(D < 50) … ELSE`: D is hardly ever 50."""
     for one, other in pairwise(statement.arms) if statement.has_else else ():
         first, second = one.condition, other.condition
@@ -145,7 +131,7 @@ def _is_fine(value: ir.Expression, number: int, look: Look) -> bool:
 # -- RANDOM ---------------------------------------------------------------------------------------
 
 
-def _report_thrown_arms(statement: ir.If, look: Look) -> None:
+def report_thrown_arms(statement: ir.If, around: Around, look: Look) -> None:
     """`IF(RANDOM(1, 3) = 1) … ELSEIF(RANDOM(1, 3) = 2)`: it may be that none is TRUE."""
     for one, other in pairwise(statement.arms):
         thrown = _thrown(one.condition)
@@ -154,13 +140,12 @@ def _report_thrown_arms(statement: ir.If, look: Look) -> None:
             return
 
 
-def _report_thrown_again(body: ir.Body, look: Look) -> None:
+def report_thrown_again(body: ir.Body, around: Around, look: Look) -> None:
     """`SHOW(RANDOM(1, 6))`, then `LOOP(RANDOM(1, 6))`: no number is shown that counts."""
     for one, other in pairwise(body):
         thrown = one.value if isinstance(one, ir.Show) and len(one.value) == len(_THROW) else ()
         if thrown and _thrown(thrown) and isinstance(other, ir.Loop) and other.times == thrown:
-            head = Span(other.span.start, other.span.start + len("LOOP"))
-            _report_throw(thrown, head, look)
+            _report_throw(thrown, look.head(other.span), look)
 
 
 def _report_throw(thrown: ir.Expression, span: Span, look: Look) -> None:
