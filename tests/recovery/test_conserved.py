@@ -205,6 +205,17 @@ def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
     assert repair_program(wrong, check).text == wrong or diagnostic.values.get("carried")
 
 
+@pytest.mark.parametrize("digits", ["15", "25", "05", "251"])
+@pytest.mark.parametrize(
+    "wrong", ["F({0},{1}, {2})", "avanza {0},{1} segundos a {2}", "W({2});F({0},{1}, 80)"]
+)
+def test_digits_of_a_decimal_comma_are_no_other_number(wrong: str, digits: str) -> None:
+    """`F(1,5, 15)` is F(1.5, 15): its 15 is there."""
+    text = wrong.format(digits[0], digits[1:], digits)
+    for diagnostic in check(text):
+        assert "lost" not in diagnostic.values, (text, diagnostic.values)
+
+
 def test_no_repair_takes_a_sign_for_a_command_out() -> None:
     """A stop sign is S, wherever it stands; a sign that nothing is said with may go."""
     rows = (table(language, "lexicon.txt").split("\n") for language in languages())
