@@ -146,6 +146,17 @@ def test_many_blanks_take_no_time() -> None:
         assert check(f"SI|F(5{blank * 20_000}hola amigo\n")
 
 
+@pytest.mark.parametrize(
+    "wrong", ["F(2. 80)", "F(2,5, 80)", "F (2, 80)cm", "F(2 80)", "FOO(1)", "avanza 2", "LOOP(3)"]
+)
+def test_of_many_mistakes_the_first_are_told(wrong: str) -> None:
+    """So many of them that a check for each would be seen."""
+    told = check(f"{wrong}\n" * 8000)
+    assert len(told) <= codes.ENOUGH + 1
+    assert told == codes.in_order(told)
+    assert told[0].span.start <= len(wrong)
+
+
 @pytest.mark.parametrize("ends", [*product(("\n", "\r", "\r\n", "\n\r", "\r\r\n"), repeat=3)])
 def test_lines_may_end_in_every_way_beside_each_other(ends: tuple[str, ...]) -> None:
     rows = ("F(2 80)", "R(1 60)", "LOOP(2)", "S")

@@ -17,9 +17,10 @@ from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.programs import broken, program
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.source import Source, Span
+from tiniscript.diagnostics.codes import ENOUGH
 from tiniscript.syntax import ast
 from tiniscript.syntax.outline import _Line
-from tiniscript.syntax.parser import _RULES, ENOUGH, Parser, parse
+from tiniscript.syntax.parser import _RULES, Parser, parse
 
 
 def value(argument: ast.Argument | None) -> str:

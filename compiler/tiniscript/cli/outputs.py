@@ -9,6 +9,7 @@ from tiniscript.cli.errors import unwritable_error
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.streams import has_colors
 from tiniscript.cli.texts import Sentence, say_aside, text
+from tiniscript.diagnostics.codes import ENOUGH
 from tiniscript.library.compiling import Compiled
 
 MOST_DIAGNOSTICS = 20  # diagnostics that are printed; a person mends the first ones first
@@ -56,9 +57,11 @@ def print_diagnostics(compiled: Compiled, language: str) -> None:
         rows = as_text(text, compiled.source, language, color).split("\n")
         frame = rows[: 2 * bool(compiled.source.text)]
         print(*frame, *map(Sentence, rows[len(frame) :]), "", sep="\n", file=sys.stderr)
-    if len(compiled.diagnostics) > MOST_DIAGNOSTICS:
-        say_aside("and_more", language, n=len(compiled.diagnostics) - MOST_DIAGNOSTICS)
-    if len(compiled.diagnostics) > 1:
+    count = len(compiled.diagnostics)
+    if count > MOST_DIAGNOSTICS:
+        key = "and_more" if count <= ENOUGH else "and_many_more"
+        say_aside(key, language, n=min(count, ENOUGH) - MOST_DIAGNOSTICS)
+    if 1 < count <= ENOUGH:
         print(_count(compiled, language), file=sys.stderr)
 
 

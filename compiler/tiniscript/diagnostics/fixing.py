@@ -44,7 +44,6 @@ def edits_of(diagnostic: Diagnostic) -> list[Edit] | None:
     return [Edit(place or diagnostic.span, new)]
 
 
-MOST_DIAGNOSTICS = 100  # diagnostics after which a program is not read on
 MOST_CHECKS = 400  # of one program, fewer of a long one
 CHECKED_CHARACTERS = 600_000
 MOST_OFFERS = 20  # repairs of one text that are tried
@@ -104,7 +103,7 @@ def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     """Give the sure repairs that do not touch, and then each one alone."""
     sure = [
         item.repair.edits
-        for item in diagnostics[:MOST_DIAGNOSTICS]
+        for item in diagnostics[: codes.ENOUGH]
         if item.repair and item.repair.is_sure
     ]
     together: list[tuple[Edit, ...]] = []

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, apply_edits, overlap
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
+from tiniscript.diagnostics.codes import ENOUGH, Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, drop_wrong_offers
 from tiniscript.recovery import slips
 from tiniscript.recovery.bracketed import answered, bracketed
@@ -40,7 +40,6 @@ from tiniscript.recovery.setup import SEAL, beginning, other_word
 from tiniscript.recovery.shares import shares
 from tiniscript.recovery.suggestions import suggested
 from tiniscript.recovery.usage import with_usage
-from tiniscript.syntax.parser import ENOUGH
 
 ROUNDS = 20  # of reading what follows a mistake from the repaired text
 _CR_ALONE = re.compile(r"\r(?!\n)")
@@ -88,6 +87,8 @@ def told_of(
     text = _CR_ALONE.sub("\n", source.text)
     source = Source(text, source.name)
     message = _read(Wrong(source, diagnostics, check, kit), ROUNDS)
+    if len(message) > ENOUGH:
+        message = sorted(message, key=lambda it: it.span)[: ENOUGH + 1]
     message = [bracketed(item, text, kit, is_offered=True) for item in message]
     message = drop_wrong_offers(message, text, check)  # what is offered is right
     message = conserving(message, text, kit)  # what is made keeps what was written

@@ -41,7 +41,6 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, sca
 from tiniscript.syntax.operators import SUMS
 from tiniscript.syntax.reporter import Failed, Reporter
 
-ENOUGH = 100  # diagnostics after which reading on helps nobody
 # What is said of a word of the language that is no command, by its role.
 _NO_COMMANDS = {"until": codes.UNTIL_ALONE, "forever": codes.FOREVER_NOT_HERE,
                 "later": codes.LATER_WORD, "setup": codes.SETUP_TWICE}  # fmt: skip
@@ -78,7 +77,7 @@ class Parser:
         cursor, diagnostics = self.cursor, self.reporter.diagnostics
         tokens = cursor.tokens
         start = self.setup()
-        while (kind := tokens[cursor.i].kind) is not END and len(diagnostics) <= ENOUGH:
+        while (kind := tokens[cursor.i].kind) is not END and len(diagnostics) <= codes.ENOUGH:
             if kind is NEWLINE or kind == ";":
                 cursor.i += 1
                 continue
