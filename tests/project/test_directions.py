@@ -6,125 +6,25 @@ import ast
 import re
 import subprocess
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
-from tests.support.rows import each_row
 from tiniscript.base.languages import catalogue, languages
 from tools import measures
 
 PACKAGE = Path(__file__).resolve().parent.parent.parent / "compiler" / "tiniscript"
 
-SHARED = {
-    "base.fixed_point",
-    "base.kit",
-    "base.words",
-    "base.spelling",
-    "base.files",
-    "base.source",
-    "base.languages",
-    "base.limits",
-    "base.trace",
-}
-TEXT = {"diagnostics", *SHARED}
-# Each folder, or part of one that needs another row: what it may import besides itself.
-UPSTREAM: dict[str, set[str]] = {
-    "base": set(),
-    "base.version": set(),
-    "base.source": set(),
-    "base.files": set(),
-    "base.catalogue_source": set(),
-    "base.translations": {"base.catalogue_source"},
-    "base.languages": {"base.files", "base.catalogue_source", "base.translations"},
-    "base.fixed_point": set(),
-    "base.words": {"base.fixed_point", "base.languages"},
-    "base.spelling": {"base.languages"},
-    "base.kit": {"base.fixed_point", "base.words"},
-    "base.limits": set(),
-    "base.trace": {"base.fixed_point", "base.kit"},
-    "diagnostics": {"base.source", "base.languages"},
-    "bytecode": {"base.kit", "base.limits", "base.words"},
-    "syntax": TEXT,
-    "together": {"base.files", "base.source", "base.words", "syntax"},
-    "recovery": {*TEXT, "syntax"},
-    "semantics": {*TEXT, "syntax", "recovery"},  # of recovery its lexicon
-    "codegen": {"base.source", "base.fixed_point", "base.limits", "bytecode", "semantics"},
-    "vm": {"base.fixed_point", "base.kit", "base.limits", "base.trace", "base.words", "bytecode"},
-    "robots": SHARED,
-    "codegen.text": {*SHARED, "bytecode", "syntax", "semantics", "codegen"},
-    "codegen.sketch": {*TEXT, "syntax", "semantics", "robots"},  # of the syntax its comments
-    "flash": {"base.files", "base.languages", "robots"},
-    "link": {"base.version", "base.files", "base.source", "base.languages", "bytecode"},
-    "conformance": {"bytecode", "link"},
-    "doctor": {"base.files", "base.version", "bytecode", "flash", "link"},
-    "virtual": {*SHARED, "bytecode", "vm", "robots", "link"},
-    # of the syntax its tokens: which words a program uses
-    "lessons": {*SHARED, "bytecode", "syntax", "vm", "robots", "link", "virtual"},
-}
-WHOLE = {"__init__", "__main__", "library", "studio", "cli"}  # what puts the stages together
-
-
-def modules_of(path: Path) -> set[str]:
-    """Return what a file imports of this package when it runs: not what is for types alone."""
-    found = set()
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    skipped: set[ast.AST] = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
-            skipped |= set(ast.walk(node))
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node not in skipped and node.module:
-            for name in node.names:
-                found.add(f"{node.module}.{name.name}")
-        elif isinstance(node, ast.Import) and node not in skipped:
-            found |= {alias.name for alias in node.names}
-    return {each for each in found if each.startswith("tiniscript.")}
-
-
-def stage_of(path: Path) -> str:
-    return _row(path.relative_to(PACKAGE).with_suffix("").parts)
-
-
-def _row(parts: Sequence[str]) -> str:
-    """Return the row of UPSTREAM that a file of the package stands in; else its folder."""
-    name = ".".join(parts[:2])
-    return name if name in UPSTREAM else parts[0]
-
-
 FILES = sorted(PACKAGE.rglob("*.py"))
-STAGES = [path for path in FILES if stage_of(path) not in WHOLE]
 
 
-@each_row("path", STAGES)
-def test_stage_looks_upstream_only(path: Path) -> None:
-    stage = stage_of(path)
-    found = {_row(name.split(".")[1:]) for name in modules_of(path)} - {stage}
-    assert found <= UPSTREAM[stage], f"{path.name} looks into {sorted(found - UPSTREAM[stage])}"
-
-
-def test_every_stage_has_its_place() -> None:
-    assert {stage_of(path) for path in STAGES} == set(UPSTREAM)
-
-
-def test_the_table_points_one_way() -> None:
-    """Every stage stands below all that it may import: so no circle of stages is possible."""
-    above: set[str] = set()
-    for stage, upstream in UPSTREAM.items():
-        assert upstream <= above, stage
-        above.add(stage)
-
-
-@each_row("path", [path for path in FILES if stage_of(path) == "library"])
-def test_the_library_does_not_know_the_command(path: Path) -> None:
-    assert not [name for name in modules_of(path) if name.startswith("tiniscript.cli")]
-
-
-@each_row("path", [path for path in FILES if PACKAGE / "cli" in path.parents])
-def test_nothing_of_the_command_calls_a_verb(path: Path) -> None:
-    """What two of them need is below both; `cli/__init__.py` finds each by its name."""
-    assert not [name for name in modules_of(path) if name.startswith("tiniscript.cli.commands.")]
+def test_a_stage_knows_what_stands_below_it() -> None:
+    """`[tool.importlinter]` in pyproject.toml says what that is."""
+    command = Path(sys.executable).with_name("lint-imports")
+    completed = subprocess.run(
+        [command, "--no-cache"], capture_output=True, text=True, cwd=PACKAGE.parent.parent
+    )
+    assert completed.returncode == 0, completed.stdout + completed.stderr
 
 
 def test_no_circle_of_files() -> None:

@@ -37,6 +37,17 @@ def test_same_kit(kit): ...
 """
 
 
+def test_a_history_that_nobody_may_read_draws_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As in a container, whose checkout has another owner."""
+    monkeypatch.setattr(sampling, "ROOT", tmp_path)
+    assert sampling._commit.__wrapped__() == "none"
+    (tmp_path / ".git").mkdir()
+    with pytest.raises(pytest.UsageError, match="history"):
+        sampling._commit.__wrapped__()
+
+
 class Plugin:
     """What `tests/conftest.py` does, and the rows that are left for each of these commits."""
 

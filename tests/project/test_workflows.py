@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import shlex
+import subprocess
+import sys
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -23,7 +25,6 @@ JOB = {"runs-on", "container", "timeout-minutes", "steps", "strategy", "env"}
 STEP = {"name", "uses", "with", "run", "if", "env"}
 # Programs that a runner has; the others are ours, or pip's.
 THEIRS = {"apt-get", "git", "env", "sh", "py", "python", "python3", ".venv/bin/python", "tsc"}
-PINNED = re.compile(r"^ +(?:- )?uses: actions/[a-z-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+$")
 
 
 def loaded(path: Path) -> dict[str, Any]:
@@ -47,32 +48,37 @@ def commands() -> list[list[str]]:
     return found
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.name))
-def test_a_workflow_has_a_form_that_forges_read(path: Path) -> None:
-    found = loaded(path)
-    assert set(found) == {"name", "on", "permissions", "concurrency", "jobs"}
-    assert found["permissions"] == {"contents": "read"}, "more rights than it needs"
-    for job in found["jobs"].values():
-        assert set(job) <= JOB
-        assert 0 < int(job["timeout-minutes"]) <= 120
-        for step in job["steps"]:
-            assert set(step) <= STEP
-            assert ("uses" in step) != ("run" in step)
+def test_a_workflow_is_well_formed_and_trusts_nobody() -> None:
+    zizmor = Path(sys.executable).with_name("zizmor")
+    if not zizmor.exists():
+        pytest.skip("zizmor is not built for this processor")
+    options = ("--offline", "--no-progress", "--strict-collection")
+    completed = subprocess.run([zizmor, *options, FOLDER], capture_output=True, text=True)
+    assert completed.returncode == 0, completed.stdout + completed.stderr
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.name))
-def test_a_workflow_trusts_nobody(path: Path) -> None:
-    """Actions are those of a commit; no secret, and nothing of a stranger in a shell."""
-    text = path.read_text(encoding="utf-8")
-    assert "secrets" not in text
-    assert "pull_request_target" not in text
-    for line in text.splitlines():
-        if "uses:" in line:
-            assert PINNED.match(line), line
-    for _, step in steps():
-        assert "${{" not in step.get("run", ""), step
-        if "checkout" in step.get("uses", ""):
-            assert step["with"]["persist-credentials"] == "false"
+def test_a_job_has_a_form_that_forges_read_and_ends() -> None:
+    for path in FILES:
+        for job in loaded(path)["jobs"].values():
+            assert set(job) <= JOB
+            assert 0 < int(job["timeout-minutes"]) <= 120
+            for step in job["steps"]:
+                assert set(step) <= STEP
+                assert ("uses" in step) != ("run" in step)
+
+
+def test_each_commit_of_main_is_checked_to_its_end() -> None:
+    for path in FILES:
+        cancels = loaded(path)["concurrency"]["cancel-in-progress"]
+        assert cancels == "${{ github.ref != 'refs/heads/main' }}"
+
+
+def test_a_container_may_read_its_history() -> None:
+    """Its checkout has another owner: without that it would draw one sample for ever."""
+    for path in FILES:
+        for job in loaded(path)["jobs"].values():
+            runs = " ".join(step.get("run", "") for step in job["steps"])
+            assert "container" not in job or "--add safe.directory" in runs, path.name
 
 
 def test_visitors_commands_are_those_of_readme() -> None:

@@ -93,6 +93,10 @@ def _commit() -> str:
         completed = subprocess.run(words, capture_output=True, text=True)
     except OSError:
         return "none"
+    if completed.returncode and (ROOT / ".git").exists():  # it would draw one sample for ever
+        raise pytest.UsageError(
+            f"This checkout has a history that cannot be read: {completed.stderr}"
+        )
     return completed.stdout.strip() or "none"
 
 
