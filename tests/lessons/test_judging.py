@@ -167,6 +167,25 @@ def test_a_criterion_is_met_or_missed(
     assert "{" not in found + spanish
 
 
+@pytest.mark.parametrize("count", [2, 3, 5])
+def test_a_def_is_used_where_calls_lead_to_it(tmp_path: Path, count: int) -> None:
+    """However many words are between; where one call is missing nothing behind it is used."""
+    words = ["HOP", "TURN", "DANCE", "BOX", "SHOWER"][:count]
+    lesson = lesson_of(tmp_path, f'[[criteria]]\nkind = "uses"\nwords = ["DEF"]\ntimes = {count}\n')
+
+    def program(cut: str) -> str:
+        bodies = [
+            f"DEF {word};{callee if callee != cut else 'W(1)'};END_DEF"
+            for word, callee in zip(words, ["BEEP(0.1, 440)", *words], strict=False)
+        ]
+        return ";".join([*bodies, words[-1] if words[-1] != cut else "W(1)"])
+
+    assert said(lesson, program("")) == []
+    for word in words:
+        (missing,) = said(lesson, program(word))
+        assert "word HOP but never calls it" in missing
+
+
 OBEYS = """
 [[criteria]]
 kind = "obeys"
