@@ -21,7 +21,7 @@ from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hm10
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
 from tiniscript.doctor.examination import Expectations, examine
 from tiniscript.doctor.findings import Finding
-from tiniscript.doctor.line import Line, diagnose_line
+from tiniscript.doctor.line import BAUDS, Line, diagnose_line
 from tiniscript.doctor.robot import WireRobot
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
@@ -34,6 +34,7 @@ from tiniscript.link.messages import (
     WIFI_RESTS,
     YOURS,
 )
+from tiniscript.link.wire import QUIET_MS
 from tiniscript.robots import load
 
 # Those that say nothing after they have started.
@@ -226,6 +227,20 @@ def test_a_robot_that_hears_badly_and_answers_all_the_same(damaged: int, is_loss
     assert ("lossy" in causes(Noisy())) == is_lossy
 
 
+@pytest.mark.parametrize("before", [0, 100, 240, 253, 255])
+@pytest.mark.parametrize("count", ["damaged", "framing", "overrun"])
+def test_what_is_damaged_is_counted_past_the_end_of_a_counter(count: str, before: int) -> None:
+    """Its 256 values follow each other in a circle."""
+
+    class Noisy(Firmware):
+        def answer(self, data: bytes) -> bytes:
+            if len(self.requests) == 10:  # in the middle of the PINGs
+                self.counts[count] = (before + 4) % 256
+            return super().answer(data)
+
+    assert causes(Noisy(**{count: before}))["lossy"].values["damaged"] == "4"
+
+
 def test_how_bad_a_line_was_before() -> None:
     """Then it is probably bad; one that is lost among twenty says nothing of it."""
     assert "lossy" not in causes(Firmware(overrun=19))
@@ -279,6 +294,21 @@ def test_a_robot_at_another_speed_with_another_trouble() -> None:
 )  # fmt: skip
 def test_on_a_cable(end: OtherEnd, cause: str, is_sure: bool) -> None:
     assert only(end) == (cause, is_sure)
+
+
+@pytest.mark.parametrize("speed", BAUDS)
+def test_what_is_heard_at_one_speed_alone_is_told(speed: int) -> None:
+    """Whichever it is: at the others nothing comes."""
+
+    class Deaf(SimulatedWire):
+        def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
+            heard = super().receive(wait_ms, quiet_ms)
+            return heard if self.baud == speed else b""
+
+    wire = Deaf(Babble(speed), BAUDS[0])
+    expected = Expectations(None, "tinibot", NAMES.get)
+    (finding,) = diagnose_line(wire, Line(BAUDS[0], False, 4711), expected)
+    assert finding.cause == "garbled"
 
 
 @pytest.mark.parametrize(
