@@ -95,6 +95,31 @@ def test_without_ci_a_page_that_cannot_be_made_is_no_failure(tmp_path: Path) -> 
 
 
 @needs_sh
+def test_the_tests_tell_their_processor_time(tmp_path: Path) -> None:
+    """In CI they say, too, that it is more than people wait for."""
+    clone = folder_of(tmp_path, "venv.sh", "test.sh")
+    for name in ("steps", "fails"):
+        (clone / name).write_text("")
+    usual = os.environ["PATH"]
+    much = tmp_path / "much" / "awk"  # as if it had counted that
+    much.parent.mkdir()
+    much.write_text("#!/bin/sh\necho 24.0\n")
+    much.chmod(0o755)
+    with_much = f"{much.parent}{os.pathsep}{usual}"
+    for path, ci, minutes in (
+        (usual, "true", "0.0"),
+        (with_much, "", "24.0"),
+        (with_much, "true", "24.0"),
+    ):
+        variables = {**os.environ, "HERE": str(clone), "CI": ci, "LC_ALL": "C", "PATH": path}
+        completed = subprocess.run(
+            ["sh", "tools/test.sh"], cwd=clone, env=variables, capture_output=True, text=True
+        )
+        assert f"The tests took {minutes} minutes of processor time." in completed.stderr
+        assert ("more than the 20 minutes" in completed.stderr) == (ci + minutes == "true24.0")
+
+
+@needs_sh
 @pytest.mark.parametrize("fails_alone", [False, True])
 def test_a_test_that_fails_beside_others_is_tried_alone(
     fails_alone: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -57,6 +57,7 @@ def test_known_mutants_are_of_code_and_tests_that_are_there() -> None:
         assert any(f"def {name}(" in text for text in texts), known.test  # it may be imported
 
 
+@pytest.mark.long
 def test_known_mutants_are_noticed(tmp_path: Path) -> None:
     copy = Copy(tmp_path)
     tries = [tried(known) for known in KNOWN]

@@ -22,6 +22,9 @@ def test_case(case, chip): ...
 @pytest.mark.parametrize("pin", range(9))
 def test_pin(pin): ...
 def test_usual(): ...
+@pytest.mark.long
+@pytest.mark.parametrize("minutes", range(20))
+def test_long(minutes): ...
 @pytest.mark.sampled(of="boards", keep=2)
 @pytest.mark.parametrize("board", ["uno", "mega"])
 def test_board(board): ...
@@ -60,6 +63,7 @@ class Plugin:
 
     def pytest_configure(self, config: pytest.Config) -> None:
         config.addinivalue_line("markers", "sampled: rows")
+        config.addinivalue_line("markers", "long: tests")
 
     def pytest_collection_modifyitems(
         self, config: pytest.Config, items: list[pytest.Item]
@@ -73,13 +77,14 @@ class Plugin:
 
 
 def collected(
-    folder: Path, *words: str, of: str = "", commits: Sequence[str] = ("7",)
+    folder: Path, *words: str, of: str | None = "", commits: Sequence[str] = ("7",)
 ) -> list[tuple[list[str], str]]:
     (folder / "test_rows.py").write_text(ROWS, encoding="utf-8")
     (folder / "pytest.ini").write_text("[pytest]", encoding="utf-8")
+    asked = folder if of is None else f"{folder / 'test_rows.py'}{of}"
     plugin = Plugin(commits)
     options = ("-q", "--collect-only", "--import-mode=importlib", "-p", "no:cacheprovider",
-               "-p", "no:xdist", *words, f"{folder / 'test_rows.py'}{of}")  # fmt: skip
+               "-p", "no:xdist", *words, f"{asked}")  # fmt: skip
     assert pytest.main([*options], [plugin]) == pytest.ExitCode.OK
     return plugin.found
 
@@ -117,6 +122,19 @@ def test_what_is_asked_for_has_all_its_rows(words: list[str], of: str, tmp_path:
     ((found, said),) = collected(tmp_path, *words, of=of)
     assert sum("_case" in name for name in found) == 60 and said == ""
     assert found[-4:] == [*"abcd"]
+
+
+def test_a_tenth_of_the_long_tests_is_drawn_and_each_of_them_some_time(tmp_path: Path) -> None:
+    def long_tests(*words: str, of: str | None = None, commit: str = "7") -> list[str]:
+        ((found, _),) = collected(tmp_path, *words, of=of, commits=[commit])
+        return [name for name in found if name.startswith("test_long")]
+
+    assert long_tests() == []
+    assert len(long_tests("--whole")) == len(long_tests(of="")) == 20
+    drawn = [long_tests("--tenth", commit=str(commit)) for commit in range(60)]
+    assert {len(names) for names in drawn} == {2}
+    assert len({name for names in drawn for name in names}) == 20
+    assert drawn[7] == long_tests("--tenth")
 
 
 def test_all_rows_of_one_test_run_and_each_that_fails_is_named() -> None:

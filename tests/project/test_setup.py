@@ -79,7 +79,7 @@ def test_ci_runs_the_tests_as_users_do(tmp_path: Path) -> None:
     """Without what hides failing tests; with the pip configuration that the machine has."""
     rows, seen = ci(tmp_path / "clone")
     assert rows[0].startswith("BARE=-m not root, ")
-    assert rows[1].startswith("-m not root, ")
+    assert rows[1].startswith("--tenth -m not root, ")
     assert not set(SPECIAL) & set(seen)
     assert (seen["CI"], seen["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
     assert int(seen["FILES"]) == 1024
@@ -92,7 +92,7 @@ def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
     for _ in range(2):
         rows, seen = ci(clone)
         assert {*rows[:2]} == {"packages by 0", f"BARE=-m not root, {seen['USER']}"}
-        assert rows[2] == f"-m not root, {seen['USER']}"
+        assert rows[2] == f"--tenth -m not root, {seen['USER']}"
         assert rows[-1] == "-m pytest -n 2 -p no:cacheprovider -m root tests/x.py by 0"
         assert not {*SPECIAL, "SECRET"} & set(seen)
         assert (seen["CI"], seen["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")

@@ -27,7 +27,7 @@ from tiniscript.virtual.worlds import read
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
-pytestmark = pytest.mark.sampled(of="Firefox", keep=3)
+pytestmark = pytest.mark.long
 
 PROGRAM = "SI|LOOP(2);\n  F(0.2, 80);\nEND_LOOP;\nSHOW(5)"
 
@@ -69,7 +69,6 @@ def page(visited: tuple[Pages, Page]) -> Iterator[Page]:
     assert not wrong
 
 
-@pytest.mark.sampled(of="Firefox", keep=2)
 def test_blocks_and_text_are_the_same_program(page: Page) -> None:
     page.click("#view_text")
     write(page, PROGRAM)
@@ -86,7 +85,6 @@ def test_blocks_and_text_are_the_same_program(page: Page) -> None:
     page.click("#view_text")
 
 
-@pytest.mark.sampled(of="Firefox", keep=2)
 def test_a_mistake_is_said_in_spanish_and_repaired(page: Page) -> None:
     speak(page, "es")
     write(page, "F(-2, 80)")
@@ -97,12 +95,10 @@ def test_a_mistake_is_said_in_spanish_and_repaired(page: Page) -> None:
     speak(page, "en")
 
 
-@pytest.mark.sampled(of="Firefox", keep=2)
 def test_a_run_is_that_of_the_command(page: Page) -> None:
     dances_like_the_command(page)
 
 
-@pytest.mark.sampled(of="Firefox", keep=2)
 def test_a_world_is_changed_and_saved(page: Page) -> None:
     page.click("#world_draw")
     page.locator("#world_add_boxes").focus()
@@ -116,7 +112,6 @@ def test_a_world_is_changed_and_saved(page: Page) -> None:
     page.click("#world_done")
 
 
-@pytest.mark.sampled(of="Firefox", keep=2)
 def test_programs_are_shared_kept_and_pictured(page: Page) -> None:
     write(page, PROGRAM)
     link = share(page)
@@ -131,7 +126,6 @@ def test_programs_are_shared_kept_and_pictured(page: Page) -> None:
     assert content(page).rstrip() == PROGRAM
 
 
-@pytest.mark.sampled(of="Firefox", keep=2)
 def test_it_works_without_its_server(firefox: Browser) -> None:
     context = firefox.new_context()
     page = context.new_page()

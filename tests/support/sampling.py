@@ -4,8 +4,11 @@ A test marked `sampled("chip")` keeps, of the rows that differ in `chip` alone, 
 draws: every other value is in each run, each chip as often as the others, and every row in some.
 `sampled("chip", keep=2)` keeps two. `sampled(of="bootloaders", keep=2)` keeps two of all tests that
 are marked so, with their rows. Tests with the same `draw` keep the same rows: of what is built for
-them less is built. `some_of` draws of what one test goes through by itself. `--whole` runs all, and
-what `-k` or a name asks for is run.
+them less is built. `some_of` draws of what one test goes through by itself.
+
+A test marked `long` takes long, and another one notices most of what it does: it is in the second
+tier, which runs at the end of an issue and before a release. `--tenth` runs a tenth of that tier,
+which the commit draws, too. `--whole` runs all, and what `-k` or a name asks for is run.
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ import subprocess
 from collections import defaultdict
 from collections.abc import Sequence
 from functools import lru_cache
+from pathlib import Path
 from typing import TypeVar
 
 import pytest
@@ -22,11 +26,13 @@ import pytest
 from tests.support.casefile import ROOT
 
 MARK = "sampled"
+LONG = "long"
 Row = TypeVar("Row")
 
 
 def add_options(parser: pytest.Parser) -> None:
     parser.addoption("--whole", action="store_true", help="all rows, not the sample of this commit")
+    parser.addoption("--tenth", action="store_true", help="a tenth of the long tests, too")
     parser.addoption("--sample", metavar="COMMIT", help="the sample that another commit draws")
 
 
@@ -41,7 +47,7 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
             tests[mark.kwargs["of"]][""].append(item)
         elif mark is not None:
             tests[item.nodeid.partition("[")[0]][_others(item, mark.args)].append(item)
-    left_out: set[pytest.Item] = set()
+    left_out = _long_left_out(config, items)
     for name, groups in tests.items():
         together = _mark(next(iter(groups.values()))).kwargs.get("draw", "")
         draw = random.Random(f"{seed(config)} {together or name}")
@@ -53,6 +59,18 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
     if left_out:
         items[:] = [item for item in items if item not in left_out]
         config.hook.pytest_deselected(items=list(left_out))
+
+
+def _long_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytest.Item]:
+    """Return the long tests that this run leaves out, of files that nobody names."""
+    named = {Path(each).resolve() for each in config.args if each.endswith(".py")}
+    long_tests = [
+        item for item in items if item.get_closest_marker(LONG) and item.path not in named
+    ]
+    if not config.getoption("--tenth"):
+        return set(long_tests)
+    draw = random.Random(f"{seed(config)} {LONG}")
+    return set(draw.sample(long_tests, len(long_tests) * 9 // 10))
 
 
 def _mark(rows: list[pytest.Item]) -> pytest.Mark:
@@ -73,7 +91,8 @@ def said(config: pytest.Config) -> str:
     """Return how the rows of this run are run again, or nothing where it has all."""
     if config.getoption("--whole") or is_narrowed(config):
         return ""
-    return f"rows of a sample: --sample {seed(config)} draws the same again, --whole takes all"
+    tenth = " --tenth" if config.getoption("--tenth") else ""
+    return f"a sample: --sample {seed(config)}{tenth} draws the same again, --whole takes all"
 
 
 def is_narrowed(config: pytest.Config) -> bool:
