@@ -9,15 +9,18 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import cast
 
 import pytest
 
 from tests.support.command import Tsc
 from tiniscript.base import files
 from tiniscript.link import met_robots
-from tiniscript.link.authority import RobotKey
+from tiniscript.link.authority import RobotKey, disown
 from tiniscript.link.keys import MOST_KEYS, BadKeys, KeyFile, encode_keys
-from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
+from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, STATUSES
+from tiniscript.link.payloads import EmptyReply, HelloReply
+from tiniscript.link.requests import OK, DeviceInfo, Reply
 
 ONE = RobotKey(0x12345678, KEY_OWNER, bytes(range(16)), "TINI")
 SECRET = ONE.key.hex()
@@ -237,6 +240,26 @@ def test_claims_that_were_left_leave_few_keys() -> None:
     robot_keys = key_file.of_robot(ONE.id)
     assert sorted(key.which for key in robot_keys) == [0, 0, 1, 1]
     assert robot_keys[-1] == last._replace(is_stale=True) and key_file.of_robot(7) == [other]
+
+
+@pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
+@pytest.mark.parametrize("status", [OK, STATUSES["NOT_OWNER"]])
+def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, which: int, status: int) -> None:
+    """The other one it still has, and so has this computer; a refused one stays."""
+    ring = [
+        ONE._replace(id=robot, which=kind, key=bytes([robot % 256, kind] * 8))
+        for robot in (ONE.id, 7)
+        for kind in (KEY_OWNER, KEY_TEACHER)
+    ]
+    key_file.add(ring)
+    robot = DeviceInfo("TINI", ONE.id, (2, 1), 0, 389, cast(HelloReply, None))
+    exchange = disown(key_file, robot, which)
+    next(exchange)
+    with pytest.raises(StopIteration):
+        exchange.send(Reply(status, 0, EmptyReply()))
+    kept = {(key.id, key.which) for key in key_file.all()}
+    gone = {(key.id, key.which) for key in ring} - kept
+    assert gone == ({(ONE.id, which)} if status == OK else set())
 
 
 PLACE = "tcp://ana"

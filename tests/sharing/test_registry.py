@@ -170,3 +170,25 @@ def test_who_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> 
     assert first is not None and second is not None
     first.close()
     has_one_owner([second])
+
+
+@pytest.mark.parametrize("other", ["school2", "school-2", "s", "school.local"])
+@pytest.mark.parametrize("does", ["tidies", "finds", "registers", "leaves"])
+def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
+    does: str, other: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether somebody listens at its number can be asked there alone."""
+    there = dead()
+    monkeypatch.setattr(registry, "gethostname", lambda: other)
+    registry.write(there)
+    monkeypatch.setattr(registry, "gethostname", lambda: "school")
+    own = registration(there.number, "live")
+    acts: dict[str, Callable[[], object]] = {
+        "tidies": registry.tidy,
+        "finds": registry.find_all,
+        "registers": lambda: registry.write(own),
+        "leaves": lambda: registry.remove(own),
+    }
+    acts[does]()
+    monkeypatch.setattr(registry, "gethostname", lambda: other)
+    assert registry.find_registration(PORT) == there

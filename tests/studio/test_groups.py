@@ -24,6 +24,7 @@ from tiniscript.together.form import data_of_change
 from tiniscript.together.page import Page
 
 Json = dict[str, Any]
+NAMES = ("Ana", "Luz", "Teo", "Eva", "Ivo")
 TEXT = "F(1, 80)\nLOOP(3)\nB(1, 40)\nEND_LOOP\nS\n"
 
 
@@ -397,6 +398,34 @@ def test_who_joins_a_group_brings_the_earlier_place(school: School) -> None:
     school.made.answer(luz, HERE, {"do": "group_join", "name": "Red", "text": ""})
     assert school.here(ana.token)["place"] == school.here(luz)["place"] == 1
     assert school.here(teo)["waiting"] == 2
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: int) -> None:
+    """Whoever joins it or leaves it, waits or drives, and in which order."""
+    chance, school = Random(seed), School(tmp_path, robots=2)
+    members = [Member(school, name, name) for name in NAMES]
+    for step in range(60):
+        member = chance.choice(members)
+        does = chance.choice(("wish", "wish", "connect", "join", "leave", "next"))
+        if does == "wish":
+            school.here(member.token, chance.random() < 0.8)
+        elif does == "connect" and school.here(member.token)["place"] == 0:
+            with suppress(BadRequest):
+                school.connects(member.token)
+        elif does == "join":
+            member.joins(chance.choice(("Red", "Blue", "Green")))
+        elif does == "leave":
+            member.asks("group_leave")
+        elif does == "next":
+            school.now_s += chance.choice((1, 70))
+            school.teaches("class_next", pupil=school.number(member.name))
+        made = school.made
+        for pupil in made._pupils.values():
+            mates = made._mates(pupil)
+            turns = [turn for turn in map(made._turn, mates) if turn is not None]
+            waiting = [mate for mate in mates if mate.waits is not None]
+            assert len(turns) + len(waiting) <= 1, f"step {step}: {does} {member.name}"
 
 
 def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:

@@ -428,8 +428,11 @@ class Classroom:
         answer = self._groups.join(pupil.token, pupil.name, request)
         mates = self._mates(pupil)
         places = [mate.waits for mate in mates if mate.waits is not None]
-        for mate in mates:  # from now on they have one place
+        for mate in mates:  # from now on they have one place, and one robot
             mate.waits = None
+        own_turn = self._turn(pupil)
+        if own_turn is not None and self._turn_of(mates[1:]) is not None:
+            own_turn.take_back()
         if places and self._turn_of(mates) is None:
             pupil.waits = min(places)
         return answer
