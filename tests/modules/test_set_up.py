@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import deque
+from itertools import product
 
 import pytest
 
@@ -249,6 +250,36 @@ def test_a_module_that_refuses_is_not_said_to_have_done_it() -> None:
     assert [outcome.how for outcome in outcomes] == [set_up.UNSEEN, set_up.REFUSED]
     assert outcomes[-1].said == "ERROR:(7)"
     assert (end.pin, end.baud) == ("1234", 9600)
+
+
+@pytest.mark.parametrize(
+    "forms", [*product(("keeps", "cuts", "changes nothing", "refuses", "is silent"), repeat=2)]
+)
+@pytest.mark.parametrize("kind", [Hc05, Hc05New])
+def test_what_is_told_of_a_pin_is_what_the_module_has(
+    kind: type[Hc05], forms: tuple[str, str]
+) -> None:
+    """Whatever it does with either form: with quotes, and without."""
+
+    class Quirky(kind):  # type: ignore[misc, valid-type]
+        def answer(self, command: str) -> str:
+            if not command.startswith("AT+PSWD="):
+                return str(super().answer(command))
+            sent = command.partition("=")[2]
+            does = forms[sent[:1] != '"']
+            if does in ("keeps", "cuts"):
+                self.pin = sent[: 3 if does == "cuts" else None]
+            return {"refuses": "ERROR:(1D)\r\n", "is silent": ""}.get(does, "OK\r\n")
+
+    end = Quirky()
+    (outcome,) = ended(SimulatedWire(end), WantedSettings(pin="4321"))
+    has = end.pin.strip('"') if kind is Hc05New else end.pin
+    if outcome.how == set_up.DONE:
+        assert has == "4321"
+    elif outcome.how == set_up.DIFFERS:
+        assert outcome.said.strip('"') == end.pin.strip('"') and has != "4321"
+    else:
+        assert outcome.how in (set_up.REFUSED, set_up.SILENT) and end.pin == kind.pin
 
 
 def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
