@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import permutations
 from pathlib import Path
 
 import pytest
@@ -298,6 +299,21 @@ def test_a_task_is_needed_or_not(tmp_path: Path, word: str, task: str) -> None:
     assert f"just as well without the {word}" in found
     (found,) = said(lesson, "BEEP(0.1, 440)")
     assert f"does not use {word}. Use it here: {word}" in found
+
+
+def test_what_one_world_needs_is_needed_in_whichever_order_they_come(tmp_path: Path) -> None:
+    needs = (
+        '[[criteria]]\nkind = "beeps"\ntimes = 2\n[[criteria]]\nkind = "needs"\nwords = ["LOOP"]\n'
+    )
+    lesson = lesson_of(tmp_path, needs)
+    beep = "BEEP(0.1, 440)"
+    text = f"IF(RANDOM(1, 3) = 1);LOOP(2);{beep};END_LOOP;ELSE;{beep};{beep};ENDIF"
+    worlds = {seed: not findings_of(text, lesson, [seed]) for seed in range(1, 9)}
+    needing = [seed for seed in worlds if worlds[seed]][:1]
+    others = [seed for seed in worlds if not worlds[seed]][:2]
+    assert [finding.kind for finding in findings_of(text, lesson, others)] == ["needs"]
+    for seeds in permutations(needing + others):
+        assert not findings_of(text, lesson, seeds), seeds
 
 
 def test_a_question_of_when_keeps_the_robot(tmp_path: Path) -> None:

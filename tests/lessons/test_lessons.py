@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -39,7 +40,7 @@ def name_of(value: object) -> str:
     return value.name if isinstance(value, Path) else value.labels["en"].replace(" ", "_")  # type: ignore[attr-defined]
 
 
-def findings_of(text: str, lesson: Lesson, seeds: range) -> list[Finding]:
+def findings_of(text: str, lesson: Lesson, seeds: Sequence[int]) -> list[Finding]:
     """Return what is missing in the first world where something is, or in the text."""
     from tiniscript.lessons.marking import Marking
 
