@@ -169,7 +169,7 @@ def test_nobody_something_else_and_another_version(
         )
     pty_robot.switch_off()
     tsc("doctor", "--identify", "--port", pty_robot.port).gives(3, "nothing answers")
-    sketch = "another sketch, not the TiniScript firmware. It says: Hello from a sketch. Put"
+    sketch = "another sketch, not the TiniScript firmware. It sends: Hello from a sketch. Put"
     for said, answer in (
         (b"Hello from a sketch\r\n", sketch), (bytes(range(1, 256)) * 3, "not TiniScript"),
         (b"\xff" * 99, "not TiniScript. Perhaps it uses another baud rate"),

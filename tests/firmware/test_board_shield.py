@@ -220,7 +220,7 @@ def test_what_takes_the_shields_pins_is_named() -> None:
     beeping = four.replace("start_button = 2", 'start_button = 2\nbuzzer = "A5"')
     assert told(beeping) == [
         f"board.motors.left: the speed of {motor} is the PWM of pin {pin}, which needs timer 2,"
-        " but board.buzzer uses that. Leave one of the two out."
+        " but board.buzzer already uses that timer. Leave one of the two out."
         for motor, pin in (("M1", 11), ("M2", 3))
     ]
     assert read(beeping.replace("M1 M2", "M3").replace("M3 M4", "M4"), "test").board.buzzer == 19
@@ -228,7 +228,7 @@ def test_what_takes_the_shields_pins_is_named() -> None:
     assert read(servo, "test").board.actuators[0].pins == {"pin": 9}, "where the shield has it"
     assert told(servo.replace('"uno"', '"mega"')) == [
         "board.motors.left: the speed of M1 is the PWM of pin 11, which needs timer 1,"
-        " but board.actuators.ARM.pin uses that. Leave one of the two out."
+        " but board.actuators.ARM.pin already uses that timer. Leave one of the two out."
     ]
     assert told(four.replace("start_button = 2", "start_button = 12")) == [
         "board.motors.driver: the shield uses pin 12 for LATCH, but board.start_button already"

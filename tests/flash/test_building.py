@@ -136,7 +136,7 @@ def test_a_firmware_with_breakpoints_is_kept_beside_the_other_one(clone: Path) -
         assert done.out.startswith("tinibot on uno: ready, ")
         variables = {}  # PlatformIO could build nothing now
     assert [each.title for each in ready.files(ready.cache())] == ["tinibot_breakpoints"]
-    assert "tinibot on uno: will be built the first time" in tsc(clone, "--list").out
+    assert "tinibot on uno: not built yet" in tsc(clone, "--list").out
 
 
 @pytest.mark.parametrize(("words", "said"), [
@@ -169,7 +169,7 @@ def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
     (folder / ready.name_of("tinibot", "nano", digest)).write_text(":00000001FF\n")
     rows = tsc(clone, "--list").out.splitlines()
     assert rows[:2] == [
-        "tinibot on uno: ready, 0 bytes", "tinibot on nano: will be built the first time"
+        "tinibot on uno: ready, 0 bytes", "tinibot on nano: not built yet"
     ]  # fmt: skip
 
 

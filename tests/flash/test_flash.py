@@ -381,7 +381,7 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
     ]  # fmt: skip
     for each in files:
         assert f"{each.title} on {each.board}: ready, {each.bytes:,} bytes" in done.out
-    assert "liner on nano: will be built the first time" in done.out
+    assert "liner on nano: not built yet" in done.out
 
 
 @pytest.mark.parametrize(("words", "said"), [

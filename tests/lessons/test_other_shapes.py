@@ -168,7 +168,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "F(2.59, 60); R(0.417, 60); SEEN = DISTANCE; L(0.417, 60); IF(SEEN < 60); L(0.417, 60); ELSE; R(0.417, 60); END_IF; F(2.4, 60)": "",
         },
         "rote": {
-            "SI|IF(DISTANCE < 30); BEEP(0.3, 220); ELSE; BEEP(0.3, 880); ENDIF": "The robot did not move. Add a move with time and power: F(2, 80)",
+            "SI|IF(DISTANCE < 30); BEEP(0.3, 220); ELSE; BEEP(0.3, 880); ENDIF": "The robot did not move. Add a move with a time and a power: F(2, 80)",
         },
         "wrong": {
             "F(2.59, 60); R(0.417, 60); IF(DISTANCE < 60); L(0.833, 60); END_IF; F(1, 60)": "At the end the robot was 38 cm from the exit",

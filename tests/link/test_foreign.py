@@ -217,7 +217,7 @@ def test_a_connection_says_what_answers_instead_of_a_robot(recording: Recording)
     assert reason_of(line, Reply(LOST)) == FOREIGN
     line.is_echoed = True
     assert reason_of(line, Reply(LOST)) == FOREIGN
-    for language, word in (("en", "It says: "), ("es", "Dice: "), ("pt", "Ele diz: ")):
+    for language, word in (("en", "It sends: "), ("es", "Envía: "), ("pt", "Envia: ")):
         answer = RobotLink(line, language)._failure(Reply(LOST))
         assert answer["failure"] == FOREIGN
         assert word + recording.said[:20] in answer["said"] and answer["advice"]

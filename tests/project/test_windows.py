@@ -58,7 +58,7 @@ def test_an_output_that_windows_would_lose_is_refused(
     monkeypatch.chdir(tmp_path)
     Path("prog.ts").write_text(PROGRAM)
     monkeypatch.setattr(sys, "platform", "win32")
-    for language, said in (("en", "no file of this name"), ("es", "este nombre")):
+    for language, said in (("en", "file with this name"), ("es", "este nombre")):
         done = tsc("compile", "prog.ts", "-o", "aux.bin", "--lang", language)
         assert done.code == 2
         assert said in done.err

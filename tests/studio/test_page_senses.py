@@ -166,7 +166,7 @@ def test_the_robots_button_ends_them_and_then_starts_its_program(
     said(page, "The robot has it.")
     watch(page)
     robot.push()
-    said(page, "The robot’s button stopped the sensors.")
+    said(page, "The robot’s button ended “Watch the sensors”.")
     rests(page)
     robot.push()
     robot.until(lambda: robot.moves, "it drives")

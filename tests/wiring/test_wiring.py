@@ -227,7 +227,7 @@ def test_what_a_robot_does_not_have_is_not_said() -> None:
     assert "tsc doctor --module" not in said["tinibot"]
     assert "STATE tells" in said["tinibot"]
     assert "STATE stays unconnected" in said["liner"]
-    assert "resistors of 10 kΩ at STBY" in said["liner"]
+    assert "10 kΩ resistors at STBY" in said["liner"]
     assert "Unplug the HC-05" in said["liner"]
 
 
