@@ -157,7 +157,7 @@ KINDS: dict[str, Kind] = {
     "beeps": Kind("its buzzer sounds `times` times, at `pitches` different pitches; with `at`, within `within_cm` of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN), places=1, may_be_anywhere=True),
     "blinks": Kind("it switches `what` on `times` times while it moves", (TIMES,), words="switch"),
     "order": Kind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
-    "obeys": Kind("it does what the keys say: it goes forward for KEY_UP and back for KEY_DOWN, turns for KEY_LEFT and KEY_RIGHT, beeps for KEY_A and KEY_B, and stands while nothing is held"),
+    "obeys": Kind("it obeys the keys: it goes forward for KEY_UP and back for KEY_DOWN, turns for KEY_LEFT and KEY_RIGHT, beeps for KEY_A and KEY_B, and stands still while nothing is held"),
     "ends": Kind("the program ends by itself"),
     "uses": Kind("the text has each of these words `times` times; a DEF counts if it is called, a LOOP if it repeats more than a wait, an UNTIL if it checks something", (TIMES,), words="word"),
     "needs": Kind("the program needs these words, LOOP, DEF, WHEN or TASK: the robot fails one of the criteria above if each loop runs only once, if the words defined by DEF are left out, or if the other tasks are", words="block"),
