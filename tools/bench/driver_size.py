@@ -1,4 +1,4 @@
-"""Prints how much flash each driver of motors takes on an Uno, beside what `tinibot` takes with it.
+"""Prints how much flash each motor driver takes on an Uno, beside what `tinibot` takes with it.
 
 Builds tinibot with PlatformIO as `firmware_size` does, in a copy of the project, once for each
 driver, with its distance sensor where no shield has pins. What does not fit is what `tsc firmware`

@@ -31,9 +31,9 @@ NEAR_CM = 15.0
 TRUSTS = "#define tiniscript_trusts_samples\n"
 ROWS = (
     "wrong readings, one wrong sample in fifty",
-    "runs of 3 s with a wrong reading",
+    "3 s runs with a wrong reading",
     "until it knows that an obstacle at 50 cm/s is near: median, most",
-    "until it knows of one that is suddenly there: median, most",
+    "until it knows of one that suddenly appears: median, most",
 )
 
 

@@ -82,7 +82,7 @@ GOALS: tuple[Goal, ...] = (
          "damaged frames", 10_000_000, 2_000_000, "tests.link.test_damaged_frames {count} --large --seed {seed}", _FRAMES),
     Goal("field", "Whatever people, apps and radio modules have sent, a correct line runs or an answer says why not; a glitch never runs another program; a person and a computer on one port are both heard.",
          "robots of each kind", 100_000, 3_000, "tests.link.test_field {count} --seed {seed}", (*_ROBOT, *_FRAMES), 1000),
-    Goal("pieces", "The guarantee for uploads also holds over radios that send pieces of 20 bytes, with pauses of up to 1.5 s between them.",
+    Goal("pieces", "The guarantee for uploads also holds over radios that send 20-byte pieces, with pauses of up to 1.5 s between them.",
          "uploads", 10_000, 300, f"{_CHANNEL} {{count}} --pieces --seed {{seed}}", _UPLOADS, 1000),
     Goal("typed-stops", "The receiver recognizes a typed stop after any bytes, and never sees one in a frame that arrives intact.",
          "prefixes, and a hundred frames of each", 1_000_000, 100_000, "tests.link.test_typed_stops {count} --seed {seed}", _FRAMES),
