@@ -50,7 +50,7 @@ def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_p
     changed = recordings.line(show), recordings.line(show._replace(event="SHOW 100"))
     file.write_text(file.read_text().replace(*changed))
     other = tsc("run", file, "--lang", "es").gives(1)
-    assert "Línea 2: el archivo dice 100 a los 1.0 s, y esta vez el robot virtual" in other.err
+    assert "Línea 2: la grabación tiene 100 a los 1.0 s, y esta vez el robot virtual" in other.err
     assert f"hizo {show.event[5:]} a los 1.0 s" in other.err
 
 

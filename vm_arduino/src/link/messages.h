@@ -168,7 +168,7 @@ enum class Answer : uint8_t {
   kBadValue = 66,  // A message asked for something that does not exist.
   kStale = 67,  // The robot was stopped or restarted after this was sent, so it did not do it.
   kOtherLink = 68,  // The robot uses version {detail} of the link; this tsc uses another one.
-  kOtherMachine = 69,  // The robot runs programs of version {version}; this program has another version.
+  kOtherMachine = 69,  // The robot runs programs of version {version}; this program is for another version.
   kWrongKit = 70,  // The program is for another kit; this robot's kit is {kit}.
   kTooLarge = 71,  // The program is too large: the robot has room for {detail} bytes of code.
   kBusy = 72,  // The robot is still saving the last program.
