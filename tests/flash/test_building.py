@@ -168,9 +168,8 @@ def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
     (folder / ready.name_of("tinibot", "uno", digest)).write_text(":00000001FF\n")
     (folder / ready.name_of("tinibot", "nano", digest)).write_text(":00000001FF\n")
     rows = tsc(clone, "--list").out.splitlines()
-    assert rows[:2] == [
-        "tinibot on uno: ready, 0 bytes", "tinibot on nano: not built yet"
-    ]  # fmt: skip
+    assert rows[0] == "tinibot on uno: ready, 0 bytes"
+    assert rows[1].startswith("tinibot on nano: not built yet")
 
 
 @pytest.mark.parametrize(("titles", "spanish", "english"), [
