@@ -166,6 +166,17 @@ def test_backspace_edits_what_is_typed() -> None:
     assert typed(robot, "F(0.2,50)\b\n", 400) == ["// 10: Unknown sign"]
 
 
+@pytest.mark.parametrize("begun", ["\x1b", "\x1b[", "\x1bO", "\x1b[1", "\x1b[1;", "\x1b[1;5"])
+@pytest.mark.parametrize("stop", ["S", "STOP", "s;", "ALTO"])
+def test_after_a_second_nothing_belongs_to_a_key_that_has_begun(begun: str, stop: str) -> None:
+    """A terminal has sent a part of a cursor key; who then stops the robot is heard."""
+    robot = switched_on()
+    assert typed(robot, "F(60, 80)\n", 100) == ["// OK"]
+    typed(robot, begun, 1100)
+    typed(robot, f"{stop}\n", 300)
+    assert happened(robot)[-1] == "MOTORS 0 0"
+
+
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_who_makes_many_mistakes_is_told_that_once(language: str) -> None:
     """And is answered again after a pause."""
