@@ -13,6 +13,7 @@ import { pictureOf } from './picture.js';
 import { Search } from './search.js';
 import { look } from './styles.js';
 import { found, levelOf, toolbox } from './toolbox.js';
+import { zoomOf } from './zoom.js';
 import { text, textsOf } from '../page/texts.js';
 
 /** @import { Form, Range } from './form.js' */
@@ -67,6 +68,8 @@ export class Blocks {
   #fault = { id: '', said: '' };
   /** @type {Search | null} */
   #search = null;
+  /** @type {HTMLElement | null} */
+  #zoom = null;
   /** @type {Finding[]} */
   #findings = [];
 
@@ -202,7 +205,7 @@ export class Blocks {
       collapse: false,
       disable: false,
       move: { scrollbars: true, drag: true, wheel: true },
-      zoom: { controls: Boolean(this.#told) && !isNarrow, wheel: false, pinch: true, startScale: SCALE, minScale: 0.4, maxScale: 1.6 },
+      zoom: { controls: false, wheel: Boolean(this.#told), pinch: true, startScale: SCALE, minScale: 0.4, maxScale: 1.6 },
     }));
     if (before) common.setMainWorkspace(before);
     if (this.#told) {
@@ -210,6 +213,9 @@ export class Blocks {
       this.#search = new Search(workspace, (words) => found(words, this.#used));
       this.#place.prepend(this.#search.place);
       this.#search.fit();
+      this.#zoom?.remove();
+      this.#zoom = zoomOf(workspace, SCALE);
+      this.#place.append(this.#zoom);
       this.#insertByKeys(workspace);
     }
     workspace.MAX_UNDO = 0;
