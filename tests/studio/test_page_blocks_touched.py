@@ -332,6 +332,32 @@ def test_a_list_of_blocks_goes_with_the_block_that_is_dragged_out_of_it(
     becomes_other(page, "SI|S;\n")
 
 
+# Whether nothing of another pile is before the middle of a block.
+IS_SEEN = """(path) => {
+  const {left, top, width, height} = path.getBoundingClientRect();
+  const front = document.elementFromPoint(left + width / 2, top + height / 2);
+  return path.parentNode.contains(front);
+}"""
+
+
+def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
+    start(
+        page, "SI|S\n\nDEF A_LONG_WORD\n  BEEP(0.1, 440)\nEND_DEF\n\n/// SHOW(DISTANCE);\n", "all"
+    )
+    value, pile = block(page, "distance"), block(page, "new word")
+    a, b = box_of(value), box_of(pile)
+    page.mouse.move(a["x"] + 5, a["y"] + a["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(b["x"] + 25, b["y"] + b["height"] / 2 + 8, steps=8)
+    page.mouse.up()
+    page.locator("#blocks[data-state=shown]").wait_for()
+    assert abs(box_of(value)["x"] - b["x"]) < 40  # it lies on the hat, and hangs on nothing
+    page.mouse.click(b["x"] + 6, b["y"] + b["height"] - 8)
+    page.locator("#blocks .alone").first.wait_for(state="attached")
+    in_phase(page, "ended")
+    assert path_of(value).evaluate(IS_SEEN)
+
+
 # -- nothing over blocks ---------------------------------------------------------------------------
 
 

@@ -212,7 +212,7 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         is_phone = page.locator("html[data-phone]").count()
         name = page.locator("#lesson_name" if is_phone else "#lesson selectedcontent span")
-        title = catalogue.load(FOLDERS[number - 1]).titles["en"]
+        title = catalogue.load(FOLDERS[number - 1]).title("en")
         assert name.inner_text().removeprefix(f"{number}. ").removesuffix(" ✓ done") == title
         assert name.evaluate("e => e.scrollHeight <= e.clientHeight + 1"), number
     box = page.locator("#arena").bounding_box()

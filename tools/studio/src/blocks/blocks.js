@@ -226,6 +226,7 @@ export class Blocks {
         const block = workspace.getBlockById(event.blockId ?? '');
         if (block) this.#try(this.#told, block, false);
       }
+      if (event.type === Blockly.Events.SELECTED || event.type === Blockly.Events.CLICK || event.type === Blockly.Events.BLOCK_DRAG) keepSeen(workspace);
       if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closed = this.#saidAt(event.blockId);
       if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
       follow(workspace, event);
@@ -546,6 +547,18 @@ export class Blocks {
 /** @param {import('./form.js').FormBlock[]} blocks @returns {import('./form.js').FormBlock[]} */
 function inOrder(blocks) {
   return blocks.flatMap((block) => [block, ...block.bodies.flatMap(inOrder)]);
+}
+
+/** Blockly brings what is touched to the front: smaller piles that it would hide stay before it. @param {Blockly.WorkspaceSvg} workspace */
+function keepSeen(workspace) {
+  const front = Blockly.getFocusManager().getFocusedNode();
+  const pile = front instanceof Blockly.BlockSvg && front.workspace === workspace && !workspace.isDragging() ? front.getRootBlock() : null;
+  if (!pile) return;
+  const whole = pile.getBoundingRectangle(), size = (/** @type {Blockly.utils.Rect} */ rect) => rect.getWidth() * rect.getHeight();
+  for (const other of workspace.getTopBlocks(false)) {
+    const rect = other.getBoundingRectangle();
+    if (other !== pile && size(rect) < size(whole) && rect.intersects(whole)) workspace.getCanvas().append(other.getSvgRoot());
+  }
 }
 
 /** @param {string} message */
