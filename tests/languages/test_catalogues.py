@@ -80,8 +80,8 @@ def test_what_messages_call_the_values_of_words_is_a_term() -> None:
 
 
 def test_the_names_in_toml_files_are_translated() -> None:
-    titles = catalogue.load(catalogue.folders()[0]).titles
-    assert [titles[each] for each in ("en", "es", "tlh")] == [
+    lesson = catalogue.load(catalogue.folders()[0])
+    assert [lesson.title(each) for each in ("en", "es", "tlh")] == [
         "The first line", "La primera línea", "The first line",
     ]  # fmt: skip
     labels = robots.load("liner").labels

@@ -95,7 +95,7 @@ def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
     page = catalogue.page(folder, catalogue.PUPIL, language)
     found = blocks(page)
     assert found[0].kind == "title"
-    assert found[0].rows[0][0] == f"{number}. {lesson.titles[language]}"
+    assert found[0].rows[0][0] == f"{number}. {lesson.title(language)}"
     assert sum(block.kind in ("title", "heading") for block in found) == HEADINGS
     steps = [block for block in found if block.kind == "steps"]
     assert [

@@ -605,8 +605,8 @@ const PARTS = {
         const own = verdict;
         await later(late());
         if (request.do === 'lesson_titles') return { lessons: LESSONS };
-        if (request.do === 'lesson_steps') return { steps: [{ blocks: [], hint: '' }], taught: [] };
-        return { verdict: isLast ? own : '', seed: 1, worlds: 2, said: ['said'], run: isLast && own === 'failed' ? { seed: 1, until_ms: 9 } : null };
+        if (request.do === 'lesson_steps') return { steps: [{ blocks: [], hint: '' }], block_steps: [{ blocks: [], hint: '' }], taught: [] };
+        return { verdict: isLast ? own : '', seed: 1, worlds: 2, said: ['said'], block_said: ['said'], spoken: {}, run: isLast && own === 'failed' ? { seed: 1, until_ms: 9 } : null };
       },
     };
     let stops = () => {};
@@ -1346,8 +1346,9 @@ const PARTS = {
           throw new Broken();
         }
         if (what === 'lesson_titles') return { lessons: LESSONS };
-        if (what !== 'lesson_steps') return { verdict: 'passed', seed: 1, worlds: 1, said: [], run: null };
-        return { steps: Array.from({ length: 4 - number }, () => ({ blocks: [], hint: `of ${number}` })), taught: [`of ${number}`] };
+        if (what !== 'lesson_steps') return { verdict: 'passed', seed: 1, worlds: 1, said: [], block_said: [], spoken: {}, run: null };
+        const steps = Array.from({ length: 4 - number }, () => ({ blocks: [], hint: `of ${number}` }));
+        return { steps, block_steps: steps, taught: [`of ${number}`] };
       },
     };
     let may = 0; // see a world that follows from what was pressed

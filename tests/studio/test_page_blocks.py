@@ -214,8 +214,7 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
     """Also where the focus is on a block, which goes with all others and comes again."""
     long = "SI|" + "".join(f"F({k % 9 + 1}, 80);\n" for k in range(30))
     start(page, long)
-    zoom = page.locator("#blocks .blocklyZoomIn")
-    zoom.dispatch_event("pointerdown")
+    page.locator(".zoom button").nth(1).click()
     page.mouse.move(600, 300)
     page.mouse.wheel(0, 500)
     page.evaluate(SETTLED)
@@ -245,7 +244,7 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
     shown(page)
     assert box_of(block(page, "forward"))["height"] == pytest.approx(high, abs=1)
     page.click("#words")
-    page.locator("#blocks .blocklyZoomReset").dispatch_event("pointerdown")
+    page.locator(".zoom button").nth(0).click()
     shown(page)
 
 

@@ -12,6 +12,7 @@ from tests.studio.test_page_blocks import (
     FLYOUT,
     PROGRAM,
     becomes,
+    becomes_other,
     block,
     box_of,
     meet,
@@ -308,6 +309,98 @@ def test_a_block_is_found_by_its_words(page: Page, language: str, words: dict[st
     assert page.input_value(".search input") == ""
     assert axe(page, within="#writing") == []
     speak(page, "en")
+
+
+@pytest.mark.parametrize("way", ["search", "group"])
+def test_a_list_of_blocks_goes_with_the_block_that_is_dragged_out_of_it(
+    page: Page, way: str
+) -> None:
+    start(page, "SI|S;\n", "few")
+    if way == "search":
+        page.fill(".search input", "repeat")
+    else:
+        page.locator(".blocklyToolboxCategory", has_text="Repeat").click()
+    source = page.locator(FLYOUT).filter(has_text="repeat").first
+    source.wait_for()
+    box = box_of(source)
+    page.mouse.move(box["x"] + 8, box["y"] + 10)
+    page.mouse.down()
+    page.mouse.move(700, 400, steps=8)
+    page.mouse.up()
+    page.locator(".blocklyFlyout:visible").wait_for(state="detached")
+    assert page.input_value(".search input") == ""
+    becomes_other(page, "SI|S;\n")
+
+
+# Whether nothing of another pile is before the middle of a block.
+IS_SEEN = """(path) => {
+  const {left, top, width, height} = path.getBoundingClientRect();
+  const front = document.elementFromPoint(left + width / 2, top + height / 2);
+  return path.parentNode.contains(front);
+}"""
+
+
+def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
+    start(
+        page, "SI|S\n\nDEF A_LONG_WORD\n  BEEP(0.1, 440)\nEND_DEF\n\n/// SHOW(DISTANCE);\n", "all"
+    )
+    value, pile = block(page, "distance"), block(page, "new word")
+    a, b = box_of(value), box_of(pile)
+    page.mouse.move(a["x"] + 5, a["y"] + a["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(b["x"] + 25, b["y"] + b["height"] / 2 + 8, steps=8)
+    page.mouse.up()
+    page.locator("#blocks[data-state=shown]").wait_for()
+    assert abs(box_of(value)["x"] - b["x"]) < 40  # it lies on the hat, and hangs on nothing
+    page.mouse.click(b["x"] + 6, b["y"] + b["height"] - 8)
+    page.locator("#blocks .alone").first.wait_for(state="attached")
+    in_phase(page, "ended")
+    assert path_of(value).evaluate(IS_SEEN)
+
+
+# -- nothing over blocks ---------------------------------------------------------------------------
+
+
+WIDE = "IF(DISTANCE < 20 AND LIGHT_L > 10 AND LIGHT_R > 10)\n  BEEP(0.1, 440)\nENDIF\n"
+# Each control that lies over a block of the program, as far as that one is seen.
+COVERED = """() => {
+  const inside = (a, b) => a.left < b.right - 1 && b.left < a.right - 1
+    && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+  const box = (each) => each.getBoundingClientRect();
+  const {top, right, bottom} = box(document.querySelector('#blocks .injectionDiv > .blocklySvg'));
+  const view = {left: box(document.querySelector('.blocklyToolbox')).right, top, right, bottom};
+  const program = '#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas .blocklyPath';
+  const blocks = [...document.querySelectorAll(program)]
+    .map(box).filter((each) => inside(each, view)).map(({left, top, right, bottom}) => ({
+      left: Math.max(left, view.left), top: Math.max(top, view.top),
+      right: Math.min(right, view.right), bottom: Math.min(bottom, view.bottom)}));
+  const kinds = 'button, select, input, .blocklyZoom, .blocklyTrash';
+  return [...document.querySelectorAll(kinds)]
+    .filter((each) => each.checkVisibility({visibilityProperty: true}))
+    .filter((each) => blocks.some((block) => inside(box(each), block)))
+    .map((each) => each.id || each.outerHTML.slice(0, 60));
+}"""
+
+
+@pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (820, 1180), (390, 844)], ids=str)
+def test_no_control_lies_over_a_block_of_a_program(page: Page, size: tuple[int, int]) -> None:
+    """Also where blocks are as wide and as high as what is seen of them."""
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.evaluate(SETTLED)
+    if page.locator("html[data-phone][data-half=robot]").count():
+        page.click("#other")
+    start(page, "SI|" + 8 * WIDE, "all")
+    assert page.evaluate(COVERED) == []
+    if page.locator(".zoom").is_visible():
+        width = box_of(block(page, "beep"))["width"]
+        page.locator(".zoom button").nth(1).click()
+        page.evaluate(SETTLED)
+        assert box_of(block(page, "beep"))["width"] > width
+        assert page.evaluate(COVERED) == []
+        page.locator(".zoom button").nth(0).click()
+        page.evaluate(SETTLED)
+        assert box_of(block(page, "beep"))["width"] == pytest.approx(width, abs=1)
+    assert page.locator(".zoom").is_visible() == (size[0] >= 1000)
 
 
 # -- the keyboard alone ----------------------------------------------------------------------------

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.lessons.test_forms import has_line_on_floor, of_text
 from tests.studio.test_page_blocks import drag, offered, start
 from tests.support.studio import SETTLED, Pages, axe, shown, speak
+from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 from tiniscript.studio import page_lessons
 from tiniscript.studio.block_kinds import KINDS
@@ -126,22 +128,57 @@ def test_a_lesson_speaks_as_its_reader_writes(page: Page) -> None:
     page.locator("#blocks .blocklyBlock", has_text="repite").first.wait_for()
 
 
+# What somebody reads of a step, and its codes that are not on a block.
+READ = """() => {
+  const page = document.querySelector('#lessons').cloneNode(true);
+  for (const each of page.querySelectorAll('.program, #lesson')) each.remove();
+  const codes = [...page.querySelectorAll('code')].map((each) => each.textContent);
+  const onBlocks = [...page.querySelectorAll('.on_block')].map((each) => each.textContent);
+  for (const each of page.querySelectorAll('code, .on_block')) each.replaceWith('``');
+  const names = [...document.querySelectorAll('#lesson option')].map((each) => each.textContent);
+  return [page.textContent, codes, onBlocks, names.join('; ')];
+}"""
+# Labels that a place of the table, nothing, a call or the end of a line in a text has left.
+NO_LABEL = re.compile(r"%\d|\{|undefined|\w\(|;|\bEND|^\s*$")
+
+
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_what_a_lesson_names_of_a_block_is_what_the_block_says(page: Page, language: str) -> None:
-    """No label has a place of the table in it, and none is empty."""
+    """Nothing that is read there is of a text; the only codes are names that a program gives."""
     speak(page, language)
     shown(page)
     found = 0
     for number in LESSONS:
         open_lesson(page, number)
+        is_line_on_floor = has_line_on_floor(number)
         for k in range(page.locator("#lesson_steps button").count()):
             page.locator("#lesson_steps button").nth(k).click()
-            said = page.locator("#lessons .on_block").all_text_contents()
-            assert not [
-                each for each in said if not each.strip() or re.search(r"%\d|\{|undefined", each)
-            ]
-            found += len(said)
+            said, codes, on_blocks, names = page.evaluate(READ)
+            assert of_text(said, language, is_line_on_floor=is_line_on_floor) == []
+            assert of_text(names, language, is_line_on_floor=True) == []
+            assert not [code for code in codes if code in WORDS or not code.isidentifier()], codes
+            assert not [each for each in on_blocks if NO_LABEL.search(each)], on_blocks
+            found += len(on_blocks)
     assert found > 50
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_what_a_check_finds_is_said_as_its_reader_writes(page: Page, language: str) -> None:
+    speak(page, language)
+    start(page, "SI|W(1)\n")
+    open_lesson(page, 1)
+    page.locator("#lesson_steps button").last.click()
+    page.click("#lesson_check")
+    page.locator("#lesson_said[data-verdict=failed]").wait_for()
+    finding = page.locator("#lesson_findings li")
+    assert "F(2, 80)" not in finding.inner_text()
+    assert finding.locator(".on_block").inner_text() == (
+        "forward 2 s at 80 %" if language == "en" else "avanza 2 s al 80 %"
+    )
+    page.click("#view_text")
+    assert "F(2, 80)" in finding.inner_text() and "`" not in finding.inner_text()
+    page.click("#view_blocks")
+    assert finding.locator(".on_block").count() == 1
 
 
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)

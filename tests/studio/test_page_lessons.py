@@ -126,6 +126,26 @@ def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
         assert page.locator("#lesson_end").is_hidden()
 
 
+RUNNING = ".blocklyBlockCanvas .running, .cm-content .running"
+
+
+def test_nothing_is_lit_once_a_run_is_over(page: Page) -> None:
+    """Whether it has come to its end, to what it missed, or was skipped or stopped."""
+    choose(page, 4)
+    write(page, "SI|LOOP(FOREVER)\n  F(0.3, 30)\n  L(0.3, 60)\nEND_LOOP\n")
+    page.select_option("#speed", "1")
+    for view in ("#view_blocks", "#view_text"):
+        page.click(view)
+        for end in ("#lesson_end", "#stop", ""):
+            page.click("#lesson_check")
+            page.locator("#lesson_end", has_text="Skip").wait_for()
+            page.locator(RUNNING).first.wait_for(state="attached")
+            if end:
+                page.click(end)
+            page.locator("#lesson_said[data-verdict=failed]").wait_for()
+            page.locator(RUNNING).first.wait_for(state="detached", timeout=10_000)
+
+
 # Names of lessons that the list does not show whole, if they are chosen.
 CUT_NAMES = """() => {
   const shown = document.querySelector('#lesson selectedcontent span');
@@ -192,7 +212,7 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         is_phone = page.locator("html[data-phone]").count()
         name = page.locator("#lesson_name" if is_phone else "#lesson selectedcontent span")
-        title = catalogue.load(FOLDERS[number - 1]).titles["en"]
+        title = catalogue.load(FOLDERS[number - 1]).title("en")
         assert name.inner_text().removeprefix(f"{number}. ").removesuffix(" ✓ done") == title
         assert name.evaluate("e => e.scrollHeight <= e.clientHeight + 1"), number
     box = page.locator("#arena").bounding_box()

@@ -4,19 +4,33 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from tests.studio.test_page_programs import GOOD
-from tests.support.studio import Pages, checked, hears, image, in_phase, noted, shown, write
+from tests.support.studio import (
+    SETTLED,
+    Pages,
+    checked,
+    hears,
+    image,
+    in_phase,
+    noted,
+    shown,
+    speak,
+    write,
+)
 from tiniscript import compile
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page, Route
+    from playwright.sync_api import Locator, Page, Route
 
 PICTURES = ("dance", "square", "obstacle", "line", "light", "music", "drive")
 START = "html[data-screen=start]"
+
+
+SIZES = ((1366, 768), (1024, 600), (820, 1180), (390, 844))
 
 
 @pytest.fixture
@@ -146,6 +160,38 @@ def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -
     other = pages.visit(f"{pages.address}#program={GOOD[:-8]}")
     noted(other, "The link is incomplete")
     assert screen(other) == "program"
+
+
+NO_MARKS = """() => {
+  const sheet = new CSSStyleSheet();
+  const marks = '#pictures button::before, #pictures button::after';
+  sheet.replaceSync(`${marks} { visibility: hidden !important; }`);
+  document.adoptedStyleSheets = [...document.adoptedStyleSheets, sheet];
+}"""
+
+
+def words_of(name: Locator) -> Any:
+    """Return where a name is, without its edge, which its picture touches."""
+    name.scroll_into_view_if_needed()
+    box = name.evaluate("e => e.getBoundingClientRect().toJSON()")
+    return {**box, "y": box["y"] + 6, "height": box["height"] - 8}
+
+
+def test_no_name_of_a_picture_is_covered(pages: Pages) -> None:
+    """It looks the same without the mark that plays it."""
+    page = pages.open("start", viewport={"width": 1366, "height": 768})
+    names = page.locator("#pictures span")
+    seen: dict[tuple[str, int, int], list[bytes]] = {}
+    sizes = [(language, *size) for language in ("en", "es") for size in SIZES]
+    for language, width, height in (*sizes, *sizes):
+        if (language, width, height) == sizes[0] and seen:
+            page.evaluate(NO_MARKS)
+        page.set_viewport_size({"width": width, "height": height})
+        speak(page, language)
+        page.evaluate(SETTLED)
+        page.mouse.move(2, 2)
+        found = [page.screenshot(clip=words_of(name)) for name in names.all()]
+        assert seen.setdefault((language, width, height), found) == found, (language, width)
 
 
 def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:

@@ -156,7 +156,7 @@ def _index(root: Path, folder: Path, language: str, titles: dict[str, str]) -> s
             if failed:
                 raise SystemExit(failed)
             links.append(f'<a href="{path.as_posix()}">{label}</a>')
-        name = escape(catalogue.load(place).titles[language])
+        name = escape(catalogue.load(place).title(language))
         rows.append(f"<li>{name}: {', '.join(links)}</li>")
     return page(title, "\n".join([*rows, "</ol>"]), language)
 

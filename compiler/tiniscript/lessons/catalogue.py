@@ -11,6 +11,7 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.base.languages import SOURCE_LANGUAGE
+from tiniscript.lessons.forms import TEXT, in_form
 from tiniscript.lessons.lesson import Answer, Criterion, Lesson, LessonRefused
 from tiniscript.lessons.markdown import printed_part
 from tiniscript.lessons.reader import read, read_answers
@@ -97,13 +98,16 @@ def page(folder: Path, who: str, language: str) -> str:
     return printed_part(whole_page(folder, who, language))
 
 
-def whole_page(folder: Path, who: str, language: str) -> str:
-    """Return a page of a lesson with its numbers and its marks. Raises LessonRefused."""
+def whole_page(folder: Path, who: str, language: str, form: str = TEXT) -> str:
+    """Return a page of a lesson with its numbers and its marks, for those who see programs in a
+    form. Raises LessonRefused.
+    """
     paths = [folder / f"{who}.{item}.md" for item in (language, SOURCE_LANGUAGE)]
     path = next((path for path in paths if path.is_file()), None)
     if path is None:
         raise LessonRefused(("no_page", {"file": printable_value(paths[0].name)}))
-    return fill_numbers(_text(path), printable_value(path.name), load(folder))
+    text = in_form(_text(path), form)
+    return fill_numbers(text, printable_value(path.name), load(folder))
 
 
 def answers(folder: Path) -> tuple[list[Answer], list[Answer]]:

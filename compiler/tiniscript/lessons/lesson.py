@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tiniscript.lessons.forms import TEXT, in_form
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.virtual.world import World
 
@@ -88,6 +89,9 @@ class Lesson(NamedTuple):
     variations: tuple[Variation, ...]
     criteria: tuple[Criterion, ...]
     presses: tuple[Press, ...] = ()
+
+    def title(self, language: str, form: str = TEXT) -> str:
+        return in_form(self.titles[language], form)
 
 
 class Answer(NamedTuple):

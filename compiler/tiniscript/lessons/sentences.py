@@ -9,6 +9,7 @@ from tiniscript.base.languages import find_text, text
 from tiniscript.base.source import printable
 from tiniscript.base.words import WORDS
 from tiniscript.lessons.findings import Finding
+from tiniscript.lessons.forms import TEXT, in_form
 
 # fmt: off
 # of words whose row in the table of words has no example, or one for another robot
@@ -22,8 +23,8 @@ EXAMPLES = {
 # fmt: on
 
 
-def sentence(finding: Finding, language: str) -> str:
-    """Return what is said of a finding."""
+def sentence(finding: Finding, language: str, form: str = TEXT) -> str:
+    """Return what is said of a finding; in the form for blocks code is between back quotes."""
     key = finding.key
     if find_text("lessons", f"said/{key}", language) is None:
         key = key.partition("/")[0]
@@ -35,11 +36,15 @@ def sentence(finding: Finding, language: str) -> str:
         **{name: printable(value) for name, value in finding.values.items()},
         "place": place,
         "show": f"SHOW({what})",
-        "example": _example(finding.values.get("word", ""), finding.values.get("question", "")),
+        "example": _example(
+            finding.values.get("word", ""), finding.values.get("question", ""), form
+        ),
         "before": _event(finding, 1, language),
         "then": _event(finding, 2, language),
     }
-    result = text("lessons", f"said/{key}", language).format(**values)
+    result = in_form(text("lessons", f"said/{key}", language), form).format(**values)
+    if form == TEXT:
+        result = result.replace("`", "")
     for pair in text("lessons", "contractions", language).split(", "):
         two, _, one = pair.partition("=")
         result = result.replace(f" {two} ", f" {one} ")
@@ -52,7 +57,11 @@ def _event(finding: Finding, number: int, language: str) -> str:
     return find_text("lessons", f"event/{parts[number]}/{number}", language) or ""
 
 
-def _example(word: str, question: str) -> str:
+def _example(word: str, question: str, form: str) -> str:
     if word in EXAMPLES:
-        return EXAMPLES[word].format(question=question)
+        whole = EXAMPLES[word].format(question=question)
+        if form == TEXT:
+            return whole
+        *parts, last = whole.split(" ... ")  # which ends a block
+        return "` … `".join(parts or [last])
     return WORDS[word].example if word in WORDS else word

@@ -55,7 +55,7 @@ def sheet(page: str, lesson: Lesson, is_teachers: bool, language: str) -> str:
     """Return the page of pupils or of teachers. `page` is its Markdown."""
     text = partial(_sheet_text, language)
     result = blocks(page)
-    title = lesson.titles[language]
+    title = lesson.title(language)
     parts = [_html(block) for block in result]
     caption = [text("plan")]
     if lesson.variations:

@@ -11,9 +11,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from tiniscript.base.kit import Kit
 from tiniscript.base.words import WORDS
 from tiniscript.bytecode.image import unpack
 from tiniscript.lessons import catalogue
+from tiniscript.lessons.forms import BLOCKS, TEXT
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.map import GOALS
 from tiniscript.lessons.markdown import HINT, Block, blocks, studio_part
@@ -47,19 +49,20 @@ VALUE = "SHOW({})"
 def titles(language: str) -> list[dict[str, Any]]:
     """Return what each lesson is called, its robot, and how it looks; the first one is lesson 1."""
     return [
-        {"name": lesson.name, "title": lesson.titles[language], "robot": lesson.robot,
+        {"name": lesson.name, "title": lesson.title(language),
+         "block_title": lesson.title(language, BLOCKS), "robot": lesson.robot,
          "worlds": lesson.worlds, "world": world_form(number, 1)}
         for number, lesson in enumerate(map(_lesson, range(1, len(catalogue.folders()) + 1)), 1)
     ]  # fmt: skip
 
 
-def steps(number: int, language: str) -> list[dict[str, Any]]:
+def steps(number: int, language: str, form: str = TEXT) -> list[dict[str, Any]]:
     """Return what to do, one step after the other: its blocks, and a hint. The last is the task."""
-    sentence = catalogue.whole_page(_folder(number), catalogue.PUPIL, language)
+    page = catalogue.whole_page(_folder(number), catalogue.PUPIL, language, form)
     matches: list[tuple[list[Block], list[str]]] = []
     before: list[Block] = []  # what the lesson is about stands at its first step
     section = 0
-    for block in blocks(studio_part(sentence)):
+    for block in blocks(studio_part(page)):
         if block.kind == "heading":
             section += 1
             if section == TASK:
@@ -106,9 +109,13 @@ def new(number: int, language: str) -> list[str]:
 
 def spoken(number: int, language: str) -> dict[str, dict[str, Any]]:
     """Return the block that each code in a lesson's sentences is; of a value one without a kind."""
-    kit = profile_of(_lesson(number).robot).kit
+    return blocks_of(_codes(number, language, BLOCKS), profile_of(_lesson(number).robot).kit)
+
+
+def blocks_of(codes: list[str], kit: Kit) -> dict[str, dict[str, Any]]:
+    """Return the block that each code is, but of a word alone."""
     result: dict[str, dict[str, Any]] = {}
-    for code in _codes(number, language):
+    for code in codes:
         if WORD.fullmatch(code):
             continue  # what a word is called, the page knows
         for text in (*WHOLE, VALUE):
@@ -130,12 +137,16 @@ def _programs(number: int, language: str) -> list[str]:
     return [_text_of(block) for block in parts if block["kind"] == "program"]
 
 
-def _codes(number: int, language: str) -> list[str]:
+def _codes(number: int, language: str, form: str = TEXT) -> list[str]:
     """Return the code in the sentences and the hints of a lesson's steps."""
     sentences = []
-    for step in steps(number, language):
+    for step in steps(number, language, form):
         parts = [block for block in step["blocks"] if block["kind"] != "program"]
         sentences += [*map(_text_of, parts), step["hint"]]
+    return _codes_in(sentences)
+
+
+def _codes_in(sentences: list[str]) -> list[str]:
     return [code for sentence in sentences for code in CODE.findall(sentence)]
 
 
@@ -189,6 +200,7 @@ class Check:
         self._worlds = lesson.worlds
         self._marking: Marking | None = None
         profile = profile_of(lesson.robot)
+        self._kit = profile.kit
         result = fit_to_robot(compile_source(data, profile, "", is_strict=True), profile)
         if result.is_right:
             seeds = range(1, lesson.worlds + 1)
@@ -212,13 +224,20 @@ class Check:
         self, verdict: str, seed: int, outcome: Outcome | None = None
     ) -> dict[str, Any]:
         findings = outcome.findings if outcome is not None else ()
-        texts = [sentence(finding, self._language) for finding in findings]
+        said, on_blocks = (
+            [sentence(finding, self._language, form) for finding in findings]
+            for form in (TEXT, BLOCKS)
+        )
+        spoken = blocks_of(_codes_in(on_blocks), self._kit)
         run = None
         if outcome is not None and outcome.run.ending != ASKS:
             first = findings[0].ms if findings else None
             until_ms = outcome.run.end_ms if first is None else first
             run = {"seed": outcome.run.seed, "until_ms": until_ms}
-        return {"verdict": verdict, "seed": seed, "worlds": self._worlds, "said": texts, "run": run}
+        return {
+            "verdict": verdict, "seed": seed, "worlds": self._worlds, "run": run,
+            "said": said, "block_said": on_blocks, "spoken": spoken,
+        }  # fmt: skip
 
 
 class JudgedRun(Simulation):

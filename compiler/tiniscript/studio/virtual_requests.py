@@ -177,6 +177,7 @@ ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "lesson_titles": lambda fields, data: {"lessons": _lessons().titles(fields["language"])},
     "lesson_steps": lambda fields, data: {
         "steps": _lessons().steps(fields["number"], fields["language"]),
+        "block_steps": _lessons().steps(fields["number"], fields["language"], "blocks"),
         "taught": _lessons().taught(fields["number"], fields["language"]),
         "needed": _lessons().needed(fields["number"], fields["language"]),
         "new": _lessons().new(fields["number"], fields["language"]),

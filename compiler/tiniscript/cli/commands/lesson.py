@@ -60,7 +60,7 @@ def _refuse_others(options: Namespace, action: str) -> None:
 def _list(language: str) -> int:
     for number, folder in enumerate(catalogue.folders(), 1):
         lesson = catalogue.load(folder)
-        title, robot = lesson.titles[language], lesson.robot
+        title, robot = lesson.title(language), lesson.robot
         say("lesson_title", language, number=f"{number:2}", title=title, robot=robot)
     say_aside("lesson_hint", language)
     return 0
@@ -100,6 +100,6 @@ def _sheet(folder: Path, lesson: Lesson, options: Namespace, language: str) -> i
         "lesson_sheet",
         language,
         file=inputs.printable_name(options.output),
-        title=lesson.titles[language],
+        title=lesson.title(language),
     )
     return 0

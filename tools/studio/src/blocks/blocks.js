@@ -13,6 +13,7 @@ import { pictureOf } from './picture.js';
 import { Search } from './search.js';
 import { look } from './styles.js';
 import { found, levelOf, toolbox } from './toolbox.js';
+import { zoomOf } from './zoom.js';
 import { text, textsOf } from '../page/texts.js';
 
 /** @import { Form, Range } from './form.js' */
@@ -67,6 +68,8 @@ export class Blocks {
   #fault = { id: '', said: '' };
   /** @type {Search | null} */
   #search = null;
+  /** @type {HTMLElement | null} */
+  #zoom = null;
   /** @type {Finding[]} */
   #findings = [];
 
@@ -202,7 +205,7 @@ export class Blocks {
       collapse: false,
       disable: false,
       move: { scrollbars: true, drag: true, wheel: true },
-      zoom: { controls: Boolean(this.#told) && !isNarrow, wheel: false, pinch: true, startScale: SCALE, minScale: 0.4, maxScale: 1.6 },
+      zoom: { controls: false, wheel: Boolean(this.#told), pinch: true, startScale: SCALE, minScale: 0.4, maxScale: 1.6 },
     }));
     if (before) common.setMainWorkspace(before);
     if (this.#told) {
@@ -210,6 +213,9 @@ export class Blocks {
       this.#search = new Search(workspace, (words) => found(words, this.#used));
       this.#place.prepend(this.#search.place);
       this.#search.fit();
+      this.#zoom?.remove();
+      this.#zoom = zoomOf(workspace, SCALE);
+      this.#place.append(this.#zoom);
       this.#insertByKeys(workspace);
     }
     workspace.MAX_UNDO = 0;
@@ -220,6 +226,7 @@ export class Blocks {
         const block = workspace.getBlockById(event.blockId ?? '');
         if (block) this.#try(this.#told, block, false);
       }
+      if (event.type === Blockly.Events.SELECTED || event.type === Blockly.Events.CLICK || event.type === Blockly.Events.BLOCK_DRAG) keepSeen(workspace);
       if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closed = this.#saidAt(event.blockId);
       if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
       follow(workspace, event);
@@ -540,6 +547,18 @@ export class Blocks {
 /** @param {import('./form.js').FormBlock[]} blocks @returns {import('./form.js').FormBlock[]} */
 function inOrder(blocks) {
   return blocks.flatMap((block) => [block, ...block.bodies.flatMap(inOrder)]);
+}
+
+/** Blockly brings what is touched to the front: smaller piles that it would hide stay before it. @param {Blockly.WorkspaceSvg} workspace */
+function keepSeen(workspace) {
+  const front = Blockly.getFocusManager().getFocusedNode();
+  const pile = front instanceof Blockly.BlockSvg && front.workspace === workspace && !workspace.isDragging() ? front.getRootBlock() : null;
+  if (!pile) return;
+  const whole = pile.getBoundingRectangle(), size = (/** @type {Blockly.utils.Rect} */ rect) => rect.getWidth() * rect.getHeight();
+  for (const other of workspace.getTopBlocks(false)) {
+    const rect = other.getBoundingRectangle();
+    if (other !== pile && size(rect) < size(whole) && rect.intersects(whole)) workspace.getCanvas().append(other.getSvgRoot());
+  }
 }
 
 /** @param {string} message */

@@ -29,6 +29,7 @@ export class Search {
       if (this.#field.value) this.#show();
     });
     this.#field.addEventListener('keydown', (event) => this.#press(event));
+    workspace.getInjectionDiv().addEventListener('focusin', ({ target }) => this.#leave(/** @type {Element} */ (target)));
   }
 
   /** It is as wide as the groups below it. */
@@ -40,6 +41,13 @@ export class Search {
   /** Nothing is looked for any more. */
   clear() {
     this.#field.value = '';
+  }
+
+  /** What was found goes once somebody is at the blocks of the program, or at a group. @param {Element} target */
+  #leave(target) {
+    if (!this.#field.value || target.closest('.blocklyFlyout')) return;
+    this.clear();
+    if (!target.closest('.blocklyToolbox')) this.#flyout?.hide();
   }
 
   get #flyout() {

@@ -16,7 +16,7 @@ import { pageState } from '../page/page_state.js';
 import { currentLanguage, text } from '../page/texts.js';
 import { isSecond } from '../page/twice.js';
 
-/** @typedef {{name: string, title: string, robot: string, worlds: number, world: import('../world/parts.js').World}} Lesson */
+/** @typedef {{name: string, title: string, block_title: string, robot: string, worlds: number, world: import('../world/parts.js').World}} Lesson */
 /** @typedef {{blocks: import('./page.js').Block[], hint: string}} Step */
 /** @typedef {{lesson: number, seed: number, until_ms: number}} JudgedRun */
 /**
@@ -25,6 +25,8 @@ import { isSecond } from '../page/twice.js';
  * @property {number} seed
  * @property {number} worlds
  * @property {string[]} said
+ * @property {string[]} block_said the same for who sees blocks
+ * @property {Record<string, import('../blocks/said.js').Spoken>} spoken what each code in it is as a block
  * @property {{seed: number, until_ms: number} | null} run
  */
 /**
@@ -54,6 +56,8 @@ export class Lessons {
   #number = 1;
   /** @type {Step[]} */
   #steps = [];
+  /** The same for who sees blocks. @type {Step[]} */
+  #blockSteps = [];
   #step = 0;
   #checks = 0; // the newest one goes on; others have been ended
   #asked = 0;
@@ -68,6 +72,8 @@ export class Lessons {
   #pictures;
   /** What each code in the lesson's sentences is as a block. @type {Record<string, import('../blocks/said.js').Spoken>} */
   #spoken = {};
+  /** What the check has found. @type {{said: string[], block_said: string[]}} */
+  #found = { said: [], block_said: [] };
   #hasPassed = false;
   #isPlaying = false;
 
@@ -102,7 +108,10 @@ export class Lessons {
       this.#pictures.showWords();
       this.#fill();
     });
-    pageState.view.subscribe(() => this.#fill());
+    pageState.view.subscribe(() => {
+      if (this.#lessons.length) this.#list();
+      this.#fill();
+    });
     pageState.robotName.subscribe(() => this.#fill());
     pageState.programText.subscribe(() => { // what was said of the one before is not of it
       if (this.#isShown) this.#forget();
@@ -131,7 +140,7 @@ export class Lessons {
     this.#end.hidden = true;
     this.#end.textContent = text('lesson_end');
     this.#lay();
-    this.#findings.replaceChildren();
+    this.#find({ said: [], block_said: [] });
     delete this.#said.dataset['verdict'];
     this.#said.textContent = '';
     element('lesson_stars', HTMLElement).textContent = '';
@@ -168,9 +177,18 @@ export class Lessons {
     const done = lessonsDone();
     offer(this.#choice, this.#lessons.map((lesson, k) => {
       const mark = done.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
-      return pictured(`${k + 1}. ${lesson.title}${mark}`, String(k + 1), worldPicture(lesson.world));
+      return pictured(`${k + 1}. ${this.#titleOf(lesson)}${mark}`, String(k + 1), worldPicture(lesson.world));
     }));
     this.#choice.value = String(this.#number);
+  }
+
+  get #areBlocks() {
+    return pageState.view.value === 'blocks';
+  }
+
+  /** @param {Lesson} lesson */
+  #titleOf(lesson) {
+    return this.#areBlocks ? lesson.block_title : lesson.title;
   }
 
   /** @param {number} number */
@@ -178,12 +196,13 @@ export class Lessons {
     const asked = ++this.#asked;
     const language = currentLanguage();
     this.#forget();
-    const { steps, taught, needed, new: fresh, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
+    const { steps, block_steps, taught, needed, new: fresh, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
     if (asked !== this.#asked) return;
     const isOther = number !== this.#number || !this.#steps.length;
     this.#number = number; // from now on: until then the one before is seen and checked
     this.#choice.value = String(number);
     this.#steps = steps;
+    this.#blockSteps = block_steps;
     this.#spoken = spoken;
     pageState.taughtBlocks.set({ offered: taught, needed, fresh });
     this.#go(isOther ? 0 : this.#step);
@@ -195,7 +214,6 @@ export class Lessons {
   #go(step) {
     this.#step = step;
     const place = element('lesson_page', HTMLElement);
-    element('lesson_name', HTMLElement).textContent = /** @type {Lesson} */ (this.#lessons[this.#number - 1]).title;
     this.#fill();
     place.dataset['lesson'] = String(this.#number);
     element('lesson_page', HTMLElement).scrollTop = 0;
@@ -214,26 +232,40 @@ export class Lessons {
     this.#lay();
   }
 
-  /** Shows what the step says, with programs and their words as this person writes them. */
+  /** Shows what the step says and what a check has found, as this person writes programs. */
   #fill() {
-    const step = this.#steps[this.#step], lesson = this.#lessons[this.#number - 1];
+    const step = (this.#areBlocks ? this.#blockSteps : this.#steps)[this.#step], lesson = this.#lessons[this.#number - 1];
     if (!step || !lesson) return;
-    const areBlocks = pageState.view.value === 'blocks';
-    const reader = {
-      use: (/** @type {string} */ program) => {
+    const reader = this.#readerOf(lesson);
+    element('lesson_name', HTMLElement).textContent = this.#titleOf(lesson);
+    element('lesson_step', HTMLElement).replaceChildren(...step.blocks.map((block) => elementOf(block, reader)));
+    element('lesson_hint_said', HTMLElement).replaceChildren(filled('span', step.hint, reader));
+    this.#find(this.#found);
+  }
+
+  /** @param {{said: string[], block_said: string[]}} found */
+  #find(found) {
+    this.#found = found;
+    const lesson = this.#lessons[this.#number - 1];
+    const said = this.#areBlocks ? found.block_said : found.said;
+    this.#findings.replaceChildren(...lesson ? said.map((sentence) => filled('li', sentence, this.#readerOf(lesson))) : []);
+  }
+
+  /** What is done for who reads a lesson. @param {Lesson} lesson @returns {import('./page.js').Reader} */
+  #readerOf(lesson) {
+    return {
+      use: (program) => {
         this.#page.put({ text: program, robot: lesson.robot });
         pageState.note.set(text('lesson_used'));
       },
-      say: (/** @type {string} */ code) => {
+      say: (code) => {
         const spoken = this.#spoken[code];
-        return areBlocks ? spoken ? asWritten(labelOfBlock(spoken), code) : labelOfWord(code) : null;
+        return this.#areBlocks ? spoken ? asWritten(labelOfBlock(spoken), code) : labelOfWord(code) : null;
       },
-      draw: areBlocks ? (/** @type {string} */ program, /** @type {(address: string) => void} */ done) => {
+      draw: this.#areBlocks ? (program, done) => {
         this.#pictures.want(program, { text: program, robot: pageState.robotName.value }, done);
       } : null,
     };
-    element('lesson_step', HTMLElement).replaceChildren(...step.blocks.map((block) => elementOf(block, reader)));
-    element('lesson_hint_said', HTMLElement).replaceChildren(filled('span', step.hint, reader));
   }
 
   /** Which buttons there are. Who pressed one that goes away is at the page. */
@@ -306,7 +338,7 @@ export class Lessons {
   }
 
   /** @param {Answer & {verdict: keyof typeof SAID}} answer */
-  #tell({ verdict, seed, worlds, said }) {
+  #tell({ verdict, seed, worlds, said, block_said, spoken }) {
     const hadFocus = document.activeElement === this.#end;
     const lesson = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
     const stars = verdict === 'passed' ? worlds : verdict === 'failed' ? Math.max(0, seed - 1) : 0;
@@ -324,7 +356,8 @@ export class Lessons {
     if (verdict !== 'mistakes') { // one for each world where it did its task
       element('lesson_stars', HTMLElement).textContent = '★'.repeat(stars) + '☆'.repeat(worlds - stars);
     }
-    this.#findings.replaceChildren(...said.map((sentence) => made('li', '', sentence)));
+    this.#spoken = { ...this.#spoken, ...spoken };
+    this.#find({ said, block_said });
     this.#hint.open = false;
     element('lesson_page', HTMLElement).scrollTop = 0;
     if (!isKept) pageState.note.set(text('not_kept'));

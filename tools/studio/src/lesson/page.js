@@ -47,7 +47,7 @@ function programOf(program, { use, draw }) {
 
 /**
  * An element with a line of a page, in which `**` is around what is bold, and a back quote around code.
- * @param {'p' | 'span'} kind
+ * @param {'p' | 'span' | 'li'} kind
  * @param {string} line
  * @param {Reader} reader
  */

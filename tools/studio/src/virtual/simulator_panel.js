@@ -571,7 +571,8 @@ export class SimulatorPanel {
     const range = this.#place();
     const places = this.#placesSeen;
     const isAlone = !state || state.fault || state.is_held;
-    const ranges = isAlone ? [range] : state.places.map((at) => rangeAt(places, at));
+    const isOver = !this.#isDriving && !this.#timeLine.seen && !state?.fault; // also of one that was stopped before its end
+    const ranges = isOver ? [] : isAlone ? [range] : state.places.map((at) => rangeAt(places, at));
     pageState.virtualRun.set({ ranges: ranges.filter((each) => each !== null), isHeld: Boolean(state?.is_held) });
     pageState.fault.set({ range: state?.fault ? range : null, said: state?.fault ? faultSaid(state.fault) : '' });
   }

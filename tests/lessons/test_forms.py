@@ -1,0 +1,100 @@
+"""Who builds programs of blocks hears of blocks, and of nothing that only a text has."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.support.texts import LANGUAGES
+from tiniscript.base.languages import texts
+from tiniscript.base.words import WORDS
+from tiniscript.lessons import catalogue
+from tiniscript.lessons.findings import Finding
+from tiniscript.lessons.forms import BLOCKS, TEXT, in_form
+from tiniscript.lessons.sentences import EXAMPLES, sentence
+from tiniscript.studio import page_lessons
+from tiniscript.studio.checking import profile_of
+
+LESSONS = range(1, len(catalogue.folders()) + 1)
+CODE = re.compile("`([^`]*)`")
+LINES = {"en": r"\blines?\b", "es": r"\bl[ií]neas?\b", "pt": r"\blinhas?\b"}
+WRITING = {"en": r"\b(writ\w+|wrote)\b", "es": r"\bescri\w+", "pt": r"\bescr[ei]\w+"}
+ENDS = re.compile(r"\bEND\w*")
+CALLED = re.compile(r"\w\(|`; `|\[\[|\]\]")
+STOP = "STOP"  # a button of the page
+CAPITALS = re.compile(r"\b[A-Z][A-Z_]*\b")
+
+
+def of_text(sentences: str, language: str, *, is_line_on_floor: bool = False) -> list[str]:
+    """Return what in a sentence for blocks is only in a text, code aside."""
+    prose = CODE.sub("``", sentences)
+    patterns = [WRITING[language], *([] if is_line_on_floor else [LINES[language]])]
+    found = [match[0] for pattern in patterns for match in re.finditer(pattern, prose, re.I)]
+    found += [match[0] for pattern in (ENDS, CALLED) for match in pattern.finditer(prose)]
+    return found + [word for word in CAPITALS.findall(prose) if word in WORDS and word != STOP]
+
+
+def has_line_on_floor(number: int) -> bool:
+    return bool(catalogue.load(catalogue.folder_of(str(number))).world.lines)
+
+
+def is_on_a_block(code: str, spoken: dict[str, dict[str, object]]) -> bool:
+    """Whether a code is a word that begins nothing and ends nothing, a name, or a whole block."""
+    return code in spoken if not code.isidentifier() else ENDS.match(code) is None
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("number", LESSONS)
+def test_a_lesson_speaks_of_blocks_to_those_who_have_them(number: int, language: str) -> None:
+    title = page_lessons.titles(language)[number - 1]["block_title"]
+    steps = page_lessons.steps(number, language, BLOCKS)
+    parts = [block for step in steps for block in step["blocks"] if block["kind"] != "program"]
+    sentences = [title, *(row[0] for block in parts for row in block["rows"] if row)]
+    sentences += [step["hint"] for step in steps]
+    spoken = page_lessons.spoken(number, language)
+    is_line_on_floor = has_line_on_floor(number)
+    for each in sentences:
+        assert of_text(each, language, is_line_on_floor=is_line_on_floor) == [], each
+        for code in CODE.findall(each):
+            assert is_on_a_block(code, spoken), (code, each)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("number", LESSONS)
+def test_both_forms_have_the_same_programs_and_hints(number: int, language: str) -> None:
+    both = [page_lessons.steps(number, language, form) for form in (TEXT, BLOCKS)]
+    kinds = [
+        [([block for block in step["blocks"] if block["kind"] == "program"], bool(step["hint"]))
+         for step in steps]
+        for steps in both
+    ]  # fmt: skip
+    assert kinds[0] == kinds[1]
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_a_check_finds_is_said_of_blocks_to_those_who_have_them(language: str) -> None:
+    """Every sentence, whatever word it names; in a terminal none has back quotes."""
+    values = {"cm": "3", "seconds": "1.0", "least": "1", "found": "1", "times": "2", "name": "HOP"}
+    rest = dict.fromkeys(("within", "limit", "low", "high", "number", "all", "degrees", "truth"))
+    rest |= dict.fromkeys(("different", "pitches", "value", "wanted", "most", "fault"))
+    values |= dict.fromkeys(rest, "1")
+    kit = profile_of("tinibot").kit
+    for key in (key for key in texts("lessons", language) if key.startswith("said/")):
+        words = ("KEY_UP",) if "obeys" in key else EXAMPLES if "uses" in key else ("UNTIL",)
+        for word in words:
+            own = {"word": word, "question": "DISTANCE < 15", "what": "DISTANCE"}
+            finding = Finding("", key.removeprefix("said/"), {**values, **own}, {})
+            terminal, on_blocks = (sentence(finding, language, form) for form in (TEXT, BLOCKS))
+            assert not re.search(r"`|\[\[|\]\]", terminal)
+            is_line_on_floor = "follows" in key
+            assert of_text(on_blocks, language, is_line_on_floor=is_line_on_floor) == [], on_blocks
+            spoken = page_lessons.blocks_of(CODE.findall(on_blocks), kit)
+            for code in CODE.findall(on_blocks):
+                assert is_on_a_block(code, spoken), (code, on_blocks)
+
+
+def test_an_alternative_is_read_in_one_form() -> None:
+    both = "Write [[a line|a block]] here[[ and there|]], `A`."
+    assert in_form(both, TEXT) == "Write a line here and there, `A`."
+    assert in_form(both, BLOCKS) == "Write a block here, `A`."
