@@ -4,6 +4,7 @@ says that it has before it has."""
 from __future__ import annotations
 
 from collections.abc import Callable
+from random import Random
 from typing import Any
 
 import pytest
@@ -278,6 +279,35 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
     robot.talk(session, 3000)
     assert saved(robot, session) == "STORED"
     assert marks(robot) == []
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) -> None:
+    """Uploads come at any moment of a save, and whatever is there when the power goes is whole."""
+    chance = Random(seed)
+    robot, session = holding()
+    programs, kept = (
+        [bytes_of("SB|F(0.2, 80)")],
+        0,
+    )  # that were taken; the one that is kept
+    for number in range(6):
+        robot.supply(is_low=chance.random() < 0.6)
+        robot.talk(session, chance.choice((1, 20, 60, 130, 400, 700)))
+        text = f"SI|SHOW({number}); " + "SHOW(1); " * chance.choice((2, 20, 40))
+        if robot.until(session, session.upload(image_of(text))) != OK:
+            continue  # what is being written is not written over
+        robot.talk(session, chance.choice((1, 20, 60, 130, 400, 700)))
+        if chance.random() < 0.7:  # it recovers while that waits
+            robot.supply(is_low=False)
+            robot.talk(session, chance.choice((1, 20, 60, 130, 400, 700)))
+        programs.append(bytes_of(text))
+        if saved(robot, session) == "STORED":
+            kept = len(programs) - 1
+        assert program_after_power_off(robot) in programs[kept:], number
+    robot.supply(is_low=False)
+    robot.talk(session, 3000)
+    assert saved(robot, session) == "STORED"
+    assert program_after_power_off(robot) == programs[-1]
 
 
 def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
