@@ -306,6 +306,12 @@ export class SimulatorPanel {
     for (const state of run.moments.all()) this.#arena.follow(state);
   }
 
+  /** The file of the newest run that can be played again, or nothing. @returns {Promise<string>} */
+  async newestRun() {
+    const run = this.runs.all.find((each) => !each.isJudged && (each.file || each.rows.length));
+    return run ? this.#window.fileOf(run) : '';
+  }
+
   /** Opens the file of a run. @param {File} file */
   openRun(file) {
     return this.#window.open(file);
