@@ -6,7 +6,7 @@ import { Run } from './runs.js';
 /** @typedef {import('../python.js').RobotState} RobotState */
 
 /** The color of each kind of mark, by its name in the style; what comes later is drawn over what comes before. */
-const COLORS = { '': '--edge', KEYS: '--said-number', BEEP: '--said-warn', SHOW: '--said-blue', BUMP: '--said-wrong', FAULT: '--said-wrong', PART: '--said-wrong' };
+const COLORS = { '': '--edge', KEYS: '--said-number', BEEP: '--said-warn', WHEN: '--said-right', SHOW: '--said-blue', BUMP: '--said-wrong', FAULT: '--said-wrong', PART: '--said-wrong' };
 const NOTHING = new Run({ of: 'virtual', text: '', robot: '', program: '' }, { places: [], shows: [], variables: [] }, null);
 
 export class TimeLine {
