@@ -56,7 +56,7 @@ def test_the_conditions_around_an_instruction_are_told_with_their_values(
 def test_any_nesting_is_told_from_the_outside() -> None:
     for seed in range(12):
         rng = random.Random(seed)
-        text, wanted = "W(0.5)", []
+        text, wanted = "W(0.5)", list[Any]()
         for depth in range(rng.randint(1, 5)):
             head, end = rng.choice((("IF", "ENDIF"), ("WHILE", "END_WHILE")))
             before = rng.choice(
