@@ -228,3 +228,74 @@ def test_a_key_that_is_pressed_while_the_program_runs_does_nothing(
     assert asked == []
     it.look()
     assert asked == [RESUME_STEP]
+
+
+# -- lines of `tsc live` -------------------------------------------------------------------------
+
+LINES = (
+    "X = 4",
+    "DEF TELL; SHOW(X); END_DEF",
+    "LOOP(2)\nTELL\nX = X + 1\nEND_LOOP",
+    "SHOW(X)",
+)
+
+
+def test_a_line_halts_where_it_is_told_and_nowhere_in_what_came_before(pty_robot: PtyRobot) -> None:
+    """The lines that it needs are sent before it. Lines of the text that is typed count."""
+    done = on(pty_robot, "live", "-", "--break", "3", data="\n".join(LINES).encode()).gives(0, "")
+    assert done.out.splitlines() == [
+        "TELL: now known.",
+        "X 4",
+        "Halted before line 3: X = X + 1",
+        "  X = 4",
+        "X 5",
+        "Halted before line 3: X = X + 1",
+        "  X = 5",
+        "X 6",
+    ]
+
+
+@pytest.mark.parametrize("halts", ["1", "4"])
+def test_lines_that_halt_do_what_they_do_alone(halts: str, pty_robot: PtyRobot) -> None:
+    data = "\n".join(LINES).encode()
+    alone = on(pty_robot, "live", "-", data=data).gives(0, "").out.splitlines()
+    halted = on(pty_robot, "live", "-", "--break", halts, data=data).gives(0, "").out.splitlines()
+    is_told = [line for line in halted if not line.startswith(("Halted", "  "))]
+    assert is_told == alone and ("Halted before line 1: SHOW(X)" in halted) is (halts == "1")
+
+
+def test_a_person_steps_lines_at_the_prompt(pty_robot: PtyRobot) -> None:
+    """A step goes over what is not of the line: variables and DEFs before it, values after it."""
+    terminal = Terminal("live", "--port", pty_robot.port, "--break", "1", size=(100, 60))
+    terminal.until("tini>")
+    terminal.type("SPEED = 55; DEF GO; F(0.1, SPEED); END_DEF\n")
+    terminal.until(r"(?s)before line 1: SPEED = 55.*Ctrl-C: stop\n*$")
+    terminal.type("s")
+    terminal.until("tini>\n*$")
+    assert pty_robot.did.count("MOTORS 55 55") == 0
+    terminal.type("GO; SPEED = SPEED + 5\n")
+    terminal.until(r"(?s)before line 1: GO\n.*SPEED = 55.*Ctrl-C: stop\n*$")
+    assert "MOTORS 55 55" not in pty_robot.did
+    terminal.type("s")
+    terminal.until(r"(?s)before line 1: SPEED = SPEED.*Ctrl-C: stop\n*$")
+    assert "MOTORS 55 55" in pty_robot.did
+    terminal.type("g")
+    terminal.until("tini>\n*$")
+    terminal.type("F(9, SPEED)\n")
+    terminal.until(r"(?s)before line 1: F.9, SPEED.\n.*SPEED = 60.*Ctrl-C: stop\n*$")
+    terminal.interrupt()
+    terminal.until("the robot has confirmed the stop")
+    terminal.until("tini>\n*$")
+    assert "MOTORS 60 60" not in pty_robot.did
+    terminal.type("\x04")
+    assert terminal.end() == 0
+
+
+def test_a_line_that_has_no_such_place_or_a_robot_that_cannot_halt_gets_nothing(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    on(pty_robot, "live", "F(1, 80)", "--break", "2").gives(1, "on line 2 or after it")
+    on(pty_robot, "live", "F(1, 80)", "--break", "0").gives(2, "--break")
+    monkeypatch.setattr(debugger, "BREAKPOINTS", 0)
+    on(pty_robot, "live", "F(1, 80)", "--break", "1").gives(3, "breakpoint")
+    assert pty_robot.did == []

@@ -10,11 +10,14 @@ from tests.support.debugging import Debugged, Halt, debugged
 from tests.support.images import image_of
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import Image
+from tiniscript.bytecode.opcodes import ISA_MAJOR
 from tiniscript.bytecode.statements import statement_starts
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import (
     BREAKPOINTS,
     BY_NAME,
+    HALTS,
+    RUN,
     STATE_FAULTED,
     STATE_IDLE,
     STATE_RUNNING,
@@ -95,16 +98,16 @@ def test_places_are_even_bytes_of_a_program_that_is_there() -> None:
     assert robot.until(session, session.break_at((0,))) == STATUSES["NO_PROGRAM"]
     it = Debugged(DRIVE)
     for payload in (b"\0", b"\0\0\0", b"\0" * 10):
-        it.session._seq += 1
-        sent = it.robot.step(
-            b"\0"
-            + encode_frame(
-                Frame(BY_NAME["BREAK"].number, it.session._seq & 255, it.session._epoch, payload)
-            )
-        )
-        assert bytes((STATUSES["BAD_LENGTH"],)) in sent
+        assert bytes((STATUSES["BAD_LENGTH"],)) in answer(it, "BREAK", payload)
     assert it.robot.until(it.session, it.session.resume(2)) == BAD_VALUE
     assert it.robot.until(it.session, it.session.read_variables(32)) == BAD_VALUE
+
+
+def answer(it: Debugged, name: str, payload: bytes) -> bytes:
+    """Return what the robot sends for a request that no session makes."""
+    it.session._seq += 1
+    frame = Frame(BY_NAME[name].number, it.session._seq & 255, it.session._epoch, payload)
+    return it.robot.step(b"\0" + encode_frame(frame))
 
 
 # -- what never sees a trap ------------------------------------------------------------------------
@@ -471,3 +474,49 @@ def test_a_session_asks_no_robot_that_cannot_halt() -> None:
     it.session._handshake._take_features(features)
     assert it.robot.until(it.session, it.session.break_at((0,))) == STATUSES["NO_BREAKPOINTS"]
     assert it.robot.until(it.session, it.session.break_at(())) == OK
+
+
+def test_a_line_that_is_to_halt_does_so_before_its_first_statement() -> None:
+    """And has no place any more when it runs again, nor has the program that the robot holds."""
+    it = Debugged(DRIVE)
+    code = image_of(DRIVE).code
+    assert it.robot.until(it.session, it.session.live(code, halts=True)) == OK
+    assert it.halt() == Halt(0, MAIN) and it.variables()[0] == 0
+    assert it.places(SECOND) == OK and it.go()
+    assert it.halt() == Halt(SECOND, MAIN) and it.step()
+    assert it.halt() and it.places() == OK and it.go()
+    assert it.halt() is None and len(drives(it.robot.did)) == 4
+    assert it.robot.until(it.session, it.session.live(code)) == OK
+    assert it.halt() is None
+    it.start()
+    assert it.halt() is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "TASK;SHOW(1);END_TASK;SHOW(2)",
+        "LOOP(2);SHOW(3);END_LOOP",
+    ],
+)
+def test_a_line_that_has_halted_does_what_it_does_alone(text: str) -> None:
+    found = []
+    for halts in (True, False):
+        it = Debugged(DRIVE)
+        asked = it.session.live(image_of(f"SI|{text}").code, halts=halts)
+        assert it.robot.until(it.session, asked) == OK
+        while it.halt(200):
+            assert halts
+            it.go()
+        found.append([event.value for event in it.events if event.name == "SHOW"])
+    assert found[0] == found[1] != []
+
+
+@pytest.mark.parametrize(
+    ("name", "more"),
+    [("PROGRAM", b"\0"), ("BEGIN", bytes((ISA_MAJOR, 0, 0, 16, 0, 0, 1, 0))), ("START", b"")],
+)
+def test_nothing_but_a_line_is_to_halt(name: str, more: bytes) -> None:
+    it = Debugged(DRIVE)
+    mode = HALTS | RUN * (name != "START")
+    assert bytes((BAD_VALUE,)) in answer(it, name, bytes((mode,)) + more)

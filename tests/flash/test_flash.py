@@ -346,6 +346,8 @@ def test_a_firmware_is_the_same_however_it_is_built(
     """As `pio run` builds a shipped robot, and as `tsc firmware` builds any, in another folder."""
     made = firmware_files.build(robots.load("tinibot"), tmp_path)
     assert made.name.startswith("tinibot-uno-")
+    halting = firmware_files.build(robots.load("tinibot"), tmp_path, has_breakpoints=True)
+    assert halting.name.startswith("tinibot_breakpoints-uno-")
     one, other = (file.read_text().split() for file in (
         made, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
     assert one == other
@@ -363,6 +365,17 @@ def test_every_board_of_the_option_is_one_that_is_built() -> None:
         for language in answer_languages()
         for board, _, robot in (name.partition("_") for name in firmware_size.environments())
     }
+
+
+def test_breakpoints_are_built_where_they_take_the_place_of_the_reader_of_text() -> None:
+    """Of each robot on each board that lacks one of both."""
+    for robot in firmware_files.shipped_robots():
+        halting = [
+            each for each in firmware_files.halting_robots()
+            if (each.name, each.board.chip) == (robot.name, robot.board.chip)
+        ]  # fmt: skip
+        is_small = robot.board.chip in ("uno", "nano")
+        assert len(halting) == (is_small and not robot.board.discs), robot
 
 
 def test_the_licence_of_the_core_goes_with_it(tmp_path: Path) -> None:

@@ -23,6 +23,7 @@ function played(moments, chance, most) {
   const shows = [];
   const wrong = [];
   const check = (is, what) => is || wrong.push(what);
+  moments.at(0); // there is none yet
   for (let k = 0; k < count; k += 1) {
     now_ms += 1 + below(30);
     const isQuiet = chance() < quiet;

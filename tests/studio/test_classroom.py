@@ -15,7 +15,7 @@ import pytest
 
 from tests.support.waiting import HANGS_S
 from tiniscript.cli.commands import studio as command
-from tiniscript.studio import class_keeping, classroom
+from tiniscript.studio import class_keeping, classroom, recordings
 from tiniscript.studio import rates as rate_of
 from tiniscript.studio.class_keeping import Keeper
 from tiniscript.studio.classroom import Classroom
@@ -947,3 +947,55 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
     for wrong in (0, 61, "4", None):
         with pytest.raises(BadRequest):
             room.teaches("class_places", places=wrong)
+
+
+# -- the newest run of a pupil ---------------------------------------------------------------------
+
+
+def asks_run(room: Room, pupil: int, asks: bool = False) -> Any:
+    return room.made.teach({"do": "class_run", "pupil": pupil, "asks": asks})["run"]
+
+
+def gives(room: Room, token: str, asked: int, start: int, part: str, is_last: bool) -> None:
+    told = {"do": "run", "asked": asked, "from": start, "part": part, "is_last": is_last}
+    room.made.answer(token, HERE, told)
+
+
+def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
+    room = Room()
+    ana, ben = room.joins("Ana"), room.joins("Ben")
+    assert "run" not in room.here(ana)
+    assert asks_run(room, 1, True) is None
+    asked = room.here(ana)["run"]
+    assert "run" not in room.here(ben)
+    gives(room, ben, asked, 0, "nobody has asked", True)
+    gives(room, ana, asked + 1, 0, "another question", True)
+    assert asks_run(room, 1) is None
+    gives(room, ana, asked, 0, "one, ", False)
+    assert asks_run(room, 1) is None and room.here(ana)["run"] == asked
+    gives(room, ana, asked, 5, "two", True)
+    assert "run" not in room.here(ana)
+    assert asks_run(room, 1) == "one, two"
+    assert asks_run(room, 1, True) is None and room.here(ana)["run"] > asked, "it is asked anew"
+    assert asks_run(room, 9, True) == "", "who has gone has none"
+    assert "class_run" not in json.dumps(room.made.state_to_keep())
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"part": 1}, {"part": None}, {"from": 1}, {"from": -1}, {"from": "0"}, {"is_last": 1},
+        {"part": "x" * (recordings.MOST_BYTES + 1)},
+    ],
+)  # fmt: skip
+def test_parts_that_do_not_fit_are_refused(told: Json) -> None:
+    room = Room()
+    ana = room.joins("Ana")
+    asks_run(room, 1, True)
+    right = {"do": "run", "asked": room.here(ana)["run"], "from": 0, "part": "x", "is_last": True}
+    with pytest.raises(BadRequest):
+        room.made.answer(ana, HERE, {**right, **told})
+    room.made.answer(ana, HERE, right)
+    with pytest.raises(BadRequest):
+        room.made.answer(ana, HERE, {**right, "from": 1})
+    assert asks_run(room, 1) == "x"

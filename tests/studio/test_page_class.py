@@ -617,6 +617,28 @@ def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
     pages.wrong.clear()
 
 
+def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
+    ana: Page, teacher: Page, taught: Class
+) -> None:
+    """The very run: with what was pressed in it, and its own program and world."""
+    only_ana(taught)
+    play = tile(teacher, "Ana").locator(".play")
+    play.dispatch_event("click")
+    teacher.locator("#class_said", has_text="Ana has not run a program yet.").wait_for()
+    ana.click("#side_virtual")
+    write(ana, "SI|SHOW(RANDOM(1, 1000));\nF(0.3, 80);\nSHOW(7)")
+    ana.click("#run")
+    ana.locator("html[data-phase=ended]").wait_for(state="attached")
+    shown = ana.locator("#trace").inner_text()
+    tile(teacher, "Ana").hover()
+    play.click()
+    teacher.locator("#doing", has_text="exactly the same again").wait_for()
+    assert teacher.locator("#wall").is_hidden() and "SHOW(7)" in teacher.inner_text(".cm-content")
+    assert teacher.locator("#trace").inner_text() == shown
+    teacher.click("#side_class")
+    ana.click("#side_real")
+
+
 @pytest.mark.sampled("erases")
 @pytest.mark.parametrize("erases", [True, False])
 def test_the_end(browser: Browser, erases: bool) -> None:

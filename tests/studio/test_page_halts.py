@@ -9,17 +9,21 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio import test_page_debugging as debugging
+from tests.studio.test_page_held import SERIAL
 from tests.studio.test_page_link import (
     connect,
     first,
     first_robot,
     page,
+    pages,
     robot,
     said,
 )
 from tests.studio.test_page_robot import running
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import UPLOADS, checked, hears, write
+from tests.support.studio import UPLOADS, Pages, checked, enter, hears, write
+from tiniscript import robots
+from tiniscript.flash.ready import title_of
 from tiniscript.studio import robot_link
 from tiniscript.studio.checking import check
 from tiniscript.studio.simulation import Marks, Simulation
@@ -28,7 +32,7 @@ from tiniscript.virtual import worlds
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
-__all__ = ["first", "first_robot", "page", "robot"]  # fixtures
+__all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
 MERGED = "LOOP(2);\nDISTANCE;\nIF(DISTANCE < 10);\nSTOP;\nENDIF;\nW(0.05);\nEND_LOOP"
 # A program, and the lines of its breakpoints.
 PROGRAMS = {
@@ -230,9 +234,67 @@ def test_a_robot_that_cannot_halt_says_so_and_runs(
     assert told.is_hidden()
 
 
-def connect_again(page: Page, robot: PtyRobot) -> None:
+HALTING = title_of(robots.load("tinibot"), True)
+BROUGHT = [
+    ("tinibot", "nano"), ("tinibot", "uno"), (HALTING, "uno"),
+    ("liner", "nano"),
+]  # fmt: skip
+
+
+def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
+    page: Page, pages: Pages, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not before a breakpoint is set. What it leaves out is said before anything is written, and
+    another board or robot has no such firmware here."""
+    monkeypatch.setattr(robot_link, "BREAKPOINTS", 0)
+    leave(page)
+    other = pages.blank(is_alone=True)
+    rows = [
+        {"title": title, "board": board, "file": f"{title}-{board}-digest.hex"}
+        for title, board in BROUGHT
+    ]
+    asked: list[str] = []
+    other.route("**/firmware.json", lambda route: route.fulfill(json=rows))
+    other.route("**/*.hex", lambda route: route.fulfill(body=":00"))
+    other.on("request", lambda request: asked.append(request.url.rpartition("/")[2]))
+    other.add_init_script(SERIAL)
+    enter(other, pages.entrance())
+    other.click("#view_text")
+    connect(other, robot)
+    write(other, "SHOW(1);\nSHOW(2)")
+    offered = other.locator("#link_get_halting")
+    assert offered.is_hidden()
+    debugging.press_margin(other, 2)
+    offered.wait_for()
+    debugging.press_margin(other, 2)
+    offered.wait_for(state="hidden")
+    debugging.press_margin(other, 2)
+    offered.click()
+    said(other, "In return, the robot reads no typed text")
+    assert other.locator("html[data-robot=none]").count() == 1
+    assert other.locator("#flash_halts").is_checked()
+    assert other.input_value("#flash_board") == "uno"
+    assert not [name for name in asked if name.endswith(".hex")]
+    other.click("#flash_write")
+    said(other, "That is not a complete HEX file")
+    assert [name for name in asked if name.endswith(".hex")] == [f"{HALTING}-uno-digest.hex"]
+    other.select_option("#flash_board", "nano")
+    other.locator("#flash_halts").wait_for(state="hidden")
+    assert not other.locator("#flash_halts").is_checked()
+    other.select_option("#flash_board", "uno")
+    other.locator("#flash_halts").wait_for()
+    other.select_option("#robot", "liner")
+    other.locator("#flash_halts").wait_for(state="hidden")
+    connect(page, robot)
+
+
+def leave(page: Page) -> None:
     page.click("#link_leave")
     page.locator("html[data-robot=none]").wait_for(state="attached")
+
+
+def connect_again(page: Page, robot: PtyRobot) -> None:
+    leave(page)
     connect(page, robot)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import pytest
@@ -12,6 +13,22 @@ from tests.support.studio import in_phase, write
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+# How many points of the line have the color of a WHEN.
+MARKED = """() => {
+  const paper = () => document.createElement('canvas').getContext('2d', {willReadFrequently: true});
+  const pen = paper(), colored = paper();
+  Object.assign(pen.canvas, {width: time_marks.width, height: time_marks.height});
+  pen.drawImage(time_marks, 0, 0);
+  colored.fillStyle = getComputedStyle(time_marks).getPropertyValue('--said-right');
+  colored.fillRect(0, 0, 1, 1);
+  const [red, green, blue] = colored.getImageData(0, 0, 1, 1).data;
+  const { data } = pen.getImageData(0, 0, time_marks.width, time_marks.height);
+  let count = 0;
+  for (let k = 0; k < data.length; k += 4) {
+    count += data[k] === red && data[k + 1] === green && data[k + 2] === blue && data[k + 3] > 0;
+  }
+  return count;
+}"""
 COUNT = "SI|X = 0;\nLOOP(3);\nX = X + 1;\nSHOW(X);\nF(0.5, 60);\nEND_LOOP"
 
 
@@ -112,3 +129,37 @@ def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page)
     part, *values = doing(page).split("   ")
     assert part == "Looking back: at 0.0 s line 2 ran, F(1, 60) UNTIL(DISTANCE < NEAR)"
     assert values[0].startswith("DISTANCE ") and values[1:] == ["NEAR 30"]
+
+
+def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> None:
+    """And whose motors they were. Nobody has to ask at each place."""
+    task = "LOOP(3);\nIF(DISTANCE > 3);\nF(0.4, 60);\nENDIF;\nW(0.1);\nEND_LOOP"
+    begun(page, f"SI|TASK;\n{task};\nEND_TASK;\nW(2)")
+    in_phase(page, "ended")
+    assert page.locator("#why").is_hidden()
+    page.focus("#time_at")
+    page.keyboard.press("Home")
+    page.keyboard.press("ArrowRight")
+    assert "Line 3" not in doing(page)
+    page.click("#why")
+    page.focus("#time_at")
+    read = set()
+    for _ in range(5):
+        if found := re.search(r"Line 3: DISTANCE > 3, yes: ([\d.]+) > 3\.", doing(page)):
+            assert doing(page).endswith("The task in line 1 had the motors."), doing(page)
+            read.add(found[1])
+        page.keyboard.press("ArrowRight")
+    assert len(read) > 1
+    page.keyboard.press("Home")
+    page.click("#why")
+    assert "Line 3" not in doing(page) and "motors" not in doing(page)
+
+
+def test_a_when_that_begins_is_a_mark(page: Page) -> None:
+    for begins_s, is_marked in ((0.5, True), (90, False)):
+        body = "W(0.3);\nW(9);\nEND_WHEN;\nSHOW(1);\nW(1.5);\nSHOW(2)"
+        begun(page, f"SI|WHEN(TIME > {begins_s});\n{body}")
+        page.locator("#trace", has_text="SHOW 2").wait_for(state="attached")
+        page.click("#stop")
+        in_phase(page, "ended")
+        assert (page.evaluate(MARKED) > 0) is is_marked

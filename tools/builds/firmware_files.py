@@ -17,6 +17,7 @@ import tempfile
 from pathlib import Path
 
 from tiniscript import robots
+from tiniscript.base.languages import SOURCE_LANGUAGE
 from tiniscript.cli.firmware_build import on_boards
 from tiniscript.flash import building
 from tiniscript.flash.ready import FOLDER, NOTICE, name_of, title_of
@@ -54,12 +55,24 @@ def shipped_robots() -> list[Robot]:
     ]
 
 
-def build(robot: Robot, target: Path) -> Path:
+def halting_robots() -> list[Robot]:
+    """Return each shipped robot on each board whose firmware may have breakpoints in the place of
+    the reader of text, which is one in no language."""
+    return [
+        robot
+        for name in robots.names()
+        for robot in on_boards(name, SOURCE_LANGUAGE)
+        if building.can_have_breakpoints(robot)
+    ]
+
+
+def build(robot: Robot, target: Path, has_breakpoints: bool = False) -> Path:
     """Build the firmware of a robot on its board into a folder; return the file."""
     sources = building.sources()
     assert sources is not None, "no vm_arduino beside this folder"
-    path = target / name_of(title_of(robot), robot.board.chip, sources.digest(robot))
-    path.write_bytes(building.build(sources, robot, lambda seen: None))
+    title = title_of(robot, has_breakpoints)
+    path = target / name_of(title, robot.board.chip, sources.digest(robot, has_breakpoints))
+    path.write_bytes(building.build(sources, robot, lambda seen: None, has_breakpoints))
     return path
 
 
@@ -79,6 +92,7 @@ def build_all(target: Path, licence: Path) -> list[Path]:
         new = Path(scratch) / "ready"
         new.mkdir()
         paths = [build(robot, new) for robot in shipped_robots()]
+        paths += [build(robot, new, has_breakpoints=True) for robot in halting_robots()]
         (new / NOTICE).write_text(NOTICE_TEXT, encoding="utf-8")
         shutil.copy(licence, new / LICENCE_NAME)
         if target.exists():

@@ -88,9 +88,10 @@ class Requester:
     def start(self, is_detached: bool = False) -> PendingRequest[ReceiptReply]:
         return self._ask("start", ReceiptReply, True, is_detached=is_detached)
 
-    def live(self, code: bytes, kit: int = 0) -> PendingRequest[ReceiptReply]:
-        """`kit` is the kit whose words the code uses, or 0 for none."""
-        return self._ask("live", ReceiptReply, True, code=code, kit=kit)
+    def live(self, code: bytes, kit: int = 0, halts: bool = False) -> PendingRequest[ReceiptReply]:
+        """`kit` is the kit whose words the code uses, or 0 for none; what `halts` does so before
+        its first statement."""
+        return self._ask("live", ReceiptReply, True, code=code, kit=kit, halts=halts)
 
     def upload(
         self, image: Image, runs: bool = True, saves: bool = True, is_detached: bool = False,

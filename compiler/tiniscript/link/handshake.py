@@ -222,9 +222,11 @@ class Handshake:
     def start(self, is_detached: bool) -> Exchange[ReceiptReply]:
         return requests.start(is_detached, self._state.is_latched)
 
-    def live(self, code: bytes, kit: int) -> Exchange[ReceiptReply]:
+    def live(self, code: bytes, kit: int, halts: bool) -> Exchange[ReceiptReply]:
         robot = yield from self._speak_for(kit)
-        return (yield from requests.live(code, self._state.is_latched, kit, robot))
+        if halts and not robot.values.features & BREAKPOINTS:
+            return Reply(STATUSES["NO_BREAKPOINTS"])
+        return (yield from requests.live(code, self._state.is_latched, kit, robot, halts))
 
     def upload(
         self, image: Image, runs: bool, saves: bool, is_detached: bool, kit: int | None

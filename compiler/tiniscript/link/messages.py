@@ -125,12 +125,17 @@ CLAIM_MS = 2000  # a press of this length lets a client claim the robot, or lets
 FORGET_MS = 10_000  # a press of this length from power-on makes the robot forget its keys
 
 # How a program starts and whether it is kept: one byte of LIVE, PROGRAM, BEGIN and START.
-START_BITS, RUN, SAVE, DETACHED = 0x03, 0x10, 0x20, 0x40
+START_BITS, RUN, SAVE, DETACHED, HALTS = 0x03, 0x10, 0x20, 0x40, 0x80
 MODES = (
     (START_BITS, "START_BITS", "The start mode of an image: 0 `SI`, 1 `SB`."),
-    (RUN, "RUN", "Start it at once, if it is `SI`. LIVE has this bit and no other."),
+    (RUN, "RUN", "Start it at once, if it is `SI`. LIVE has this bit and no other but HALTS."),
     (SAVE, "SAVE", "Keep it when the power is off."),
     (DETACHED, "DETACHED", "It continues without the link. START may have this bit and no other."),
+    (
+        HALTS,
+        "HALTS",
+        "Halt before its first statement: only LIVE, and only a robot with BREAKPOINTS.",
+    ),
 )
 
 # What a robot is able to do and who may drive it, in one number of the reply to HELLO. A robot whose

@@ -17,6 +17,7 @@ from tiniscript.bytecode.verify import RULES
 from tiniscript.link.messages import (
     BY_NAME,
     DETACHED,
+    HALTS,
     LARGE_FRAME,
     OWNED,
     PAYLOAD_BYTES,
@@ -175,13 +176,16 @@ def short_bytes(robot: DeviceInfo) -> int:
     return _payload_bytes(robot) - MODE_BYTES
 
 
-def live(code: bytes, is_latched: bool, kit: int, robot: DeviceInfo) -> Exchange[ReceiptReply]:
-    """Run code once. If a stop has latched the robot, the latch is released for this run."""
+def live(
+    code: bytes, is_latched: bool, kit: int, robot: DeviceInfo, halts: bool
+) -> Exchange[ReceiptReply]:
+    """Run code once, or let it halt before its first statement. If a stop has latched the robot,
+    the latch is released for this run."""
     if len(code) > short_bytes(robot):
         return Reply(STATUSES["TOO_LARGE"], short_bytes(robot))
     if kit not in (0, robot.kit):
         return Reply(STATUSES["WRONG_KIT"], robot.kit)
-    request = Request("LIVE", {"mode": RUN, "code": code})
+    request = Request("LIVE", {"mode": RUN | HALTS * halts, "code": code})
     reply = yield from _clear_then(is_latched, retry_while_busy(request, ReceiptReply))
     is_older = robot.isa < (ISA_MAJOR, ISA_MINOR)
     if is_older and reply.status == RULES["UNKNOWN_OPCODE"][0]:  # LIVE names no version

@@ -30,6 +30,7 @@ from typing import NamedTuple
 from tiniscript.base.source import printable
 from tiniscript.lessons import catalogue
 from tiniscript.link.port_names import canonical_port
+from tiniscript.studio import recordings
 from tiniscript.studio.class_keeping import (
     MOST_LESSONS,
     MOST_PUPILS,
@@ -68,6 +69,27 @@ class OwnRobot(NamedTuple):
 NO_OWN_ROBOT = OwnRobot()
 
 
+@dataclass
+class AskedRun:
+    """The newest run of a pupil's page, which the teacher has asked for: what has come of its file,
+    which nobody here has checked. It is in memory until the teacher's page has it."""
+
+    number: int
+    file: str = ""
+    is_whole: bool = False
+
+    def add(self, request: Json) -> None:
+        """Take the next part. Raises BadRequest."""
+        part, is_last = request.get("part"), request.get("is_last")
+        if not isinstance(part, str) or not isinstance(is_last, bool):
+            raise BadRequest
+        whole_number(request, "from", len(self.file), len(self.file))
+        if self.is_whole or len(self.file) + len(part) > recordings.MOST_BYTES:
+            raise BadRequest
+        self.file += part
+        self.is_whole = is_last
+
+
 @dataclass(eq=False)
 class Pupil:
     """`name` is another than the one that was `written` if somebody here has that.
@@ -88,6 +110,7 @@ class Pupil:
     waits: int | None = None
     hand: int | None = None
     knows_end: bool = False
+    run: AskedRun | None = None
     # The page's name for `hosting`: no page of the teacher's has it.
     page: str = field(default_factory=lambda: f"pupil-{secrets.token_hex(16)}")
 
@@ -224,6 +247,10 @@ class Classroom:
                 return self._connect(pupil, request)
             if do in ("beat", "leave"):
                 return self._drive(pupil, request)
+            if do == "run":
+                if pupil.run is not None and request.get("asked") == pupil.run.number:
+                    pupil.run.add(request)
+                return {}
             if do in ("group_join", "group_leave"):
                 return self._change_group(pupil, request)
         if do == "group":
@@ -353,6 +380,7 @@ class Classroom:
             "robot": turn.name if turn else "",
             "left_s": self._remaining_s(turn) if turn else 0,
             "hand": pupil.hand is not None,
+            **({"run": pupil.run.number} if pupil.run and not pupil.run.is_whole else {}),
             **({"groups": groups} if groups else {}),
             **({"group": group.name} if group is not None else {}),
             **({"driver": driver.name} if driver is not None and driver is not pupil else {}),
@@ -538,6 +566,8 @@ class Classroom:
                 pupil = self._pupil(request)
                 if pupil is not None:  # who may have gone a moment ago
                     self._teach(do, pupil)
+            elif do == "class_run":
+                return self._run(request)
             elif do == "class_work":
                 return {"pupils": self.work()}
             elif do == "class_bring":
@@ -576,6 +606,18 @@ class Classroom:
         pupil = self._pupil(request) or self._kept.get(str(request.get("key")))
         version = pupil.version if isinstance(pupil, Pupil) else 0
         return {"version": version, **(pupil.work if pupil else NOTHING)._asdict()}
+
+    def _run(self, request: Json) -> Json:
+        """Ask a pupil's page for its newest run; return it once it is there."""
+        pupil = self._pupil(request)
+        if pupil is None:
+            return {"run": ""}
+        if request.get("asks") is True or pupil.run is None:
+            pupil.run = AskedRun(next(self._numbers))
+        if not pupil.run.is_whole:
+            return {"run": None}
+        file, pupil.run = pupil.run.file, None
+        return {"run": file}
 
     # -- what is kept -----------------------------------------------------------------------------
 

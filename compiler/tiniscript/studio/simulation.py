@@ -252,6 +252,7 @@ class Simulation:
             "turned": dict(robot.sensing.turned),
             "at": robot.at if self.held_at is None else self.held_at,
             "places": robot.places,
+            "driver": robot.driver,
             "is_held": self.held_at is not None,
             "variables": [value / ONE for value in robot.firmware.variables(self.marks.variables)],
             "readings": [{"value": value / ONE, "text": device.text(value)}

@@ -364,6 +364,12 @@ class VirtualRobot:
         return result or ([] if self.at is None else [self.at])
 
     @property
+    def driver(self) -> int | None:
+        """Return where the task is that has the motors, while they are on; None of no tasks."""
+        result = self._firmware.call("driver")
+        return None if result == NOWHERE else result
+
+    @property
     def firmware(self) -> Firmware:
         """The firmware, for who holds its program and looks at it."""
         return self._firmware

@@ -155,6 +155,7 @@ new Start({
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ beginClass }) => beginClass({
     panel, work, python, editor, keep: () => programs.keep(), empty: () => editor.replace(''), put: (program) => programs.replace({ ...program, name: '' }),
+    newestRun: () => driving.newestRun(), openRun: (file) => driving.openRun(file),
   }));
 }
 

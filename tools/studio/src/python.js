@@ -59,6 +59,7 @@ import { watched } from './page/progress.js';
  * @property {Record<string, number>} [turned] how far an actuator that carries a sensor has turned to the left, in degrees
  * @property {number | null} at where the program is, or what it does next where it is held
  * @property {number[]} places where each of its tasks is
+ * @property {number | null} driver where the task is that has the motors; null of a program without tasks
  * @property {boolean} is_held
  * @property {number[]} variables
  * @property {number | null} fault_at

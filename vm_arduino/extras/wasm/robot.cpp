@@ -328,6 +328,7 @@ tini_exported("at") uint32_t module_at() {
 }
 
 tini_exported("tasks") const int32_t* module_tasks() { return watched_tasks(); }
+tini_exported("driver") uint32_t module_driver() { return watched_driver(); }
 
 // Marks for each offset of a program's code: where it is held, before it runs what is there.
 tini_exported("marks") uint8_t* module_marks() { return watched_marks(); }

@@ -118,6 +118,16 @@ const int32_t* watched_tasks() {
   return found;
 }
 
+uint32_t watched_driver() {
+#ifdef tiniscript_has_tasks
+  if (!is_running() || !machine.has_tasks() || !is_driving()) return kNowhere;
+  const Task& task = machine.task();
+  const uint16_t at = task.holder == task.me ? task.pc : task.holder->pc;
+  if (at != 0) return at - 1u;
+#endif
+  return kNowhere;
+}
+
 const int32_t* watched_variables() { return is_reset ? left_over : machine.task().variables; }
 
 }  // namespace tiniscript

@@ -26,6 +26,9 @@ void watched_go_on();
 // waits in. Of a program without tasks, or while none runs: none.
 const int32_t* watched_tasks();
 
+// Where the task is that has the motors, while they are on; kNowhere of a program without tasks.
+uint32_t watched_driver();
+
 // The kVariables variables of the program that runs or has run, in thousandths.
 const int32_t* watched_variables();
 

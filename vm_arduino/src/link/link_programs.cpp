@@ -94,7 +94,8 @@ uint8_t Link::make_room(Use use, uint16_t length) {
 
 // Makes and verifies an image from the payload of LIVE or PROGRAM.
 uint8_t Link::fill(Use use, const uint8_t* payload, uint8_t length) {
-  const uint8_t mode = payload[kProgramModeAt];
+  uint8_t mode = payload[kProgramModeAt];
+  if (kHasBreakpoints && use == Use::kLive) mode &= static_cast<uint8_t>(~kHalts);
   if (use != Use::kStored && mode != kRun) return refuse(Answer::kBadValue, 0);
   const uint8_t refusal = allow(mode, isa_);
   if (refusal != kIsFine) return refusal;
@@ -134,7 +135,12 @@ uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
   const uint8_t refusal = fill(is_live ? Use::kLive : Use::kStored, payload, length);
   if (refusal != kIsFine) return refusal;
   without_checksum_ = made_;
-  finish(payload[kProgramModeAt], is_live);
+  const uint8_t mode = payload[kProgramModeAt];
+  finish(mode, is_live);
+  if (kHasBreakpoints && is_live && (mode & kHalts) != 0) {
+    const uint8_t first[] = {0, 0};
+    set_breakpoints(first, sizeof first);
+  }
   return kIsFine;
 }
 

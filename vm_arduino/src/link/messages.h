@@ -58,6 +58,7 @@ constexpr uint8_t kStartBits = 3;
 constexpr uint8_t kRun = 16;
 constexpr uint8_t kSave = 32;
 constexpr uint8_t kDetached = 64;
+constexpr uint8_t kHalts = 128;
 
 // How the motors are wired, in one byte.
 constexpr uint8_t kExchanged = 1;

@@ -15,6 +15,13 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit, remote_keys
 from tiniscript.cli.robot.bookkeeping import BOOKKEEPING_MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.debugger import (
+    Debugger,
+    Halting,
+    lines_of,
+    places_of,
+    require_breakpoints,
+)
 from tiniscript.cli.robot.description import introduce
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.live_state import Line, LiveState, Value, header, open_ends
@@ -42,6 +49,8 @@ def run(options: Namespace, language: str) -> int:
     line: str | None = options.text if options.line is None else options.line
     if options.keys and (line == "-" or not sys.stdin.isatty()):
         raise CommandError(2, "keys_no_terminal")
+    if options.keys and options.breaks:
+        raise CommandError(2, "keys_break")
     robot = inputs.robot(options, language)
 
     known = LiveState(robot.kit)
@@ -105,10 +114,14 @@ class Repl:
         self.language = connection.language
         self.known = known
         self.remote: TerminalRemote | None = None
+        self.breaks = lines_of(options.breaks, self.language)
 
     def meet(self) -> None:
-        """Send HELLO to the robot, and use its kit. Raises CommandError if none answers."""
+        """Send HELLO to the robot, and use its kit. Raises CommandError if none answers, or it
+        cannot halt where it is to."""
         self.connection.meet()
+        if self.breaks:
+            require_breakpoints(self.connection)
         if own_kit.use_answering_profile(self.connection, self.options):
             self.known.kit = self.connection.profile.kit
 
@@ -156,7 +169,10 @@ class Repl:
         places = source_map.map_of_compiled(compiled)
         source_map.remember(compiled.image, places)  # tsc doctor names a fault's line later
         kit = kit_of(line.compiled, self.connection.profile)
-        reply = self.connection.request(lambda session: session.live(line.compiled.code, kit))
+        code = line.compiled.code
+        halting = Halting(code, line.whole or places, line.before + 1)
+        stops = self._stops_of(halting, is_last)
+        reply = self.connection.request(lambda session: session.live(code, kit, bool(stops)))
         program = reply.values.program
         printer = printer_of(self.connection, False, places, program, line.whole)
         catch = Catch(line.shown, self.known, printer, is_last)
@@ -169,10 +185,26 @@ class Repl:
         if self.remote is not None:
             monitor.look, monitor.look_s = self.remote.look, remote_keys.LOOK_S
         try:
-            return monitor.follow(reply.values.run)
+            if not stops:
+                return monitor.follow(reply.values.run)
+            with Debugger(self.connection, printer, halting, stops) as debugger:
+                monitor.look = debugger.look
+                monitor.hold = lambda event: debugger.hold(event) or catch.hold(event)
+                return monitor.follow(reply.values.run)
         finally:
             if simulator is not None:
                 simulator.unwatch()
+
+    def _stops_of(self, halting: Halting, is_last: bool) -> tuple[int, ...]:
+        """Return where a line halts. Raises CommandError where the only one has no such place."""
+        found: set[int] = set()
+        for number in self.breaks:
+            try:
+                found.update(places_of((number,), halting))
+            except CommandError:
+                if is_last:
+                    raise
+        return tuple(sorted(found))
 
     def steer(self, line: str | None) -> int:
         """Drive what a line reads of a remote control, or the program that runs, by the keys of

@@ -6,11 +6,11 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 from struct import iter_unpack
+from typing import NamedTuple
 
 from tiniscript.base.fixed_point import value_of, value_text
 from tiniscript.bytecode.statements import statement_of, statement_starts
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.images import Ready
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
@@ -30,22 +30,44 @@ from tiniscript.link.outcomes import Event
 from tiniscript.link.requests import Reply
 
 STEP, GO = "sS \n\r", "gG"  # keys
+MOST_LINES = 10**6
 
 
-def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, ...]:
-    """Return the offset of the first statement from each line on. Raises CommandError."""
-    lines = [whole_number("--break", line, 1, 1, 10**6, language) for line in given]
-    if ready.places is None:
-        raise CommandError(2, "break_image")
-    if len(set(lines)) > MOST_BREAKPOINTS:
+class Halting(NamedTuple):
+    """A program that may halt: its text is seen from the line `first` on, and there it halts."""
+
+    code: bytes
+    map: Map
+    first: int = 1
+
+    def has(self, place: MapLocation) -> bool:
+        """Whether a place is one of the text that is seen; what comes from nowhere has no width."""
+        return place.line >= self.first and place[1:3] != place[3:]
+
+    def place_at(self, statements: Sequence[int], at: int) -> MapLocation | None:
+        """Return the last instruction of the text that begins before the next statement does."""
+        following = next((start for start in statements if start > at), at + 1)
+        place = self.map.at(following - 1)
+        return place if place is not None and self.has(place) else None
+
+
+def lines_of(given: Sequence[str], language: str) -> tuple[int, ...]:
+    """Return the lines of `--break`. Raises CommandError."""
+    lines = {whole_number("--break", line, 1, 1, MOST_LINES, language) for line in given}
+    if len(lines) > MOST_BREAKPOINTS:
         raise CommandError(2, "break_most", most=str(MOST_BREAKPOINTS))
-    statements = statement_starts(ready.image.code)
+    return tuple(sorted(lines))
+
+
+def places_of(lines: Sequence[int], halting: Halting) -> tuple[int, ...]:
+    """Return the offset of the first statement from each line on. Raises CommandError."""
+    statements = statement_starts(halting.code)
     matches = []
     for line in lines:
         places = [
             statement_of(statements, place.offset)
-            for place in ready.places.places
-            if place.line >= line
+            for place in halting.map.places
+            if place.line >= halting.first + line - 1 and halting.has(place)
         ]
         if not places:
             raise CommandError(1, "break_nowhere", line=str(line))
@@ -63,12 +85,17 @@ class Debugger:
     """Tells where a program halts. At a terminal a key steps it or lets it go on; elsewhere it goes
     on by itself."""
 
-    def __init__(self, connection: Connection, printer: EventPrinter, ready: Ready) -> None:
-        assert ready.places is not None
+    def __init__(
+        self, connection: Connection, printer: EventPrinter, halting: Halting,
+        first_places: Sequence[int] | None = None,
+    ) -> None:  # fmt: skip
+        """What began halted gets its places where it did."""
         self.connection = connection
         self.printer = printer
-        self.map: Map = ready.places
-        self.statements = statement_starts(ready.image.code)
+        self.halting = halting
+        self.map = halting.map
+        self.statements = statement_starts(halting.code)
+        self.first_places = first_places
         self.keys = Keys()
         self.has_keys = sys.stdin.isatty() and is_in_front() and not printer.is_json
         self.is_halted = False
@@ -87,9 +114,15 @@ class Debugger:
         """Take an event; return whether it is told."""
         if event.name != "HALTED":
             return False
-        place = self._place(event.at)
-        is_inside = place is not None and statement_of(self.statements, place.offset) != event.at
-        if self.is_stepping and is_inside:  # of one instruction of the text
+        if self.first_places is not None:
+            places, self.first_places = self.first_places, None
+            self.connection.request(lambda session: session.break_at(places))
+            if event.at not in places:
+                self._resume(RESUME_GO)
+                return True
+        place = self.halting.place_at(self.statements, event.at)
+        is_inside = place is None or statement_of(self.statements, place.offset) != event.at
+        if self.is_stepping and is_inside:  # of one instruction of the text, or not of what is seen
             self._resume(RESUME_STEP)
             return True
         self._print_halt(event.at, event.task, place)
@@ -97,11 +130,6 @@ class Debugger:
         if not self.has_keys:
             self._resume(RESUME_GO)
         return True
-
-    def _place(self, at: int) -> MapLocation | None:
-        """Return the last instruction of the text that begins before the next statement does."""
-        following = next((start for start in self.statements if start > at), at + 1)
-        return self.map.at(following - 1)
 
     def look(self) -> None:
         """Do what the first key says that was pressed at this halt; while the program runs, none
@@ -119,8 +147,8 @@ class Debugger:
         language = self.printer.language
         variables = self._variables()
         tasks = self._tasks(task)
-        line = 0 if place is None else place.line
-        what = "" if place is None else self.map.line(line)[place.column - 1 :].split(";")[0]
+        line = 0 if place is None else place.line - self.halting.first + 1
+        what = "" if place is None else self.map.line(place.line)[place.column - 1 :].split(";")[0]
         texts = [text("halted", language).format(line=line, what=what.strip())]
         values = ", ".join(
             f"{name} = {value_text(value, is_yes_no)}" for name, value, is_yes_no in variables
@@ -157,5 +185,5 @@ class Debugger:
         for number, (state, at, _) in enumerate(iter_unpack("<BHI", reply.values.tasks)):
             place = self.map.at(at)
             if number != halted and state and place is not None:
-                result.append((state, place.line))
+                result.append((state, place.line - self.halting.first + 1))
         return result

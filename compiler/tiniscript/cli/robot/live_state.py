@@ -38,7 +38,7 @@ class Line(NamedTuple):
 
     `defs` are the DEFs in it, which are known once it is done; `does_nothing`: it has nothing
     but DEFs; `forgets`: it sets variables, but has no room to show them. `whole` is the map of the
-    line with the DEFs and variables before it.
+    line with the DEFs and variables before it, which have `before` lines.
     """
 
     compiled: Compiled
@@ -47,6 +47,7 @@ class Line(NamedTuple):
     does_nothing: bool = False
     forgets: bool = False
     whole: Map | None = None
+    before: int = 0
 
 
 def header(text: str) -> str:
@@ -99,9 +100,11 @@ class LiveState:
             full = compile_text(f"{before}{body}{after}", self.kit)
             if full.is_right and len(full.code) <= room:
                 line = _compiled_part(full, len(before), len(before + body))
-                return Line(line, shown, own, whole=_map_of(full, len(before + body)))
+                whole = _map_of(full, len(before + body))
+                return Line(line, shown, own, whole=whole, before=before.count("\n"))
         line = _compiled_part(plain, len(before))
-        return Line(line, (), own, forgets=bool(shown), whole=_map_of(plain, len(before + body)))
+        whole = _map_of(plain, len(before + body))
+        return Line(line, (), own, False, bool(shown), whole, before.count("\n"))
 
     def _definitions_for(self, text: str, own: dict[str, str]) -> tuple[str, str]:
         """Return the variables and the DEFs that a line needs, as text."""

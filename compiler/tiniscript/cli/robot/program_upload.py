@@ -14,7 +14,13 @@ from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.debugger import Debugger, places_of, require_breakpoints
+from tiniscript.cli.robot.debugger import (
+    Debugger,
+    Halting,
+    lines_of,
+    places_of,
+    require_breakpoints,
+)
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, exit_code_of
 from tiniscript.cli.terminal.keys import Keys, is_in_front
@@ -34,7 +40,7 @@ def send_program(
     have arrived. Raises CommandError."""
     places: tuple[int, ...] = ()
     if options.breaks:
-        places = places_of(options.breaks, ready, connection.language)
+        places = places_of(lines_of(options.breaks, connection.language), _halting(ready))
         require_breakpoints(connection)
     runs = not options.no_run and not places
     reply = connection.send_program(ready.image, runs, not options.no_save, options.detach, draw)
@@ -74,13 +80,19 @@ def _follow_halts(
     connection: Connection, ready: images.Ready, saving: Saving, printer: EventPrinter
 ) -> int:
     """The same for a program with breakpoints."""
-    with Debugger(connection, printer, ready) as debugger:
+    with Debugger(connection, printer, _halting(ready)) as debugger:
 
         def look() -> None:
             saving.look()
             debugger.look()
 
         return RunMonitor(connection, printer, debugger.hold, look).follow(saving.run)
+
+
+def _halting(ready: images.Ready) -> Halting:
+    if ready.places is None:
+        raise CommandError(2, "break_image")
+    return Halting(ready.image.code, ready.places)
 
 
 def is_running(ready: images.Ready, options: Namespace) -> bool:

@@ -215,6 +215,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--detach", "upload start class"),
     Option("--record", "upload", RECORDING, A_FILE),
     Option("--break", "upload", NUMBER, N, "breaks", repeats=True),
+    Option("--break", "live", NUMBER, N, "breaks", repeats=True),
     Option("--verbose", "upload class"),
     Option("--ask", "ports"),
     Option("--count", "doctor", NUMBER, N),

@@ -216,7 +216,10 @@ _ARGUMENT_READERS: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
     "disown": lambda message: (_bounded_number(message, "which", len(KEYS)),),
     "allow_text": lambda message: (protocol.field(message, "is_allowed", bool),),
     "start": lambda message: (protocol.field(message, "is_detached", bool),),
-    "live": lambda message: (protocol.data(message, "code"), _kit(message)),
+    "live": lambda message: (
+        protocol.data(message, "code"), _kit(message),
+        protocol.field({"halts": False, **message}, "halts", bool),
+    ),
     "upload": _upload,
     "join": lambda message: (_network(message),),
     "use_broker": lambda message: (_broker(message),),

@@ -12,6 +12,8 @@ import { isTeacher } from '../robot/host.js';
  * @property {import('../writing/editor.js').Editor} editor
  * @property {() => void} keep the program among the earlier ones
  * @property {() => void} empty takes the program off the page
+ * @property {() => Promise<string>} newestRun its file, or nothing
+ * @property {(file: File) => Promise<void>} openRun plays it
  * @property {(program: {text: string, robot: string}) => void} put another program into the editor
  */
 
@@ -24,6 +26,6 @@ export async function beginClass(page) {
   });
   document.head.append(looks);
   await isThere;
-  if (isTeacher) new Teacher(page.python);
+  if (isTeacher) new Teacher(page);
   else new Pupil(page);
 }

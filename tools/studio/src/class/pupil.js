@@ -12,6 +12,7 @@ import { keepDone, lessonsDone } from '../lesson/progress.js';
 import { shown } from '../robot/plain_text.js';
 import { Failed } from '../robot/transport.js';
 import { Group } from './group.js';
+import { giveRun } from './run.js';
 import { sign } from './signs.js';
 import { clock } from './wall.js';
 import { pageState } from '../page/page_state.js';
@@ -25,7 +26,7 @@ const LOOK_MS = 1000;
 const SOON_MS = 300; // while the next turn may be one's own
 
 /** @typedef {{key: string, text: string, robot: string, lessons: string[]}} Given */
-/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string, groups?: import('./group.js').Seen[], driver?: string}} Here */
+/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string, groups?: import('./group.js').Seen[], driver?: string, run?: number}} Here */
 
 function newStay() {
   return {
@@ -33,6 +34,7 @@ function newStay() {
     hand: /** @type {boolean | null} */ (null), // help, told at the next look
     told: /** @type {Record<string, string>} */ ({}), // what the teacher's page knows
     taken: /** @type {Given | null} */ (null), // the work that was given last
+    run: 0, // the newest question for a run
     isNews: false, // the class has yet to hear that this is here
     place: -1,
   };
@@ -162,6 +164,10 @@ export class Pupil {
       this.#show(answer);
       if (taken) stay.isNews = false;
       this.#take(answer.given);
+      if (answer.run && answer.run !== stay.run) {
+        stay.run = answer.run;
+        giveRun(answer.run, this.#page.newestRun).catch(() => {}); // the teacher asks again
+      }
       if (answer.place > 0 && answer.place <= answer.robots) wait_ms = SOON_MS;
     } catch (why) {
       if (stay !== this.#stay) return;

@@ -10,6 +10,7 @@ const LINES = {
   out: 'M6 6l12 12M18 6 6 18',
   left: 'm15 5-7 7 7 7',
   right: 'm9 5 7 7-7 7',
+  run: 'M8 5.5v9l7-4.500zM4 20h16m-12-2v4',
   gear: 'M4 7h9m4 0h3M4 17h3m4 0h9M15 4.500v5M9 14.500v5',
 };
 

@@ -6,6 +6,7 @@ import { Pictures } from '../blocks/drawn.js';
 import { BigCode, BigPupil } from './big.js';
 import { Giving } from './giving.js';
 import { openWork, saveWork } from './keeping.js';
+import { runOf } from './run.js';
 import { button, labelled, made } from '../page/made.js';
 import { sign } from './signs.js';
 import { clock, Wall } from './wall.js';
@@ -27,7 +28,10 @@ const SURE_MS = 5000;
 const MOST_NAMED = 4; // hands that are named above the wall
 
 export class Teacher {
-  #wall = new Wall({ see: (key) => this.#showBig(key), remove: (key) => this.#remove(key), lower: (key) => this.#ofPupil('class_hand', key) });
+  #wall = new Wall({
+    see: (key) => this.#showBig(key), remove: (key) => this.#remove(key), lower: (key) => this.#ofPupil('class_hand', key), play: (key) => this.#play(key),
+  });
+  #page;
   #pictures;
   #big = new BigPupil({
     step: (by) => this.#step(by),
@@ -61,14 +65,16 @@ export class Teacher {
   #known = new Map();
   /** @type {Map<string, number>} the version that is being fetched */
   #fetching = new Map();
-  #told = ''; // of a file, until the next one
+  #told = ''; // of a file or a run, until the next one
+  #playing = ''; // whose run is asked for
   #timer = 0;
   #asked = 0; // the number of the newest request, and of the newest whose answer is seen
   #answered = 0;
 
-  /** @param {import('../python.js').Python} python */
-  constructor(python) {
-    this.#pictures = new Pictures(python, 'class_blocks');
+  /** @param {import('./classroom.js').Page} page */
+  constructor(page) {
+    this.#page = page;
+    this.#pictures = new Pictures(page.python, 'class_blocks');
     const side = element('side_class', HTMLButtonElement);
     side.hidden = false;
     side.addEventListener('click', () => this.#showWall(true));
@@ -101,10 +107,7 @@ export class Teacher {
     stop.textContent = text('class_stop_all');
     const come = button('', () => this.#bigCode.show(this.#code.textContent ?? ''), made('span', 'class_address'), made('strong', '', location.origin), made('span', 'class_code'), this.#code);
     come.id = 'class_come';
-    const studio = button('class_studio', () => {
-      this.#showWall(false);
-      element('side_virtual', HTMLButtonElement).click();
-    });
+    const studio = button('class_studio', () => this.#showStudio());
     studio.id = 'class_studio';
     stop.before(studio, come, element('stops', HTMLElement));
     head.append(stop);
@@ -144,6 +147,31 @@ export class Teacher {
   #showWall(isWall) {
     document.documentElement.toggleAttribute('data-wall', isWall);
     dispatchEvent(new Event('resize'));
+  }
+
+  #showStudio() {
+    this.#showWall(false);
+    element('side_virtual', HTMLButtonElement).click();
+  }
+
+  /** Plays a pupil's newest run here. @param {string} key */
+  async #play(key) {
+    const pupil = this.#pupil(key);
+    if (!pupil || this.#playing) return;
+    this.#playing = key;
+    this.#tell(text('class_run_asked', { name: shown(pupil.name) }));
+    const run = await runOf(pupil.number).catch(() => null);
+    this.#playing = '';
+    this.#tell(run ? '' : text(run === null ? 'class_run_silent' : 'class_run_none', { name: shown(pupil.name) }));
+    if (!run) return;
+    this.#showStudio();
+    await this.#page.openRun(new File([run], `${shown(pupil.name)}.tsr`));
+  }
+
+  /** @param {string} said beside the count, until the next one */
+  #tell(said) {
+    this.#told = said;
+    if (this.#state) this.#show(this.#state);
   }
 
   #showWords() {

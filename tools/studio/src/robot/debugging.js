@@ -15,6 +15,8 @@ import { Stops } from '../writing/parts.js';
  * @property {(request: Record<string, unknown>, done?: () => void, isQuiet?: boolean) => Promise<Answer | null>} ask null if nothing came of it, which was said unless it is quiet
  * @property {() => void} uploadPaused sends the program, and has it halt before its first instruction
  * @property {(key: import('../page/texts.js').Key, values?: Record<string, number>) => void} say
+ * @property {() => Promise<boolean>} canGetHalting whether there is a firmware with breakpoints for such a robot
+ * @property {() => void} getHalting
  * @property {import('./place.js').RobotPlace} place
  * @property {import('./recorder.js').Recorder} recorder
  */
@@ -50,6 +52,7 @@ export class Debugging {
     this.#page = page;
     this.#step.addEventListener('click', () => this.#onStep());
     this.#goOn.addEventListener('click', () => this.#resume(false));
+    element('link_get_halting', HTMLButtonElement).addEventListener('click', () => page.getHalting());
     pageState.breakpoints.subscribe(() => this.#breakpointsChanged());
     pageState.programText.subscribe(() => { this.#places = []; });
     pageState.language.subscribe(() => this.#show());
@@ -207,6 +210,13 @@ export class Debugging {
     this.#show();
   }
 
+  /** @param {boolean} isDeaf there are breakpoints, and the robot cannot halt at them */
+  async #offerHalting(isDeaf) {
+    const about = this.#about;
+    const can = isDeaf && await this.#page.canGetHalting();
+    if (about === this.#about) hide(element('link_halting', HTMLElement), !can || !pageState.breakpoints.value.length);
+  }
+
   #show() {
     this.#step.disabled = this.#isRunning && !this.#halt;
     this.#goOn.disabled = !this.#halt;
@@ -217,6 +227,7 @@ export class Debugging {
     const isDeaf = this.#about !== null && !this.#can && pageState.breakpoints.value.length > 0;
     said.textContent = isDeaf ? text('say_no_breakpoints') : many ? text('link_most_breakpoints', { most: LINK.most_breakpoints }) : '';
     hide(said, !isDeaf && !many);
+    this.#offerHalting(isDeaf);
     const place = element('link_values', HTMLElement);
     const { places = [], variables = [] } = this.#program ?? {};
     const rows = this.#variables.length || this.#tasks.length ? [

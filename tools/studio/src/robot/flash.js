@@ -9,6 +9,7 @@ import { Failed } from './transport.js';
 import { BOARDS, flash } from './stk500.js';
 
 /** @typedef {{title: string, board: string, file: string}} Firmware */
+/** @typedef {{robot: string, language: string, halts: boolean}} Wanted of which robot; one that halts answers no text */
 
 const FLASH_BYTES = 0x8000; // of an Uno or a Nano
 const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
@@ -17,7 +18,7 @@ const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
 
 /**
  * Returns the firmware of a robot, or that of a file; rejects with a Failed.
- * @param {{robot: string, language: string} | File} which
+ * @param {Wanted | File} which
  * @param {string} board
  * @param {Watching} watching
  */
@@ -60,10 +61,15 @@ export async function firmwares(watching) {
   return JSON.parse(new TextDecoder().decode(await fetchedBytes('firmware.json', watching)));
 }
 
-/** @param {{robot: string, language: string}} which @param {string} board @param {Watching} watching */
-async function fetched({ robot, language }, board, watching) {
+/** @param {string} robot @returns {string} the title of its firmware with breakpoints */
+export function haltingTitle(robot) {
+  return `${robot}_breakpoints`;
+}
+
+/** @param {Wanted} which @param {string} board @param {Watching} watching */
+async function fetched({ robot, language, halts }, board, watching) {
   const list = await firmwares(watching);
-  const titles = [`${robot}_${language}`, robot];
+  const titles = halts ? [haltingTitle(robot)] : [`${robot}_${language}`, robot];
   const firmware = titles.map((title) => list.find((each) => each.title === title && each.board === board)).find(Boolean);
   if (!firmware) throw new Failed('flash_none');
   return fetchedBytes(firmware.file, watching);

@@ -1,6 +1,6 @@
 // The part of the page that puts a firmware on a board: which file, how far it is, and its end.
 
-import { element } from '../page/elements.js';
+import { element, hide } from '../page/elements.js';
 import { chosenPort, hasSerial } from './serial.js';
 import { shown } from './plain_text.js';
 import { Failed } from './transport.js';
@@ -25,6 +25,10 @@ export class Flashing {
   /** A firmware that a person has opened. @type {File | null} */
   #file = null;
   #chooser = element('flash_file', HTMLInputElement);
+  /** What there is beside the page. @type {Promise<import('./flash.js').Firmware[]> | null} */
+  #known = null;
+  #boards = element('flash_board', HTMLSelectElement);
+  #halts = element('flash_halts', HTMLInputElement);
   #bar = element('flash_progress', HTMLProgressElement);
   #cancel = element('flash_cancel', HTMLButtonElement);
   #cancelling = new AbortController();
@@ -33,6 +37,8 @@ export class Flashing {
   constructor(panel) {
     this.#panel = panel;
     element('link_teacher', HTMLDetailsElement).addEventListener('toggle', () => this.#offer());
+    this.#boards.addEventListener('change', () => this.#offer());
+    pageState.robotName.subscribe(() => this.#known && this.#offer());
     element('flash_write', HTMLButtonElement).addEventListener('click', () => this.#flash());
     element('flash_open', HTMLButtonElement).addEventListener('click', () => this.#chooser.click());
     this.#cancel.addEventListener('click', () => this.#cancelling.abort());
@@ -44,25 +50,49 @@ export class Flashing {
 
   /** A page without firmware, or a browser without ports, offers nothing. */
   async #offer() {
-    const place = element('flash', HTMLElement), boards = element('flash_board', HTMLSelectElement);
-    if (!hasSerial || boards.options.length) return;
-    try {
-      const { firmwares } = await import('./flash.js');
-      const there = new Set((await firmwares()).map((each) => each.board));
-      boards.replaceChildren(...Object.entries(NAMES).filter(([board]) => there.has(board)).map(([board, name]) => new Option(name, board)));
-    } catch {
-      // no list of firmware: a page by itself
+    if (!hasSerial) return;
+    const list = await (this.#known ??= listed());
+    const there = new Set(list.map((each) => each.board));
+    if (!this.#boards.options.length) {
+      this.#boards.replaceChildren(...Object.entries(NAMES).filter(([board]) => there.has(board)).map(([board, name]) => new Option(name, board)));
     }
-    place.hidden = !boards.options.length;
+    element('flash', HTMLElement).hidden = !this.#boards.options.length;
+    const canHalt = (await this.#haltingBoards()).includes(this.#boards.value);
+    hide(element('flash_halting', HTMLElement), !canHalt);
+    this.#halts.checked &&= canHalt;
+  }
+
+  /** The boards for which there is a firmware of the robot with breakpoints in the place of its reader of text. */
+  async #haltingBoards() {
+    if (!hasSerial) return [];
+    const { haltingTitle } = await import('./flash.js');
+    const title = haltingTitle(pageState.robotName.value);
+    return (await (this.#known ??= listed())).filter((each) => each.title === title).map(({ board }) => board);
+  }
+
+  /** Whether a board can get a firmware with breakpoints from here. */
+  async canHalt() {
+    return (await this.#haltingBoards()).length > 0;
+  }
+
+  /** Somebody wants that firmware: whether it is written is the next question. */
+  async offerHalting() {
+    await this.#offer();
+    const boards = await this.#haltingBoards();
+    if (!boards.includes(this.#boards.value)) this.#boards.value = boards[0] ?? '';
+    this.#halts.checked = true;
+    element('link_teacher', HTMLDetailsElement).open = true;
+    await this.#offer();
+    element('flash_write', HTMLButtonElement).focus();
   }
 
   async #flash() {
     const { speech, port: known, isFree, setBusy, meet } = this.#panel;
     if (!isFree()) return;
-    const which = this.#file ?? { robot: pageState.robotName.value, language: currentLanguage() };
+    const which = this.#file ?? { robot: pageState.robotName.value, language: currentLanguage(), halts: this.#halts.checked };
     const chosen = known() ? Promise.resolve(known()) : chosenPort();
     this.#cancelling = new AbortController();
-    const board = element('flash_board', HTMLSelectElement).value;
+    const board = this.#boards.value;
     const { signal } = this.#cancelling;
     setBusy(true);
     try {
@@ -88,5 +118,15 @@ export class Flashing {
       this.#chooser.value = '';
       setBusy(false);
     }
+  }
+}
+
+/** What firmware there is beside the page; a page by itself has none. */
+async function listed() {
+  try {
+    const { firmwares } = await import('./flash.js');
+    return await firmwares();
+  } catch {
+    return [];
   }
 }

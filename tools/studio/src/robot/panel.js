@@ -69,6 +69,9 @@ export class RobotPanel {
   #debugging;
   #doing = new Doing();
   #watching;
+  /** @type {Flashing} */
+  #flashing;
+  #whenLeft = () => {};
   #line = ''; // the checksum of the newest line
   #list = element('link_port', HTMLSelectElement);
   #typed = element('link_line', HTMLInputElement);
@@ -85,6 +88,8 @@ export class RobotPanel {
       say: (key, values) => this.#speech.say(key, values),
       place: page.place,
       recorder: page.recorder,
+      canGetHalting: () => this.#flashing.canHalt(),
+      getHalting: () => this.#getHalting(),
     });
     this.#watching = new Watching({
       python: page.python,
@@ -113,7 +118,7 @@ export class RobotPanel {
       this.#live(this.#typed.value);
     });
     whenChosen('keys_file', (file) => this.#import(file));
-    new Flashing({
+    this.#flashing = new Flashing({
       speech: this.#speech,
       port: () => this.#choices[this.#list.selectedIndex]?.serial,
       isFree: () => this.isFree,
@@ -294,6 +299,7 @@ export class RobotPanel {
     const unconfirmed = this.#stopping.end();
     this.#speech.fail(why, unconfirmed);
     this.#show();
+    this.#whenLeft();
   }
 
   // -- what the robot is told ---------------------------------------------------------------------
@@ -413,6 +419,15 @@ export class RobotPanel {
       if (trim) showTrim(trim);
       this.#speech.say('say_trimmed');
     });
+  }
+
+  /** Its firmware is to be one with breakpoints: the port has to be free. */
+  async #getHalting() {
+    const left = new Promise((resolve) => { this.#whenLeft = () => resolve(null); });
+    this.#way?.leave();
+    if (this.#way) await left;
+    await this.#flashing.offerHalting();
+    this.#speech.say('say_halting_firmware');
   }
 
   #claim() {

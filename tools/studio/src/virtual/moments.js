@@ -4,7 +4,7 @@
 
 /** @typedef {import('../python.js').RobotState} RobotState */
 
-const WHOLE = 64; // of so many moments one is kept whole
+const WHOLE = 16; // of so many moments one is kept whole
 const LEAST_MS = 40; // of the robot's time between two moments in which nothing happens
 const NOT_KEPT = new Set(['rows', 'is_full', 'is_over', 'parting']); // of the run, not of a moment
 const MOST = 2_000_000; // characters; then of the moments in which nothing happens every other one is forgotten
@@ -24,6 +24,8 @@ export class Moments {
   #size = 0;
   /** The newest moment, by its keys. @type {Map<string, string>} */
   #last = new Map();
+  /** The moment that was asked for last: a picture of it asks several times. @type {{k: number, state: RobotState} | null} */
+  #asked = null;
 
   /** @param {number} [most] characters */
   constructor(most = MOST) {
@@ -67,6 +69,7 @@ export class Moments {
     this.#shows = [];
     this.#size = 0;
     this.#last = new Map();
+    this.#asked = null;
   }
 
   /**
@@ -95,6 +98,7 @@ export class Moments {
     const changed = [...keys].filter(([key, value]) => isWhole || this.#last.get(key) !== value);
     const row = `{${changed.map(([key, value]) => `"${key}":${value}`).join()}}`;
     this.#last = keys;
+    this.#asked = null;
     this.#rows.push(row);
     this.#times.push(now_ms);
     this.#size += row.length;
@@ -117,9 +121,11 @@ export class Moments {
 
   /** @param {number} k a moment @returns {RobotState} */
   at(k) {
+    if (this.#asked?.k === k) return this.#asked.state;
     const state = {};
     for (let row = k - (k % WHOLE); row <= k; row += 1) Object.assign(state, JSON.parse(this.#rows[row] ?? '{}'));
-    return /** @type {RobotState} */ (state);
+    this.#asked = { k, state: /** @type {RobotState} */ (state) };
+    return this.#asked.state;
   }
 
   /** Each moment, one after the other. @returns {Generator<RobotState>} */

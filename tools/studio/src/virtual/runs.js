@@ -1,6 +1,7 @@
 // The runs that the page keeps while it is open: how each was, moment by moment, and what its file has.
 
 import { isSeen, Moments } from './moments.js';
+import { blocksOf } from './why.js';
 
 /** @typedef {import('../python.js').RobotState} RobotState */
 /** @typedef {import('../python.js').Checked} Checked */
@@ -36,6 +37,8 @@ export class Run {
   program;
   /** The world as it is drawn. @type {import('../world/parts.js').World | null} */
   shapes;
+  /** What the file of the run has, of one that was opened. @type {Row[]} */
+  told = [];
   /** It cannot be played again: somebody else has driven it. */
   isJudged = false;
   /** The file that it was opened from; nothing of one that was recorded here. */
@@ -46,6 +49,10 @@ export class Run {
   parting = null;
   #size = 0;
   #bumps = 0;
+  /** @type {import('./why.js').Block[] | null} */
+  #whens = null;
+  /** Those in which a task was. @type {import('./why.js').Block[]} */
+  #begun = [];
 
   /**
    * @param {Of} of
@@ -77,6 +84,7 @@ export class Run {
     }
     if (state.bumps > this.#bumps) this.mark(state.now_ms, 'BUMP');
     this.#bumps = state.bumps;
+    this.#markWhens(state);
     if (this.of.of === 'virtual' && !this.file) {
       this.markKeys(state.rows ?? []);
       for (const row of state.rows ?? []) this.put(row);
@@ -89,12 +97,23 @@ export class Run {
     this.moments.add(state);
   }
 
+  /** @param {RobotState} state in which a WHEN may have begun */
+  #markWhens({ now_ms, places }) {
+    const { of: { text }, program } = this;
+    this.#whens ??= blocksOf(text, program.places, /^WHEN\b/i);
+    const begun = this.#whens.filter(({ has }) => places.some((each) => has(each, true)));
+    if (begun.some((each) => !this.#begun.includes(each))) this.mark(now_ms, 'WHEN');
+    this.#begun = begun;
+  }
+
   /** It is played: what is seen of it begins anew. */
   again() {
     this.moments.begin();
     this.marks = [];
     this.parting = null;
     this.#bumps = 0;
+    this.#whens = null;
+    this.#begun = [];
   }
 
   /** @param {Row[]} rows in which somebody may have pressed keys */
@@ -106,6 +125,13 @@ export class Run {
   mark(at_ms, kind) {
     this.marks.push({ at_ms, kind });
     if (this.marks.length > MOST_MARKS) this.marks.splice(0, MOST_MARKS / 2);
+  }
+
+  /** What a sensor read last until a time of the robot, as the program read it. @param {string} name @param {number} at_ms @returns {string | undefined} */
+  readAt(name, at_ms) {
+    const begin = `READ ${name} `;
+    const rows = this.rows.length ? this.rows : this.told;
+    return rows.findLast(([ms, what]) => ms <= at_ms && what.startsWith(begin))?.[1].slice(begin.length);
   }
 
   /** @param {Row} row */

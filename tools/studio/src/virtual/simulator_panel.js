@@ -23,9 +23,11 @@ import { OWN_WORLD } from '../programs/work.js';
 import { WorldChoice } from '../world/choice.js';
 import { showRows, written } from '../page/rows.js';
 import { howEnded, starsShown, Where } from './where.js';
+import { blocksOf, conditionsAt } from './why.js';
 import { WorldDrawing } from '../world/drawing.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('../python.js').RobotState} RobotState */
 
 /**
  * @typedef {object} Page what this part needs of the page
@@ -85,6 +87,8 @@ export class SimulatorPanel {
   #run = element('run', HTMLButtonElement);
   #pause = element('pause', HTMLButtonElement);
   #push = element('push', HTMLButtonElement);
+  #why = element('why', HTMLButtonElement);
+  #asksWhy = false; // somebody, of each place at which they look
   #world;
   #drawing;
   /** While a finger moves a part. @type {import('../world/parts.js').World | null} */
@@ -156,6 +160,10 @@ export class SimulatorPanel {
     });
     element('save_trace', HTMLButtonElement).addEventListener('click', () => {
       download(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
+    });
+    this.#why.addEventListener('click', () => {
+      this.#asksWhy = !this.#asksWhy;
+      this.#show();
     });
     for (const each of Object.keys(SEEN)) element(each, HTMLButtonElement).addEventListener('click', () => this.#choose(each));
     const sound = element('sound', HTMLButtonElement);
@@ -304,6 +312,12 @@ export class SimulatorPanel {
   #drawWay(run) {
     this.#arena.begin(run.shapes ?? this.#world.shapes, run.of.robot, run === this.#newest ? this.#world.goals : []);
     for (const state of run.moments.all()) this.#arena.follow(state);
+  }
+
+  /** The file of the newest run that can be played again, or nothing. @returns {Promise<string>} */
+  async newestRun() {
+    const run = this.runs.all.find((each) => !each.isJudged && (each.file || each.rows.length));
+    return run ? this.#window.fileOf(run) : '';
   }
 
   /** Opens the file of a run. @param {File} file */
@@ -495,7 +509,10 @@ export class SimulatorPanel {
     run.shapes = this.#world.shapes;
     run.program = program;
     run.again();
-    if (played) run.markKeys(played.opened.rows);
+    if (played) {
+      run.markKeys(played.opened.rows);
+      run.told = played.opened.rows;
+    }
     if (!played?.again && !this.#isAlone) this.runs.begin(run);
     return run;
   }
@@ -559,6 +576,8 @@ export class SimulatorPanel {
     this.#showScore(state?.score ?? null);
     this.#where.tell(state, phase);
     this.#showValues();
+    hide(this.#why, !this.#timeLine.seen);
+    this.#why.setAttribute('aria-pressed', String(this.#asksWhy));
     this.#plot.draw(state && this.#timeLine.seen ? state.now_ms - (state.began_ms ?? state.now_ms) : null);
     this.#timeLine.show();
   }
@@ -651,12 +670,27 @@ export class SimulatorPanel {
   /** What ran at a moment, and the values of what it names. @param {import('../python.js').RobotState} state */
   #lookedBack(state) {
     const seconds = secondsOf(state), range = this.#place();
-    if (!range) return text('looked_back', { seconds });
+    const why = this.#asksWhy ? [this.#whySaid(state)] : [];
+    if (!range) return [text('looked_back', { seconds }), ...why].join('   ');
     const { line, column, end_column } = range;
     const part = (pageState.programText.value.split('\n')[line - 1] ?? '').slice(column - 1, end_column - 1).trim();
     const names = new Set(part.toUpperCase().match(/\w+/g));
     const values = this.#valuesOf(state).filter(([name]) => names.has(name)).map(([name, value]) => `${name} ${value}`);
-    return [text('looked_back_at', { seconds, line, part }), ...values].join('   ');
+    return [text('looked_back_at', { seconds, line, part }), ...values, ...why].join('   ');
+  }
+
+  /** Why it was there: what was asked, with the values that the program had read, and whose motors they were. @param {RobotState} state */
+  #whySaid(state) {
+    const { run } = this.#timeLine, { places, variables } = run.program;
+    const at = state.fault ? state.fault_at : state.at;
+    if (at === null) return text('why_nothing');
+    const values = new Map(variables.map(({ name, is_yes_no }, k) => [name, written(state.variables[k], is_yes_no)]));
+    const asked = conditionsAt(run.of.text, places, at, (name) => run.readAt(name, state.now_ms) ?? values.get(name));
+    const said = asked.map(({ line, condition, values: with_values, is }) => text(is === null ? 'why_asks' : is ? 'why_yes' : 'why_no', { line, condition, values: with_values }));
+    const { driver } = state, tasks = blocksOf(run.of.text, places, /^(?:TASK|WHEN)\b/i);
+    const task = driver === null ? undefined : tasks.find(({ has }) => has(driver));
+    if (driver !== null && tasks.length) said.push(task ? text('why_task', { line: task.line }) : text('why_main'));
+    return said.join(' ') || text('why_nothing');
   }
 
   /** @param {import('../python.js').RobotState} state @returns {[string, string][]} the value of each sensor and variable, by its name */

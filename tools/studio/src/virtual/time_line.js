@@ -6,7 +6,7 @@ import { Run } from './runs.js';
 /** @typedef {import('../python.js').RobotState} RobotState */
 
 /** The color of each kind of mark, by its name in the style; what comes later is drawn over what comes before. */
-const COLORS = { '': '--edge', KEYS: '--said-number', BEEP: '--said-warn', SHOW: '--said-blue', BUMP: '--said-wrong', FAULT: '--said-wrong', PART: '--said-wrong' };
+const COLORS = { '': '--edge', KEYS: '--said-number', BEEP: '--said-warn', WHEN: '--said-right', SHOW: '--said-blue', BUMP: '--said-wrong', FAULT: '--said-wrong', PART: '--said-wrong' };
 const NOTHING = new Run({ of: 'virtual', text: '', robot: '', program: '' }, { places: [], shows: [], variables: [] }, null);
 
 export class TimeLine {
@@ -17,6 +17,8 @@ export class TimeLine {
   #line = element('time_at', HTMLInputElement);
   #canvas = element('time_marks', HTMLCanvasElement);
   #changed;
+  #drawn = ''; // of which marks the picture is
+  #size = [0, 0]; // of the canvas, whose layout nobody waits for
 
   /** @param {() => void} changed another moment is looked at */
   constructor(changed) {
@@ -29,7 +31,10 @@ export class TimeLine {
       const { moments } = this.#run;
       this.look(moments.at(moments.beside(this.#at, ways, event.shiftKey ? moments.parts : moments.events)).now_ms);
     });
-    new ResizeObserver(() => this.#drawMarks()).observe(this.#canvas);
+    new ResizeObserver(() => {
+      this.#size = [this.#canvas.clientWidth, this.#canvas.clientHeight];
+      this.#drawMarks();
+    }).observe(this.#canvas);
   }
 
   /** The run that is seen. */
@@ -85,12 +90,16 @@ export class TimeLine {
 
   #drawMarks() {
     const canvas = this.#canvas;
-    if (!canvas.clientWidth) return; // it is hidden
+    const [width, height] = this.#size;
+    if (!width) return; // it is hidden
     const pen = canvas.getContext('2d');
     if (!pen) return;
     const ratio = window.devicePixelRatio || 1;
-    Object.assign(canvas, { width: Math.round(canvas.clientWidth * ratio), height: Math.round(canvas.clientHeight * ratio) });
     const { moments: { first_ms, last_ms }, marks } = this.#run;
+    const seen = [this.#run.number, first_ms, last_ms, marks.length, width, height, ratio, document.documentElement.hasAttribute('data-dark')].join();
+    if (seen === this.#drawn) return;
+    this.#drawn = seen;
+    Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
     const wide = (canvas.width - 2 * ratio) / Math.max(1, last_ms - first_ms);
     const style = getComputedStyle(canvas);
     for (const [kind, color] of Object.entries(COLORS)) {

@@ -1,0 +1,9 @@
+// node why_in_node.mjs SOURCES CASES: prints, for each case, the conditions that are told.
+
+const { blocksOf, conditionsAt } = await import(`${process.argv[2]}/virtual/why.js`);
+
+for (const { text, places, at, values } of JSON.parse(process.argv[3])) {
+  const found = conditionsAt(text, places, at, (name) => values[name]);
+  const tasks = blocksOf(text, places, /^(?:TASK|WHEN)\b/i).filter(({ has }) => has(at)).map(({ line }) => line);
+  console.log(JSON.stringify({ told: found.map(({ line, condition, values: as, is }) => [line, condition, as, is]), tasks }));
+}

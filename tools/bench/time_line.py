@@ -1,0 +1,99 @@
+"""How soon a place on the studio's time line is shown: `python -m tools.bench.time_line`.
+
+A run of ten minutes, at twenty times the speed, in the system's Chromium; then random places on its
+line. A place is shown once the page's main thread has nothing left to do for its next picture: what
+it works until then, times four, is what a processor four times as slow takes. What asking takes is
+left out, and other work on this computer changes nothing.
+"""
+
+from __future__ import annotations
+
+import sys
+from statistics import median, quantiles
+from typing import TYPE_CHECKING
+
+from tests.support import studio
+from tests.support.studio import in_phase, write
+from tiniscript.studio import serving
+from tools.bench.studio import CPU_THROTTLING
+
+if TYPE_CHECKING:
+    from playwright.sync_api import CDPSession, Page
+
+RUN_S = 600
+PLACES = 200
+WANTED_MS = 16
+# What it sees, shows and decides changes all the time; three tasks and a sound, too.
+PROGRAM = f"""SI|N = 0
+TASK; LOOP(FOREVER); SHOW(DISTANCE); W(0.5); END_LOOP; END_TASK
+TASK; LOOP(FOREVER); BEEP(0.1, 440); W(2); END_LOOP; END_TASK
+WHEN(DISTANCE < 20); B(0.3, 60); R(0.4, 60); N = N + 1; END_WHEN
+LOOP({RUN_S})
+F(0.5, 70)
+L(0.3, 40)
+S; W(0.2)
+END_LOOP
+"""
+LOOK = """(place) => new Promise((resolve) => {
+  if (place !== null) {
+    const { min, max } = time_at;
+    time_at.value = String(Number(min) + place * (Number(max) - Number(min)));
+    time_at.dispatchEvent(new Event('input', { bubbles: true }));
+  }
+  requestAnimationFrame(() => setTimeout(resolve));
+})"""
+LASTS = "() => (time_at.max - time_at.min) / 1000"
+EVERY_MS = 500
+GOLDEN = 0.618034
+
+
+def measure(page: Page, run_s: int, places: int) -> tuple[list[float], float]:
+    """Return how many milliseconds each place takes, and how long the run was, in seconds."""
+    page.click("#view_text")
+    write(page, PROGRAM.replace(f"LOOP({RUN_S})", f"LOOP({run_s})"))
+    page.select_option("#speed", "20")
+    page.click("#run")
+    in_phase(page, "running")
+    while page.evaluate(LASTS) < run_s:
+        page.wait_for_timeout(EVERY_MS)
+    page.click("#stop")
+    in_phase(page, "ended")
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
+
+    def works_ms(place: float | None) -> float:
+        before_s = _worked_s(session)
+        page.evaluate(LOOK, place)
+        return 1000 * (_worked_s(session) - before_s)
+
+    asking_ms = median(works_ms(None) for _ in range(places))
+    works_ms(0)
+    took = [works_ms((GOLDEN * k) % 1) - asking_ms for k in range(places)]  # here and there
+    return [CPU_THROTTLING * ms for ms in took], page.evaluate(LASTS)
+
+
+def _worked_s(session: CDPSession) -> float:
+    """Return how long the page's main thread has worked."""
+    result = session.send("Performance.getMetrics")["metrics"]
+    return next(float(item["value"]) for item in result if item["name"] == "TaskDuration")
+
+
+def main() -> int:
+    with (
+        studio.driver() as playwright,
+        studio.browser(playwright, is_whole=True) as browser,
+        studio.served(serving.files()) as server,
+    ):
+        pages = studio.Pages(browser, server.address, patience_s=2 * RUN_S)
+        took, lasts_s = measure(pages.open(), RUN_S, PLACES)
+        pages.close()
+    print("| | found | wanted |\n|---|---:|---:|")
+    what = f"a place on the time line of a run of {lasts_s:.0f} s is shown, on a processor "
+    what += f"{CPU_THROTTLING} times as slow: median, 95 of 100, most of {len(took)}"
+    late = quantiles(took, n=20)[-1]
+    print(f"| {what} | {median(took):.1f}, {late:.1f}, {max(took):.1f} ms | {WANTED_MS} ms |")
+    return int(late > WANTED_MS)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
