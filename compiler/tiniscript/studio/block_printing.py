@@ -19,6 +19,7 @@ from tiniscript.syntax.operators import BINARY, COMPARISON, MINUS, NOT
 ATOM = MINUS + 1  # needs no brackets anywhere
 
 _OPERATORS = {name: (precedence, sign) for sign, (precedence, name) in BINARY.items()}
+_NOTED = frozenset((*BLOCK_ENDS.values(), "ELSE", "ELSEIF"))
 _NO_LINE = re.compile(r"[\r\n\0]+")
 
 
@@ -41,6 +42,11 @@ class _Instruction(NamedTuple):
     @property
     def is_code(self) -> bool:
         return self.kind not in ("comment", "grey")
+
+    @property
+    def takes_note(self) -> bool:
+        """Whether it is the line of an arm or of an end, whose comment is a block of its own."""
+        return self.word in _NOTED and self.is_code and not self.note
 
 
 class _Line(NamedTuple):
@@ -80,6 +86,10 @@ def _add_all(
     for block in blocks:
         k, first = len(ranges), len(instructions)
         ranges.append((first, first))
+        if block.is_behind and instructions and instructions[-1].takes_note:
+            instructions[-1] = instructions[-1]._replace(note=block.comment or _note(block.word))
+            ranges[k] = (first - 1, first - 1)
+            continue
         values = [text_of(value) for value in block.values]
         if block.bodies:
             _add_bodies(block, values, instructions, ranges)
@@ -103,9 +113,10 @@ def _add_bodies(
         heads = [(word, "LOOP(FOREVER)")]
     elif len(block.bodies) > len(values):
         heads.append(("ELSE", "ELSE"))
-    note, is_apart = block.note, block.is_apart
-    for (first, head), body in zip(heads, block.bodies, strict=True):
-        instructions.append(_Instruction(block.kind, first, head, note, is_apart))
+    note, is_apart = block.comment or _note(block.note), block.is_apart
+    for k, ((first, head), body) in enumerate(zip(heads, block.bodies, strict=True)):
+        text = block.line(k) or head
+        instructions.append(_Instruction(block.kind, first, text, note, is_apart))
         _add_all(body, instructions, ranges)
         note, is_apart = "", False
     instructions.append(_Instruction(block.kind, BLOCK_ENDS[word], BLOCK_ENDS[word]))
@@ -114,9 +125,12 @@ def _add_bodies(
 def _instruction(block: Block, values: list[str]) -> _Instruction:
     kind, word = block.kind, _one_line(block.word)
     if kind == "comment" or (kind == "grey" and not word.strip()):
-        return _Instruction("comment", "", _comment(word), is_apart=block.is_apart)
+        said = block.comment or _comment(word)
+        return _Instruction("comment", "", said, is_apart=block.is_apart)
     if kind == "grey":
         text = word.strip()
+    elif block.line(0):
+        text = block.line(0)
     elif kind == "assign":
         text = f"{word} = {values[0]}"
     else:
@@ -126,7 +140,8 @@ def _instruction(block: Block, values: list[str]) -> _Instruction:
             values[0] = " ".join((values[0], *unit))
         arguments = f"({', '.join(values)})" if values else ""
         text = (word or kind.upper()) + arguments + until
-    return _Instruction(kind, word or kind.upper(), text, block.note, block.is_apart)
+    note = block.comment or _note(block.note)
+    return _Instruction(kind, word or kind.upper(), text, note, block.is_apart)
 
 
 # -- lines ---------------------------------------------------------------------------------------
@@ -152,7 +167,7 @@ def _lines(form: Form, instructions: list[_Instruction]) -> list[_Line]:
         lines.append(_line(rest[:1], setup, end=";"))
         setup, rest = "", rest[1:]
     if setup:
-        lines.append(_Line(Row("", _with_note(setup, form.note), False), ()))
+        lines.append(_Line(Row("", _with_note(setup, _note(form.note)), False), ()))
     return lines + [_line([instruction], end=";" * instruction.is_code) for instruction in rest]
 
 
@@ -182,7 +197,11 @@ def _line(instructions: list[_Instruction], setup: str = "", end: str = "") -> _
 
 
 def _with_note(text: str, note: str) -> str:
-    return f"{text}{BEFORE_COMMENT}{_comment(_one_line(note))}" if note else text
+    return f"{text}{BEFORE_COMMENT}{note}" if note else text
+
+
+def _note(text: str) -> str:
+    return _comment(_one_line(text)) if text else ""
 
 
 def _comment(text: str) -> str:
