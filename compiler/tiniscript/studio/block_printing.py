@@ -24,10 +24,12 @@ _NO_LINE = re.compile(r"[\r\n\0]+")
 
 
 class Printed(NamedTuple):
-    """`places` are those of the blocks of the body, in the order of the text."""
+    """`places` are those of the blocks of the body, in the order of the text; `lines` where each of
+    their lines is, from 0."""
 
     text: str
     places: tuple[Place, ...]
+    lines: tuple[tuple[int, ...], ...]
 
 
 class _Instruction(NamedTuple):
@@ -59,8 +61,8 @@ class _Line(NamedTuple):
 def print_blocks(form: Form) -> Printed:
     """Return the text of a program's blocks, and where each of them is."""
     instructions: list[_Instruction] = []
-    ranges: list[tuple[int, int]] = []
-    _add_all(form.body, instructions, ranges)
+    own: list[list[int]] = []  # of each block, which instructions are its lines
+    _add_all(form.body, instructions, own)
     lines = _lines(form, instructions)
     loose = [Row("", line, k == 0) for k, line in enumerate(_loose_lines(form.loose))]
     texts = lines_of([line.row for line in lines] + loose)
@@ -72,7 +74,8 @@ def print_blocks(form: Form) -> Printed:
         places += [(number, before + start, before + end) for start, end in line.columns]
     return Printed(
         "".join(text + "\n" for text in texts),
-        tuple((*places[first][:2], places[last][0], places[last][2]) for first, last in ranges),
+        tuple((*places[all[0]][:2], places[all[-1]][0], places[all[-1]][2]) for all in own),
+        tuple(tuple(places[k][0] - 1 for k in all) for all in own),
     )
 
 
@@ -80,27 +83,28 @@ def print_blocks(form: Form) -> Printed:
 
 
 def _add_all(
-    blocks: tuple[Block, ...], instructions: list[_Instruction], ranges: list[tuple[int, int]]
+    blocks: tuple[Block, ...], instructions: list[_Instruction], own: list[list[int]]
 ) -> None:
-    """Add the lines of blocks, and for each block the first and the last of its own."""
+    """Add the lines of blocks, and for each block which are its own."""
     for block in blocks:
-        k, first = len(ranges), len(instructions)
-        ranges.append((first, first))
+        own.append([])
+        lines = own[-1]
         if block.is_behind and instructions and instructions[-1].takes_note:
             instructions[-1] = instructions[-1]._replace(note=block.comment or _note(block.word))
-            ranges[k] = (first - 1, first - 1)
+            lines.append(len(instructions) - 1)
             continue
         values = [text_of(value) for value in block.values]
         if block.bodies:
-            _add_bodies(block, values, instructions, ranges)
+            _add_bodies(block, values, instructions, own)
         else:
+            lines.append(len(instructions))
             instructions.append(_instruction(block, values))
-        ranges[k] = (first, len(instructions) - 1)
 
 
 def _add_bodies(
-    block: Block, values: list[str], instructions: list[_Instruction], ranges: list[tuple[int, int]]
+    block: Block, values: list[str], instructions: list[_Instruction], own: list[list[int]]
 ) -> None:
+    lines = own[-1]
     word = "LOOP" if block.kind == "forever" else block.kind.upper()
     heads = [(word, f"{word}({value})") for value in values[:1]]
     heads += [("ELSEIF", f"ELSEIF({value})") for value in values[1:]]
@@ -116,9 +120,11 @@ def _add_bodies(
     note, is_apart = block.comment or _note(block.note), block.is_apart
     for k, ((first, head), body) in enumerate(zip(heads, block.bodies, strict=True)):
         text = block.line(k) or head
+        lines.append(len(instructions))
         instructions.append(_Instruction(block.kind, first, text, note, is_apart))
-        _add_all(body, instructions, ranges)
+        _add_all(body, instructions, own)
         note, is_apart = "", False
+    lines.append(len(instructions))
     instructions.append(_Instruction(block.kind, BLOCK_ENDS[word], BLOCK_ENDS[word]))
 
 

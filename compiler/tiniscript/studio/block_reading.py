@@ -52,6 +52,17 @@ def read(text: str, kit: Kit) -> Form:
     return _Reader(source, parsed, kit, {k: lines[k].strip() for k in grey}).form()
 
 
+def split_loose(rows: list[str]) -> tuple[list[str], list[str]]:
+    """Return the lines of a program, and those at its end of what hangs on nothing."""
+    k = end = len(rows)
+    while end and not rows[end - 1]:
+        end -= 1
+    while end and rows[end - 1].startswith(LOOSE):
+        end -= 1
+        k = end
+    return rows[: k - (0 < k < len(rows) and not rows[k - 1])], rows[k:]
+
+
 def _read_without(lines: list[str], grey: set[int]) -> tuple[Source, Parsed]:
     kept = ("//" if k in grey else line for k, line in enumerate(lines))
     source = Source("\n".join(kept))

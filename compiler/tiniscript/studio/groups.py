@@ -18,6 +18,8 @@ from pathlib import Path
 from threading import Condition, Lock, RLock
 from time import monotonic
 
+from tiniscript.base.source import LINE_END
+from tiniscript.studio.block_reading import split_loose
 from tiniscript.studio.entrances import new_token
 from tiniscript.studio.names import are_alike, plain_name
 from tiniscript.studio.rates import Rate
@@ -377,7 +379,8 @@ def _number(page: str) -> int:
 def _tree_of(text: str) -> Tree:
     """Return the tree of a program with which a group begins. Raises Unparsed, Refused."""
     numbers = count(1)
-    tree = read(text, lambda: f"i.{next(numbers)}")
+    rows, _ = split_loose(LINE_END.split(text))
+    tree = read("\n".join(rows), lambda: f"i.{next(numbers)}")
     if len(text_of(tree)) > MOST_CHARACTERS:
         raise Refused(TOO_LONG)
     return tree_of(tree.snapshot())

@@ -240,6 +240,16 @@ export class Blocks {
     return this.#workspace.isDragging();
   }
 
+  /** Whether a field of a block is open. */
+  get isOpen() {
+    return Blockly.WidgetDiv.isVisible() || Blockly.DropDownDiv.isVisible();
+  }
+
+  /** In which line of the text each block is. @returns {[string, number][]} */
+  get lines() {
+    return this.#places.map(([id, [line]]) => [id, line]);
+  }
+
   get hasFocus() {
     return this.#place.contains(document.activeElement);
   }

@@ -110,12 +110,14 @@ export class Group {
         },
         others: (others) => this.#mates.replaceChildren(...named(others.map((each) => ({ ...each, name: shown(each.name) })))),
         refused: () => pageState.note.set(text('group_refused')),
+        isBusy: () => this.#page.views.isBusy,
         answers: (isHeard) => this.#show(isHeard ? 'group_in' : 'class_silent'),
         keep: (page) => keepAt(PLACE, JSON.stringify({ group, page }), 'sessionStorage'),
       });
       pageState.group.set(group);
       this.#show('group_in');
       await together.begin(answer, before ?? null).then(() => {
+        this.#page.views.join(together);
         document.documentElement.dataset['group'] = 'in';
       }, (why) => {
         this.leave();
@@ -131,6 +133,7 @@ export class Group {
   #end() {
     this.#together?.end();
     this.#together = null;
+    this.#page.views.join(null);
     this.isDriven = false;
     delete document.documentElement.dataset['group'];
     keepAt(PLACE, '', 'sessionStorage');
