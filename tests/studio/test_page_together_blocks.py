@@ -195,3 +195,19 @@ def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> Non
     shown(ana)
     ana.click("#undo")  # what was his is another one's now
     ends(two, *changed(("B(1, 40);", "B(7, 95);")), "W(2);")
+
+
+def test_each_sees_at_which_block_the_other_is(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    goes_to(luz, "B(1, 40)")
+    mark = block(ana, "back").locator("> .mate_mark")
+    mark.filter(has_text="Luz").wait_for()
+    types(luz, " ")
+    mark.filter(has_text="Luz …").wait_for()
+    luz.keyboard.press("ArrowDown")
+    block(ana, "right").locator("> .mate_mark").filter(has_text="Luz").wait_for()
+    assert mark.count() == 0
+    block(ana, "stop").click(position={"x": 6, "y": 6})
+    name = luz.locator(".cm-line", has_text="S;").locator(".cm-mate")
+    name.filter(has_text="Ana").wait_for()
+

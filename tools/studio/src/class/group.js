@@ -110,6 +110,7 @@ export class Group {
         },
         others: (others) => this.#mates.replaceChildren(...named(others.map((each) => ({ ...each, name: shown(each.name) })))),
         refused: () => pageState.note.set(text('group_refused')),
+        places: (places) => this.#page.views.showMates(places),
         isBusy: () => this.#page.views.isBusy,
         answers: (isHeard) => this.#show(isHeard ? 'group_in' : 'class_silent'),
         keep: (page) => keepAt(PLACE, JSON.stringify({ group, page }), 'sessionStorage'),

@@ -19,6 +19,7 @@ const SOON_MS = 50;
 const DECIDED_MS = 2000; // for what was done before an undo
 
 /** @typedef {{name: string, mark: number, at: string, writes: boolean}} Other */
+/** @typedef {{line: number, color: string, said: string}} Place */
 
 /**
  * @typedef {object} Shown what Python answers
@@ -44,6 +45,7 @@ const DECIDED_MS = 2000; // for what was done before an undo
  * @property {(why: string) => void} refused a change of this page was
  * @property {(kept: {name: string}) => void} keep what a page goes on with that is loaded again
  * @property {(isHeard: boolean) => void} answers whether the class answers
+ * @property {(places: Place[]) => void} places where the others are in the text
  * @property {() => boolean} isBusy whether somebody has a block in the hand, or a field open
  */
 
@@ -133,6 +135,8 @@ export class Together {
   #others = [];
   /** @type {Shown} */
   #shown = { version: 0, changes: [], ids: [], pending: [], since: -1, epoch: '', told: 0, why: '', count: 0, kept: { name: '' } };
+  /** @type {{line: number, writes: boolean} | null} */
+  #chosen = null; // of the blocks
   #at = '';
   #caret = 0;
 
@@ -166,7 +170,7 @@ export class Together {
     if (this.#isOver) return;
     this.#isOver = true;
     this.#others = [];
-    this.#view.dispatch({ effects: setOthers.of([]) });
+    this.#mark();
     this.#editor.handUndo(null);
   }
 
@@ -286,6 +290,13 @@ export class Together {
   #mark() {
     const places = this.#others.map((other) => ({ line: this.#shown.ids.indexOf(other.at) + 1, other })).filter(({ line }) => line > 0);
     this.#view.dispatch({ effects: setOthers.of(places) });
+    this.#heard.places(places.map(({ line, other: { name, mark, writes } }) => ({ line, color: COLORS[mark] ?? '', said: writes ? `${name} …` : name })));
+  }
+
+  /** The blocks have the focus in this line, or nowhere. @param {number} line @param {boolean} writes */
+  chose(line, writes) {
+    this.#chosen = line ? { line, writes } : null;
+    this.#tellCaret();
   }
 
   // -- the class --
@@ -351,14 +362,14 @@ export class Together {
 
   /** Tells the others where the caret is, now and then. */
   #tellCaret() {
-    const at = this.#shown.ids[this.#line - 1] ?? '';
-    const told = JSON.stringify([at, this.#isHot]);
+    const { line, writes } = this.#chosen ?? { line: this.#line, writes: this.#isHot };
+    const at = this.#shown.ids[line - 1] ?? '';
+    const told = JSON.stringify([at, writes]);
     if (told === this.#at || !this.#shown.kept.name) return;
     this.#at = told;
     clearTimeout(this.#caret);
-    const isHot = this.#isHot;
     this.#caret = window.setTimeout(() => {
-      if (!this.#isOver) this.#ask({ at, writes: isHot });
+      if (!this.#isOver) this.#ask({ at, writes });
     }, CARET_MS);
   }
 }

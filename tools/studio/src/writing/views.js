@@ -22,6 +22,7 @@ import { text } from '../page/texts.js';
  */
 
 const TYPING_MS = 200; // of silence before blocks are made of a text
+const TELL_MS = 300; // between two times that a group hears which block is chosen
 const BUSY_MS = 50; // until a block that is dragged is looked at again
 const LEVELS = /** @type {const} */ ([['few', 'level_few'], ['usual', 'level_usual'], ['all', 'level_all']]);
 
@@ -46,6 +47,9 @@ export class Views {
   #findings = [];
   /** @type {import('./editor.js').Range[]} */
   #running = [];
+  #telling = 0;
+  /** @type {import('../class/together.js').Place[]} */
+  #mates = [];
   /** Who edits the program, too. @type {import('../class/together.js').Together | null} */
   #group = null;
   #pane = element('blocks', HTMLElement);
@@ -250,8 +254,16 @@ export class Views {
   join(group) {
     if (group === this.#group) return;
     this.#group = group;
+    clearInterval(this.#telling);
+    if (group) this.#telling = window.setInterval(() => group.chose(this.#blocks?.chosenLine ?? 0, this.isBusy), TELL_MS);
     this.#shown = null;
     if (this.#isOn) this.#refresh(true);
+  }
+
+  /** @param {import('../class/together.js').Place[]} places where the others of a group are */
+  showMates(places) {
+    this.#mates = places;
+    if (!this.#isStale()) this.#blocks?.showMates(places);
   }
 
   /** Whether a block is in somebody's hand, or one of its fields is open. */
@@ -393,6 +405,7 @@ export class Views {
     this.#blocks?.showFindings(this.#findings);
     this.#blocks?.showFault(pageState.fault.value.range, pageState.fault.value.said);
     this.#blocks?.showRunning(this.#running);
+    this.#blocks?.showMates(this.#mates);
     this.#showBreakpoints();
   }
 
