@@ -17,6 +17,7 @@ from tests.studio.test_class_histories import without_ports  # noqa: F401
 from tests.studio.test_classroom import HERE, Room
 from tests.support.waiting import HANGS_S, until
 from tiniscript.studio import groups
+from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.class_keeping import MOST_PUPILS
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.robot_link import BadRequest
@@ -471,8 +472,9 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
         deed = chance.choice(("stop", "connect", "beat"))
         if deed == "connect":
             if turn.pupil.token != member.token:
-                school.connects(member.token)
+                other = school.connects(member.token)
                 assert robot.left == "group_other"  # that stops what it does
+                assert other.latched_s == (LATCH_S if stops else 0)  # Run was pressed before it
         elif deed == "beat":
             member.asks("beat", page="x", asked=[{"do": "start", "id": 1}])
         else:

@@ -30,6 +30,7 @@ from typing import NamedTuple
 from tiniscript.base.source import printable
 from tiniscript.lessons import catalogue
 from tiniscript.link.port_names import canonical_port
+from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.class_keeping import (
     MOST_LESSONS,
     MOST_PUPILS,
@@ -111,7 +112,7 @@ class KeptWork:
 @dataclass(eq=False)
 class ClassRobot:
     """`hosted` is the connection of this turn, once the pupil's page has taken it; `waited` is the
-    place in the queue that the pupil had."""
+    place in the queue that the pupil had; `stopped_s` when a pupil of the group has stopped it."""
 
     port: str
     name: str
@@ -120,6 +121,7 @@ class ClassRobot:
     waited: int | None = None
     began_s: float = 0.0
     free_s: float = 0.0
+    stopped_s: float = float("-inf")
 
     def begin(self, pupil: Pupil, now_s: float) -> None:
         self.pupil, self.hosted, self.began_s = pupil, None, now_s
@@ -393,12 +395,16 @@ class Classroom:
         robot = self._turn(pupil) or self._turn_of(self._mates(pupil))
         if robot is None:
             return {"failure": "turn_none"}
-        if robot.pupil is not pupil:
+        is_other = robot.pupil is not pupil
+        if is_other:
             robot.pass_to(pupil)
         # One that this page has left a moment ago is not the robot of this turn.
         answer = self._hosting.answer({**_own_request(pupil, request), "port": robot.port})
         if not answer:
-            robot.hosted = self._hosting.robot_of(pupil.page)
+            robot.hosted = hosted = self._hosting.robot_of(pupil.page)
+            left_s = robot.stopped_s + LATCH_S - self._clock()
+            if is_other and hosted is not None and left_s > 0:  # Run was pressed before
+                hosted.attending.latch_for(left_s)
         return answer
 
     def _drive(self, pupil: Pupil, request: Json) -> Json:
@@ -408,13 +414,17 @@ class Classroom:
         return self._hosting.answer(_own_request(pupil, request))
 
     def _stop(self, pupil: Pupil, request: Json) -> Json:
-        """Stop the own robot, or that of the group, and no other, whatever was asked. Of another
-        pupil's turn it latches: what was asked before it, and arrives later, is refused."""
+        """Stop the own robot, or that of the group, and no other, whatever was asked. For the others
+        of the group it latches: what was asked before it, and arrives later, is refused, whoever
+        takes the robot over meanwhile."""
         robot = self._turn_of(self._mates(pupil))
-        if robot is not None and robot.pupil is not pupil and robot.hosted is not None:
+        if robot is not None:
             stops = request.get("group_stops", 0)
-            if self._groups.is_new_stop(pupil.token, stops if type(stops) is int else 0):
-                robot.hosted.attending.latch()
+            is_own = robot.pupil is pupil
+            if is_own or self._groups.is_new_stop(pupil.token, _count(stops)):
+                robot.stopped_s = self._clock()
+                if not is_own and robot.hosted is not None:
+                    robot.hosted.attending.latch()
         return self._hosting.answer({**_own_request(pupil, request), "do": "stop", "asked": []})
 
     # -- groups -----------------------------------------------------------------------------------
@@ -781,6 +791,10 @@ class Classroom:
 def _own_request(pupil: Pupil, request: Json) -> Json:
     """Return a request about the pupil's own robot: what it calls its page tells tabs apart."""
     return {**request, "page": pupil.page, "tab": request.get("page")}
+
+
+def _count(found: object) -> int:
+    return found if type(found) is int else 0
 
 
 def _is_allowed(asked: object) -> bool:
