@@ -37,7 +37,6 @@ class FakeRobot:
     was_left: bool = False
     silent_s: float = 0.0
     is_half_made: bool = False
-    latched_s: float = 0.0
 
     def leave(self, why: str) -> None:
         self.left = why
@@ -49,9 +48,6 @@ class FakeRobot:
 
     def latch(self) -> None:
         self.stopped += 1
-
-    def latch_for(self, left_s: float) -> None:
-        self.latched_s = left_s
 
 
 class FakeHosting:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from random import Random
 from threading import Thread
 from typing import Any
@@ -25,7 +26,7 @@ from tiniscript.studio.hosting import Hosting
 
 Json = dict[str, Any]
 BEAT_S = 0.1
-LATE_S = 0.7  # that a request may be on its way
+LATE_S = 1.5  # that a request may be on its way
 STANDS_S = 0.6  # for as long the robot is looked at
 PROGRAM = compile(FOREVER).image.hex()
 PUPILS = ("Ana", "Luz", "Teo")
@@ -40,7 +41,7 @@ class Mate:
         self.token = joined["token"]
         text = FOREVER + "\n"
         assert "group" in self.ask("group_join", name="Red", text=text)
-        self.presses = self.ids = self.connection = self.seen = 0
+        self.presses = self.ids = self.connection = self.seen = self.saw_stops = 0
         self.asked: list[Json] = []
         self.is_there = False
         self.thread = Thread(target=self._beats, daemon=True)
@@ -56,7 +57,7 @@ class Mate:
     def _beats(self) -> None:
         while not self.group.is_over:
             time.sleep(BEAT_S)
-            self.ask("here")
+            self.saw_stops = self.ask("here").get("stops", 0)
             if not self.is_there:
                 continue
             asked, self.asked = self.asked, []
@@ -65,18 +66,19 @@ class Mate:
                 if news.get("over"):
                     self.is_there = False
 
-    def connects(self) -> None:
+    def connects(self, saw_stops: int) -> None:
         self.connection += 1
         self.seen = 0
         port = self.group.robot.port
-        answer = self.drive("connect", port=port, robot="tinibot", language="en")
+        answer = self.drive("connect", port=port, robot="tinibot", language="en",
+                            saw_stops=saw_stops)  # fmt: skip
         self.is_there = "failure" not in answer
 
-    def runs(self, stops: int) -> None:
-        """Ask for a run, which was pressed after so many presses of STOP."""
+    def runs(self, stops: int, seen: int) -> None:
+        """Ask for a run, which was pressed after so many presses of STOP, and so much news."""
         self.ids += 1
         self.asked.append({"do": "upload", "id": self.ids, "image": PROGRAM, "robot": "tinibot",
-                           "runs": True, "stops": stops, "seen": self.seen})  # fmt: skip
+                           "runs": True, "stops": stops, "seen": seen})  # fmt: skip
 
     def stops(self) -> None:
         if self.is_there:
@@ -116,9 +118,9 @@ class Group:
         while not self.robot.moves:
             assert time.monotonic() < end_s, "it never drives"
             if not mate.is_there:
-                mate.connects()
+                mate.connects(mate.saw_stops)
             time.sleep(0.3)
-            mate.runs(mate.presses)
+            mate.runs(mate.presses, mate.seen)
             time.sleep(0.7)
 
     def races(self) -> None:
@@ -126,9 +128,10 @@ class Group:
         driver, *others = self.chance.sample(self.mates, 3)
         self.drives(driver)
         for mate in self.chance.sample(others, self.chance.randrange(3)):
-            self.later(lambda mate=mate, stops=mate.presses: self._takes(mate, stops))  # type: ignore[misc]
+            pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
+            self.later(pressed)
         if self.chance.random() < 0.5:
-            self.later(lambda stops=driver.presses: driver.runs(stops))  # type: ignore[misc]
+            self.later(partial(driver.runs, driver.presses, driver.seen))
         time.sleep(self.chance.random() * LATE_S)
         stopper = self.chance.choice(self.mates)
         stopper.presses += 1
@@ -142,11 +145,12 @@ class Group:
             time.sleep(0.01)
         time.sleep(LATCH_S)
 
-    def _takes(self, mate: Mate, stops: int) -> None:
+    def _takes(self, mate: Mate, stops: int, saw_stops: int) -> None:
         """Who has pressed Run takes the robot over, and then sends the program."""
-        mate.connects()
+        mate.connects(saw_stops)
+        seen = mate.seen
         time.sleep(self.chance.random() * 0.3)
-        mate.runs(stops)
+        mate.runs(stops, seen)
 
     def meet(self) -> None:
         for thread in self.late:

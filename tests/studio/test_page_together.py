@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_class import joined, said
+from tests.studio.test_page_class import joined, said, teaches
 from tests.support import studio
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Class, Pages, drives, image, write
@@ -243,3 +243,27 @@ def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) 
     assert "W(8)" not in "".join(lines(luz))
     luz.locator("#class_group button", has_text="Red (Ana)").click()
     has(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(8);")
+
+
+def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
+    two: tuple[Page, Page], taught: Class, browser: Browser
+) -> None:
+    ana, luz = two
+    begins(two)
+    seen = Pages(browser, taught.server.address)
+    teacher = teaches(seen, taught)
+    tile = teacher.locator("#wall li").filter(has_text="Red")
+    tile.filter(has_text="Ana, Luz").wait_for()
+    assert teacher.locator("#wall li").filter(has_text="Ana").count() == 1
+    tile.locator("button.see").click()
+    program = teacher.locator("#big_pupil pre").first
+    program.filter(has_text="B(1, 40)").wait_for()
+    goes_to(luz, "B(1, 40)")
+    for _ in range(4):
+        luz.keyboard.press("Backspace")
+    types(luz, "66)")
+    luz.keyboard.press("ArrowDown")
+    program.filter(has_text="B(1, 66)").wait_for()
+    teacher.locator("#big_pupil pre").last.filter(has_text="Luz: → B(1, 66)").wait_for()
+    assert ana.locator("#class_mates").inner_text() == "Luz"  # who looks is not seen
+    seen.close()

@@ -210,4 +210,3 @@ def test_each_sees_at_which_block_the_other_is(two: tuple[Page, Page]) -> None:
     block(ana, "stop").click(position={"x": 6, "y": 6})
     name = luz.locator(".cm-line", has_text="S;").locator(".cm-mate")
     name.filter(has_text="Ana").wait_for()
-

@@ -93,10 +93,6 @@ class Attending:
                 self._latched = self._count
             self._void()
 
-    def latch_for(self, left_s: float) -> None:
-        """Refuse what is asked for so long: it was stopped before this connection."""
-        self.latch(self._clock() + left_s, stops=False)
-
     @property
     def is_latched(self) -> bool:
         return self._clock() < self._latched_until_s

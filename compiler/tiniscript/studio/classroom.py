@@ -30,7 +30,6 @@ from typing import NamedTuple
 from tiniscript.base.source import printable
 from tiniscript.lessons import catalogue
 from tiniscript.link.port_names import canonical_port
-from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.class_keeping import (
     MOST_LESSONS,
     MOST_PUPILS,
@@ -112,7 +111,7 @@ class KeptWork:
 @dataclass(eq=False)
 class ClassRobot:
     """`hosted` is the connection of this turn, once the pupil's page has taken it; `waited` is the
-    place in the queue that the pupil had; `stopped_s` when a pupil of the group has stopped it."""
+    place in the queue that the pupil had; `stops` is the number of the newest STOP of a group."""
 
     port: str
     name: str
@@ -121,7 +120,7 @@ class ClassRobot:
     waited: int | None = None
     began_s: float = 0.0
     free_s: float = 0.0
-    stopped_s: float = float("-inf")
+    stops: int = 0
 
     def begin(self, pupil: Pupil, now_s: float) -> None:
         self.pupil, self.hosted, self.began_s = pupil, None, now_s
@@ -355,6 +354,7 @@ class Classroom:
             "robot": turn.name if turn else "",
             "left_s": self._remaining_s(turn) if turn else 0,
             "hand": pupil.hand is not None,
+            **({"stops": turn.stops} if turn is not None and group is not None else {}),
             **({"groups": groups} if groups else {}),
             **({"group": group.name} if group is not None else {}),
             **({"driver": driver.name} if driver is not None and driver is not pupil else {}),
@@ -395,16 +395,14 @@ class Classroom:
         robot = self._turn(pupil) or self._turn_of(self._mates(pupil))
         if robot is None:
             return {"failure": "turn_none"}
-        is_other = robot.pupil is not pupil
-        if is_other:
+        if robot.pupil is not pupil:
+            if _count(request.get("saw_stops", robot.stops)) < robot.stops:
+                return {"failure": "stopped_elsewhere"}  # it was pressed before that
             robot.pass_to(pupil)
         # One that this page has left a moment ago is not the robot of this turn.
         answer = self._hosting.answer({**_own_request(pupil, request), "port": robot.port})
         if not answer:
-            robot.hosted = hosted = self._hosting.robot_of(pupil.page)
-            left_s = robot.stopped_s + LATCH_S - self._clock()
-            if is_other and hosted is not None and left_s > 0:  # Run was pressed before
-                hosted.attending.latch_for(left_s)
+            robot.hosted = self._hosting.robot_of(pupil.page)
         return answer
 
     def _drive(self, pupil: Pupil, request: Json) -> Json:
@@ -414,18 +412,19 @@ class Classroom:
         return self._hosting.answer(_own_request(pupil, request))
 
     def _stop(self, pupil: Pupil, request: Json) -> Json:
-        """Stop the own robot, or that of the group, and no other, whatever was asked. For the others
-        of the group it latches: what was asked before it, and arrives later, is refused, whoever
-        takes the robot over meanwhile."""
+        """Stop the own robot, or that of the group, and no other, whatever was asked. For others of
+        the group it latches: what was asked before it, and arrives later, is refused, whoever takes
+        the robot over meanwhile."""
         robot = self._turn_of(self._mates(pupil))
         if robot is not None:
             stops = request.get("group_stops", 0)
             is_own = robot.pupil is pupil
             if is_own or self._groups.is_new_stop(pupil.token, _count(stops)):
-                robot.stopped_s = self._clock()
+                robot.stops = next(self._numbers)
                 if not is_own and robot.hosted is not None:
                     robot.hosted.attending.latch()
-        return self._hosting.answer({**_own_request(pupil, request), "do": "stop", "asked": []})
+        answer = self._hosting.answer({**_own_request(pupil, request), "do": "stop", "asked": []})
+        return {**answer, **({"stops": robot.stops} if robot is not None else {})}
 
     # -- groups -----------------------------------------------------------------------------------
 
@@ -582,7 +581,8 @@ class Classroom:
         key."""
         group = self._groups.by_key(request.get("group"))
         if group is not None:
-            return {"version": group.program.number, **Work(group.text)._asdict()}
+            return {"version": group.program.number, "history": self._groups.told(group),
+                    **Work(group.text)._asdict()}  # fmt: skip
         pupil = self._pupil(request) or self._kept.get(str(request.get("key")))
         version = pupil.version if isinstance(pupil, Pupil) else 0
         return {"version": version, **(pupil.work if pupil else NOTHING)._asdict()}

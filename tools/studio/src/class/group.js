@@ -7,7 +7,7 @@ import { bugSaid } from '../page/faults.js';
 import { keepAt, keptForm } from '../page/kept.js';
 import { pageState } from '../page/page_state.js';
 import { known, text } from '../page/texts.js';
-import { post } from '../robot/host.js';
+import { hearStops, post } from '../robot/host.js';
 import { shown } from '../robot/plain_text.js';
 import { pause } from '../robot/transport.js';
 import { named, Together } from './together.js';
@@ -149,7 +149,7 @@ export class Group {
     const group_stops = ++this.#stops;
     for (let tries = 0; tries < STOP_TRIES; tries += 1) {
       try {
-        await post({ do: 'stop', page: 'group', group_stops }, { keepalive: true });
+        hearStops((await post({ do: 'stop', page: 'group', group_stops }, { keepalive: true })).stops ?? 0);
         return;
       } catch {
         await pause(100);
