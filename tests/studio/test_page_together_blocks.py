@@ -1,13 +1,20 @@
 """Pupils of a group in browsers, one of them with blocks: what is done to blocks is a change of
-these blocks alone."""
+these blocks alone.
+
+`python -m tests.studio.test_page_together_blocks 200` lets them make so many changes; a folder
+after it gets a picture of each page.
+"""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
+from random import Random
 from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.studio.test_page_blocks import PROGRAM as PROGRAM_BLOCKS
 from tests.studio.test_page_blocks import block, box_of, drag
 from tests.studio.test_page_class import joined
 from tests.studio.test_page_together import enters, goes_to, has, lines, types
@@ -47,6 +54,10 @@ def pages(browser: Browser, taught: Class) -> Iterator[Pages]:
 
 @pytest.fixture(scope="module")
 def both(pages: Pages, taught: Class) -> tuple[Page, Page]:
+    return group_of(pages, taught)
+
+
+def group_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
     """Ana has blocks, Luz has the text."""
     ana = joined(pages, taught, "Ana")
     write(ana, PROGRAM)
@@ -210,3 +221,76 @@ def test_each_sees_at_which_block_the_other_is(two: tuple[Page, Page]) -> None:
     block(ana, "stop").click(position={"x": 6, "y": 6})
     name = luz.locator(".cm-line", has_text="S;").locator(".cm-mate")
     name.filter(has_text="Ana").wait_for()
+
+
+def random_change(page: Page, has_blocks: bool, rng: Random) -> None:
+    """Do something as a person does it: in blocks to a number, in text to a line."""
+    if has_blocks:
+        found = page.locator(f"{PROGRAM_BLOCKS} .blocklyNumberField")
+        which = rng.randrange(max(1, found.count()))
+        try:
+            found.nth(which).click(timeout=3000)
+        except Exception:  # others have taken it away meanwhile
+            return
+        page.keyboard.press("Control+a")
+        types(page, f"{rng.randrange(1, 60)}\n")
+        return
+    rows = [row for row in lines(page) if row.strip()]
+    row = rng.choice(rows)
+    at = page.locator(".cm-line").filter(has_text=row.strip()).first
+    try:
+        at.click(timeout=3000)
+    except Exception:  # others have changed it meanwhile
+        return
+    page.keyboard.press("End")
+    if rng.random() < 0.3 and len(rows) > 5 and not row.strip().startswith(("LOOP", "END_")):
+        for key in ("Home", "Shift+End", "Delete"):
+            page.keyboard.press(key)
+    else:
+        types(page, f"\n{rng.choice('FBRL')}({rng.randrange(1, 9)}, {rng.randrange(20, 99)})")
+    page.keyboard.press("ArrowUp")
+
+
+def race(two: tuple[Page, Page], count: int, seed: int) -> None:
+    """Let both change the program, and look at the end whether all is one."""
+    ana, luz = two
+    rng = Random(seed)
+    for _ in range(count):
+        page = rng.choice(two)
+        random_change(page, page is ana, rng)
+    luz.locator(".cm-content").evaluate("(it) => it.blur()")
+    until(lambda: text_of(ana).strip() == text_of(luz).strip(), "both have the same", 60)
+    shown(ana)
+    for page in two:
+        page.locator("html[data-state=checked]").wait_for(state="attached")
+        until(lambda page=page: image(page) == compile(text_of(luz)).image, "compiled")  # type: ignore[misc]
+    said = ana.locator(f"{PROGRAM_BLOCKS} .blocklyBlock").count()
+    assert said >= len([row for row in text_of(luz).splitlines() if row and "END_" not in row])
+
+
+def test_both_end_with_the_same_program(two: tuple[Page, Page]) -> None:
+    race(two, 12, 1)
+
+
+def main() -> None:
+    """Let pupils make so many changes in two browsers: 200, say."""
+    count = int(sys.argv[1])
+    with (
+        studio.taught([]) as made,
+        studio.driver() as playwright,
+        studio.browser(playwright) as browser,
+    ):
+        found = Pages(browser, made.server.address)
+        two = group_of(found, made)
+        for k in range(count // 20):
+            race(two, 20, k)
+            print(f"{20 * (k + 1)} changes: text, blocks and image are one", flush=True)
+        for page, name in zip(two, ("blocks", "text"), strict=True):
+            if len(sys.argv) > 2:
+                page.screenshot(path=f"{sys.argv[2]}/{name}.png")
+        found.close()
+        assert not found.wrong
+
+
+if __name__ == "__main__":
+    main()
