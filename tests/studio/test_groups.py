@@ -471,6 +471,11 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
         deed = chance.choice(("stop", "connect", "beat"))
         if deed == "connect":
             if turn.pupil.token != member.token:
+                request = {"do": "connect", "page": "x", "port": "y"}
+                early = {**request, "saw_stops": turn.stops - 1}  # it was pressed before a STOP
+                refused = {"failure": "stopped_elsewhere"}
+                assert school.made.answer(member.token, HERE, early) == refused
+                assert turn.pupil.token != member.token
                 school.connects(member.token)
                 assert robot.left == "group_other"  # that stops what it does
         elif deed == "beat":
@@ -528,3 +533,21 @@ def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
     for k in (0, 1):
         assert len({member.page.base.checksum() for member in members[k::2]}) == 1
     assert members[0].text != members[1].text
+
+
+def test_the_teacher_sees_what_was_done_and_by_whom_whoever_has_gone(school: School) -> None:
+    ana, luz = Member(school, "Ana"), Member(school, "Luz")
+    ana.types("80", "95")
+    ana.sends()
+    luz.sends()
+    luz.page.type([*luz.page.text[:1], "BEEP(1, 440);", *luz.page.text[1:]], 0)
+    luz.page.flush()
+    luz.sends()
+    luz.page.type([], 0)
+    luz.page.flush()
+    luz.sends()
+    luz.asks("group_leave")
+    [group] = school.teaches("class")["groups"]
+    found = school.teaches("class_text", group=group["key"])
+    assert found["history"] == ["Luz: − 5", "Luz: + BEEP(1, 440)", "Ana: → F(1, 95)"]
+    assert [school.made._number(ana.token)] == group["pupils"]

@@ -875,3 +875,19 @@ def test_a_fault_is_said_at_its_block(page: Page) -> None:
     page.click("#view_blocks")
     shown(page)
     assert fault.count() == 0 and page.locator(f"{PROGRAM} .blocklyIconGroup").count() == 0
+
+
+def test_who_changes_a_block_changes_its_line_alone(page: Page) -> None:
+    head = "SI|F(1.50, (80));  // first\n\n"
+    end = "IF((X) > 2);\n  S;\nELSE;  // else\n  W(2.0);\nENDIF;  // end\n"
+    start(page, f"{head}B(1.50, 80);\n{end}")
+    block(page, "back").locator(".blocklyNumberField").first.click()
+    page.keyboard.press("Control+a")
+    page.keyboard.type("3")
+    page.keyboard.press("Enter")
+    becomes(page, f"{head}B(3, 80);\n{end}")
+    block(page, "back").locator(".blocklyNumberField").first.click()
+    page.keyboard.press("Control+a")
+    page.keyboard.type("1.5")
+    page.keyboard.press("Enter")
+    becomes(page, f"{head}B(1.50, 80);\n{end}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_class import joined, said
+from tests.studio.test_page_class import joined, said, teaches
 from tests.support import studio
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import Class, Pages, drives, image, write
@@ -130,11 +130,38 @@ def test_undo_takes_back_what_the_own_page_has_typed(two: tuple[Page, Page]) -> 
     types(luz, "\nR(1, 50)\n")
     has(ana, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(7);")
     ana.locator(".cm-content").focus()
-    for _ in range(4):
-        if any("W(7)" in row for row in lines(ana)):
-            ana.keyboard.press("Control+z")
+    ana.keyboard.press("Control+z")
     for page in two:
         has(page, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;")
+
+
+def test_undo_leaves_what_another_one_has_changed_since(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    begins(two)
+    for page, text in ((ana, "95)\n"), (luz, "70)\n")):
+        goes_to(page, "B(1, ")
+        for _ in range(4):
+            page.keyboard.press("Backspace")
+        types(page, text)
+        has(ana, "F(1, 80);", "LOOP(3);", f"B(1, {text[:2]});", "END_LOOP;", "S;")
+    goes_to(ana, "S;")
+    types(ana, "9")  # half typed, and taken back as such
+    ana.keyboard.press("Control+z")
+    has(ana, "F(1, 80);", "LOOP(3);", "B(1, 70);", "END_LOOP;", "S;")
+    ana.keyboard.press("Control+z")
+    ana.wait_for_timeout(500)  # an older one may be taken back
+    assert "B(1, 70);" in [row.strip() for row in lines(ana)]
+    begins(two)
+    goes_to(ana, "B(1, 40)")
+    for _ in range(4):
+        ana.keyboard.press("Backspace")
+    types(ana, "8)")
+    ana.keyboard.press("ArrowDown")
+    has(luz, "F(1, 80);", "LOOP(3);", "B(1, 8);", "END_LOOP;", "S;")
+    ana.keyboard.press("Control+z")
+    has(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;")
+    ana.keyboard.press("Control+y")
+    has(luz, "F(1, 80);", "LOOP(3);", "B(1, 8);", "END_LOOP;", "S;")
 
 
 def test_each_sees_where_the_other_is(two: tuple[Page, Page]) -> None:
@@ -216,3 +243,27 @@ def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) 
     assert "W(8)" not in "".join(lines(luz))
     luz.locator("#class_group button", has_text="Red (Ana)").click()
     has(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(8);")
+
+
+def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
+    two: tuple[Page, Page], taught: Class, browser: Browser
+) -> None:
+    ana, luz = two
+    begins(two)
+    seen = Pages(browser, taught.server.address)
+    teacher = teaches(seen, taught)
+    tile = teacher.locator("#wall li").filter(has_text="Red")
+    tile.filter(has_text="Ana, Luz").wait_for()
+    assert teacher.locator("#wall li").filter(has_text="Ana").count() == 1
+    tile.locator("button.see").click()
+    program = teacher.locator("#big_pupil pre").first
+    program.filter(has_text="B(1, 40)").wait_for()
+    goes_to(luz, "B(1, 40)")
+    for _ in range(4):
+        luz.keyboard.press("Backspace")
+    types(luz, "66)")
+    luz.keyboard.press("ArrowDown")
+    program.filter(has_text="B(1, 66)").wait_for()
+    teacher.locator("#big_pupil pre").last.filter(has_text="Luz: → B(1, 66)").wait_for()
+    assert ana.locator("#class_mates").inner_text() == "Luz"  # who looks is not seen
+    seen.close()

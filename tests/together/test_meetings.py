@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.together.does import does
 from tiniscript.together.form import (
     CHANGED,
     CIRCLE,
@@ -70,7 +71,7 @@ class Two:
 
     def inserts(self, page: Page, container: str, behind: str, text: str = "BEEP(1, 440)") -> None:
         node = Part(page.new_id(), text)
-        assert page.do_by_blocks([Insert(At(container, behind), (node,))])
+        assert does(page, [Insert(At(container, behind), (node,))])
 
     def types(self, page: Page, old: str, new: str, is_hot: bool = False) -> None:
         """Change part of a line, and leave it unless it `is_hot`."""
@@ -89,7 +90,7 @@ def two() -> Two:
 def test_a_delete_spares_what_its_author_has_not_seen(two: Two) -> None:
     loop = two.find("LOOP(3)")
     two.inserts(two.ana, loop, two.find("B(1, 40)"))
-    two.luz.do_by_blocks([Delete(tuple(two.luz.view.below(loop)))])
+    does(two.luz, [Delete(tuple(two.luz.view.below(loop)))])
     assert "LOOP(3); B(1, 40); BEEP(1, 440);" in two.meet()
     assert two.luz.told[-1][1] == HAS_NEW
     assert "  BEEP(1, 440);" in two.luz.text
@@ -107,26 +108,26 @@ def test_an_arm_goes_with_all_that_is_in_it_or_not(two: Two) -> None:
 def test_a_block_goes_around_what_was_put_between(two: Two) -> None:
     first, last = two.find("B(1, 40)"), two.find("R(1, 40)")
     two.inserts(two.ana, two.find("LOOP(3)"), first)
-    two.luz.do_by_blocks([Wrap((first, last), Part(two.luz.new_id(), "WHILE(X < 2)"))])
+    does(two.luz, [Wrap((first, last), Part(two.luz.new_id(), "WHILE(X < 2)"))])
     assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in two.meet()
 
 
 def test_a_place_whose_neighbour_has_gone_is_where_that_stood(two: Two) -> None:
-    two.ana.do_by_blocks([Delete((two.find("R(1, 40)"),))])
+    does(two.ana, [Delete((two.find("R(1, 40)"),))])
     two.inserts(two.luz, two.find("LOOP(3)"), two.find("R(1, 40)"))
     assert "B(1, 40); BEEP(1, 440); END_LOOP" in two.meet()
 
 
 def test_the_first_place_of_a_block_that_was_taken_away_stays(two: Two) -> None:
-    two.ana.do_by_blocks([Unwrap(two.find("LOOP(3)"))])
+    does(two.ana, [Unwrap(two.find("LOOP(3)"))])
     two.inserts(two.luz, two.find("LOOP(3)"), "")
     assert "F(1, 80); BEEP(1, 440); B(1, 40); R(1, 40); IF" in two.meet()
 
 
 def test_two_blocks_that_go_into_each_other_make_no_circle(two: Two) -> None:
     loop, branch = two.find("LOOP(3)"), two.find("IF(X < 1)")
-    two.ana.do_by_blocks([Move((loop,), At(branch, ""))])
-    two.luz.do_by_blocks([Move((branch,), At(loop, ""))])
+    does(two.ana, [Move((loop,), At(branch, ""))])
+    does(two.luz, [Move((branch,), At(loop, ""))])
     assert "IF(X < 1); LOOP(3)" in two.meet()
     assert two.luz.told[-1][1] == CIRCLE
 
@@ -155,7 +156,7 @@ def test_an_undo_that_comes_after_anothers_change_is_refused(two: Two) -> None:
 def test_undo_brings_back_what_was_deleted_with_its_ids(two: Two) -> None:
     loop = two.find("LOOP(3)")
     before = text_of(two.program.tree)
-    two.ana.do_by_blocks([Delete(tuple(two.ana.view.below(loop)))])
+    does(two.ana, [Delete(tuple(two.ana.view.below(loop)))])
     two.meet()
     assert two.ana.undo()
     two.meet()
@@ -176,21 +177,21 @@ def test_a_line_that_two_have_cut_and_pasted_is_there_once(two: Two) -> None:
 def test_a_page_makes_no_change_that_leaves_no_program() -> None:
     two = Two("DEF TURN\nR(1, 40)\nEND_DEF\nLOOP(2)\nTURN\nEND_LOOP\n")
     page, turn = two.ana, two.find("TURN")
-    assert not page.do_by_blocks([Move((two.find("DEF TURN"),), At(two.find("LOOP(2)"), ""))])
+    assert not does(page, [Move((two.find("DEF TURN"),), At(two.find("LOOP(2)"), ""))])
     for text in ("S; S", "END_LOOP", "s", "S // note", "LOOP(2)", ""):
-        assert not page.do_by_blocks([Replace(turn, (("text", text),))])
+        assert not does(page, [Replace(turn, (("text", text),))])
     assert not page.pending
 
 
 def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(two: Two) -> None:
     two.types(two.ana, "B(1, 40);", "B(1, 4", is_hot=True)
     assert not two.ana.pending
-    two.luz.do_by_blocks([Move((two.find("B(1, 40)"),), At(ROOT, two.find("L(1, 60)")))])
+    does(two.luz, [Move((two.find("B(1, 40)"),), At(ROOT, two.find("L(1, 60)")))])
     two.sends(two.luz)
     two.hears(two.ana)
     assert two.ana.text[-1] == "  B(1, 4"
     assert two.ana.caret == len(two.ana.text) - 1
-    two.luz.do_by_blocks([Delete((two.find("B(1, 40)"),))])
+    does(two.luz, [Delete((two.find("B(1, 40)"),))])
     two.sends(two.luz)
     two.hears(two.ana)
     assert two.ana.text[-1] == "  B(1, 4"
@@ -232,7 +233,7 @@ def test_of_lines_typed_one_below_the_other_only_the_last_one_waits(two: Two) ->
 
 
 def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
-    two.luz.do_by_blocks([Delete((two.find("R(1, 40)"),))])
+    does(two.luz, [Delete((two.find("R(1, 40)"),))])
     two.types(two.ana, "R(1, 40)", "R(2, 40)")
     for page in (two.luz, two.ana) * 2:
         two.sends(page)
@@ -293,3 +294,20 @@ def test_a_page_whose_tree_is_another_one_asks_for_the_whole(two: Two) -> None:
     two.ana.receive(two.program.news("a", -1, two.ana.epoch))
     assert not two.ana.is_astray
     assert "SI|F(1, 80);" in two.ana.text
+
+
+def test_a_redo_takes_back_an_undo_until_something_else_is_done(two: Two) -> None:
+    two.types(two.ana, "B(1, 40)", "B(9, 40)")
+    two.types(two.luz, "R(1, 40)", "R(5, 40)")
+    before = two.meet()
+    assert not two.ana.redo()
+    for _ in range(2):
+        assert two.ana.undo()
+        assert "B(1, 40)" in two.meet()
+        assert two.ana.redo()
+        assert two.meet() == before
+    assert two.ana.undo()
+    two.meet()
+    two.types(two.ana, "L(1, 60)", "L(2, 60)")
+    two.meet()
+    assert not two.ana.redo()

@@ -23,6 +23,9 @@ class Block(NamedTuple):
 
     `if` has a value and a body for each arm, and one body more for ELSE; `def` has the names in its
     brackets as values. `note` is the comment after it; `is_apart`: an empty line stands before it.
+    `said` is what its lines were when it was read, the end left out, and `comment` the comment of
+    it, or what it is; what is missing or empty is printed anew. `is_behind`: a comment that stands
+    behind the line before it.
     """
 
     kind: str
@@ -32,6 +35,13 @@ class Block(NamedTuple):
     note: str = ""
     is_apart: bool = False
     place: Place = NOWHERE
+    said: tuple[str, ...] = ()
+    comment: str = ""
+    is_behind: bool = False
+
+    def line(self, k: int) -> str:
+        """Return what a line was, or nothing where it is to be printed anew."""
+        return self.said[k] if k < len(self.said) else ""
 
 
 LEFT_OUT = Block("comment", "…")
@@ -152,6 +162,9 @@ def _blocks_from(data: list[dict[str, Any]]) -> tuple[Block, ...]:
             tuple(_blocks_from(body) for body in item["bodies"]),
             item["note"],
             item["is_apart"],
+            said=tuple(item.get("said", ())),
+            comment=item.get("comment", ""),
+            is_behind=bool(item.get("is_behind")),
         )
         for item in data
     )

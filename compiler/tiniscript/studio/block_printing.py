@@ -19,14 +19,17 @@ from tiniscript.syntax.operators import BINARY, COMPARISON, MINUS, NOT
 ATOM = MINUS + 1  # needs no brackets anywhere
 
 _OPERATORS = {name: (precedence, sign) for sign, (precedence, name) in BINARY.items()}
+_NOTED = frozenset((*BLOCK_ENDS.values(), "ELSE", "ELSEIF"))
 _NO_LINE = re.compile(r"[\r\n\0]+")
 
 
 class Printed(NamedTuple):
-    """`places` are those of the blocks of the body, in the order of the text."""
+    """`places` are those of the blocks of the body, in the order of the text; `lines` where each of
+    their lines is, from 0."""
 
     text: str
     places: tuple[Place, ...]
+    lines: tuple[tuple[int, ...], ...]
 
 
 class _Instruction(NamedTuple):
@@ -42,6 +45,11 @@ class _Instruction(NamedTuple):
     def is_code(self) -> bool:
         return self.kind not in ("comment", "grey")
 
+    @property
+    def takes_note(self) -> bool:
+        """Whether it is the line of an arm or of an end, whose comment is a block of its own."""
+        return self.word in _NOTED and self.is_code and not self.note
+
 
 class _Line(NamedTuple):
     """A line of the text; `columns` are where its instructions begin and end."""
@@ -53,8 +61,8 @@ class _Line(NamedTuple):
 def print_blocks(form: Form) -> Printed:
     """Return the text of a program's blocks, and where each of them is."""
     instructions: list[_Instruction] = []
-    ranges: list[tuple[int, int]] = []
-    _add_all(form.body, instructions, ranges)
+    own: list[list[int]] = []  # of each block, which instructions are its lines
+    _add_all(form.body, instructions, own)
     lines = _lines(form, instructions)
     loose = [Row("", line, k == 0) for k, line in enumerate(_loose_lines(form.loose))]
     texts = lines_of([line.row for line in lines] + loose)
@@ -66,7 +74,8 @@ def print_blocks(form: Form) -> Printed:
         places += [(number, before + start, before + end) for start, end in line.columns]
     return Printed(
         "".join(text + "\n" for text in texts),
-        tuple((*places[first][:2], places[last][0], places[last][2]) for first, last in ranges),
+        tuple((*places[all[0]][:2], places[all[-1]][0], places[all[-1]][2]) for all in own),
+        tuple(tuple(places[k][0] - 1 for k in all) for all in own),
     )
 
 
@@ -74,23 +83,28 @@ def print_blocks(form: Form) -> Printed:
 
 
 def _add_all(
-    blocks: tuple[Block, ...], instructions: list[_Instruction], ranges: list[tuple[int, int]]
+    blocks: tuple[Block, ...], instructions: list[_Instruction], own: list[list[int]]
 ) -> None:
-    """Add the lines of blocks, and for each block the first and the last of its own."""
+    """Add the lines of blocks, and for each block which are its own."""
     for block in blocks:
-        k, first = len(ranges), len(instructions)
-        ranges.append((first, first))
+        own.append([])
+        lines = own[-1]
+        if block.is_behind and instructions and instructions[-1].takes_note:
+            instructions[-1] = instructions[-1]._replace(note=block.comment or _note(block.word))
+            lines.append(len(instructions) - 1)
+            continue
         values = [text_of(value) for value in block.values]
         if block.bodies:
-            _add_bodies(block, values, instructions, ranges)
+            _add_bodies(block, values, instructions, own)
         else:
+            lines.append(len(instructions))
             instructions.append(_instruction(block, values))
-        ranges[k] = (first, len(instructions) - 1)
 
 
 def _add_bodies(
-    block: Block, values: list[str], instructions: list[_Instruction], ranges: list[tuple[int, int]]
+    block: Block, values: list[str], instructions: list[_Instruction], own: list[list[int]]
 ) -> None:
+    lines = own[-1]
     word = "LOOP" if block.kind == "forever" else block.kind.upper()
     heads = [(word, f"{word}({value})") for value in values[:1]]
     heads += [("ELSEIF", f"ELSEIF({value})") for value in values[1:]]
@@ -103,20 +117,26 @@ def _add_bodies(
         heads = [(word, "LOOP(FOREVER)")]
     elif len(block.bodies) > len(values):
         heads.append(("ELSE", "ELSE"))
-    note, is_apart = block.note, block.is_apart
-    for (first, head), body in zip(heads, block.bodies, strict=True):
-        instructions.append(_Instruction(block.kind, first, head, note, is_apart))
-        _add_all(body, instructions, ranges)
+    note, is_apart = block.comment or _note(block.note), block.is_apart
+    for k, ((first, head), body) in enumerate(zip(heads, block.bodies, strict=True)):
+        text = block.line(k) or head
+        lines.append(len(instructions))
+        instructions.append(_Instruction(block.kind, first, text, note, is_apart))
+        _add_all(body, instructions, own)
         note, is_apart = "", False
+    lines.append(len(instructions))
     instructions.append(_Instruction(block.kind, BLOCK_ENDS[word], BLOCK_ENDS[word]))
 
 
 def _instruction(block: Block, values: list[str]) -> _Instruction:
     kind, word = block.kind, _one_line(block.word)
     if kind == "comment" or (kind == "grey" and not word.strip()):
-        return _Instruction("comment", "", _comment(word), is_apart=block.is_apart)
+        said = block.comment or _comment(word)
+        return _Instruction("comment", "", said, is_apart=block.is_apart)
     if kind == "grey":
         text = word.strip()
+    elif block.line(0):
+        text = block.line(0)
     elif kind == "assign":
         text = f"{word} = {values[0]}"
     else:
@@ -126,7 +146,8 @@ def _instruction(block: Block, values: list[str]) -> _Instruction:
             values[0] = " ".join((values[0], *unit))
         arguments = f"({', '.join(values)})" if values else ""
         text = (word or kind.upper()) + arguments + until
-    return _Instruction(kind, word or kind.upper(), text, block.note, block.is_apart)
+    note = block.comment or _note(block.note)
+    return _Instruction(kind, word or kind.upper(), text, note, block.is_apart)
 
 
 # -- lines ---------------------------------------------------------------------------------------
@@ -152,7 +173,7 @@ def _lines(form: Form, instructions: list[_Instruction]) -> list[_Line]:
         lines.append(_line(rest[:1], setup, end=";"))
         setup, rest = "", rest[1:]
     if setup:
-        lines.append(_Line(Row("", _with_note(setup, form.note), False), ()))
+        lines.append(_Line(Row("", _with_note(setup, _note(form.note)), False), ()))
     return lines + [_line([instruction], end=";" * instruction.is_code) for instruction in rest]
 
 
@@ -182,7 +203,11 @@ def _line(instructions: list[_Instruction], setup: str = "", end: str = "") -> _
 
 
 def _with_note(text: str, note: str) -> str:
-    return f"{text}{BEFORE_COMMENT}{_comment(_one_line(note))}" if note else text
+    return f"{text}{BEFORE_COMMENT}{note}" if note else text
+
+
+def _note(text: str) -> str:
+    return _comment(_one_line(text)) if text else ""
 
 
 def _comment(text: str) -> str:

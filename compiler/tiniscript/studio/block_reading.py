@@ -10,7 +10,7 @@ from tiniscript.base.fixed_point import as_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import LINE_END, Source, Span
 from tiniscript.base.words import WORDS
-from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
+from tiniscript.studio.block_form import NOWHERE, Block, Form, Place, Stack, Value
 from tiniscript.studio.block_kinds import KINDS, kind_of
 from tiniscript.syntax.ast import (
     Argument,
@@ -50,6 +50,17 @@ def read(text: str, kit: Kit) -> Form:
         grey = {k for k, line in enumerate(lines) if line.strip()}
         source, parsed = _read_without(lines, grey)
     return _Reader(source, parsed, kit, {k: lines[k].strip() for k in grey}).form()
+
+
+def split_loose(rows: list[str]) -> tuple[list[str], list[str]]:
+    """Return the lines of a program, and those at its end of what hangs on nothing."""
+    k = end = len(rows)
+    while end and not rows[end - 1]:
+        end -= 1
+    while end and rows[end - 1].startswith(LOOSE):
+        end -= 1
+        k = end
+    return rows[: k - (0 < k < len(rows) and not rows[k - 1])], rows[k:]
 
 
 def _read_without(lines: list[str], grey: set[int]) -> tuple[Source, Parsed]:
@@ -107,7 +118,8 @@ class _Reader:
             place = (piece.first_line + 1, 1, piece.first_line + 2, 1)
             grey = self._grey.get(piece.first_line)
             kind, word = ("comment", _note(piece)) if grey is None else ("grey", grey)
-            comments.append(Block(kind, word, is_apart=piece.after_blank, place=place))
+            said = _comment(piece) if grey is None else ""
+            comments.append(Block(kind, word, (), (), "", piece.after_blank, place, (), said))
         return comments
 
     def _body(self, instructions: tuple[Instruction, ...]) -> list[Block]:
@@ -120,6 +132,7 @@ class _Reader:
     def _blocks(self, node: Instruction) -> list[Block]:
         """Return the block of an instruction, and the comment after its end."""
         first = self._next_piece()
+        said = [instruction_text(first.tokens)]
         if isinstance(node, Command):
             block = self._command(node, first)
         elif isinstance(node, Assign):
@@ -127,7 +140,7 @@ class _Reader:
         elif isinstance(node, Break):
             block = Block("break")
         else:
-            bodies, values = self._arms(node)
+            bodies, values = self._arms(node, said)
             kind = "forever" if isinstance(node, Loop) and not values else type(node).__name__
             if isinstance(node, Task) and node.is_when:
                 kind = "when"
@@ -137,14 +150,16 @@ class _Reader:
                 values = tuple((("NAME", parameter.name),) for parameter in node.parameters)
             block = Block(kind.lower(), word, values, bodies)
         last = self._pieces[self._next - 1]
+        place = self._place(first, last)
         block = block._replace(
-            note=_note(first), is_apart=first.after_blank, place=self._place(first, last)
-        )
-        after = _note(last) if last is not first else ""
-        return [block, Block("comment", after, place=block.place)] if after else [block]
+            note=_note(first), is_apart=first.after_blank, place=place, said=tuple(said),
+            comment=_comment(first),
+        )  # fmt: skip
+        after = _behind(last, place) if last is not first else ()
+        return [block, *after]
 
     def _arms(
-        self, node: If | Loop | While | Def | Task
+        self, node: If | Loop | While | Def | Task, said: list[str]
     ) -> tuple[tuple[tuple[Block, ...], ...], tuple[Value, ...]]:
         """Read bodies and what ends them: ELSEIF, ELSE or the end of the block."""
         heads: list[Argument | None] = []
@@ -159,11 +174,13 @@ class _Reader:
             elif isinstance(node, Loop) and node.times is not None:
                 heads = [node.times]
         bodies = []
-        after = ""  # ELSEIF or ELSE
+        after: tuple[Block, ...] = ()  # ELSEIF or ELSE
         for body in inner:
-            comment = [Block("comment", after)] if after else []
-            bodies.append((*comment, *self._body(body)))
-            after = _note(self._next_piece())
+            bodies.append((*after, *self._body(body)))
+            end = self._next_piece()
+            after = _behind(end)
+            if len(bodies) < len(inner):
+                said.append(instruction_text(end.tokens))
         return tuple(bodies), tuple(self._value(head) for head in heads)
 
     def _command(self, node: Command, piece: Piece) -> Block:
@@ -227,6 +244,17 @@ def _note(piece: Piece) -> str:
     return " // ".join(
         text[1:] if text[:1].isspace() and text[1:2] != "/" else text for text in texts
     )
+
+
+def _comment(piece: Piece) -> str:
+    return " ".join(piece.comments)
+
+
+def _behind(piece: Piece, place: Place = NOWHERE) -> tuple[Block, ...]:
+    """Return what stands behind an arm or an end."""
+    said = _comment(piece)
+    block = Block("comment", _note(piece), place=place, comment=said, is_behind=True)
+    return (block,) if said else ()
 
 
 def _is_loose(comment: str) -> bool:

@@ -134,7 +134,7 @@ class KeptWork:
 @dataclass(eq=False)
 class ClassRobot:
     """`hosted` is the connection of this turn, once the pupil's page has taken it; `waited` is the
-    place in the queue that the pupil had."""
+    place in the queue that the pupil had; `stops` is the number of the newest STOP of a group."""
 
     port: str
     name: str
@@ -143,6 +143,7 @@ class ClassRobot:
     waited: int | None = None
     began_s: float = 0.0
     free_s: float = 0.0
+    stops: int = 0
 
     def begin(self, pupil: Pupil, now_s: float) -> None:
         self.pupil, self.hosted, self.began_s = pupil, None, now_s
@@ -381,6 +382,7 @@ class Classroom:
             "left_s": self._remaining_s(turn) if turn else 0,
             "hand": pupil.hand is not None,
             **({"run": pupil.run.number} if pupil.run and not pupil.run.is_whole else {}),
+            **({"stops": turn.stops} if turn is not None and group is not None else {}),
             **({"groups": groups} if groups else {}),
             **({"group": group.name} if group is not None else {}),
             **({"driver": driver.name} if driver is not None and driver is not pupil else {}),
@@ -422,6 +424,8 @@ class Classroom:
         if robot is None:
             return {"failure": "turn_none"}
         if robot.pupil is not pupil:
+            if _count(request.get("saw_stops", robot.stops)) < robot.stops:
+                return {"failure": "stopped_elsewhere"}  # it was pressed before that
             robot.pass_to(pupil)
         # One that this page has left a moment ago is not the robot of this turn.
         answer = self._hosting.answer({**_own_request(pupil, request), "port": robot.port})
@@ -436,14 +440,19 @@ class Classroom:
         return self._hosting.answer(_own_request(pupil, request))
 
     def _stop(self, pupil: Pupil, request: Json) -> Json:
-        """Stop the own robot, or that of the group, and no other, whatever was asked. Of another
-        pupil's turn it latches: what was asked before it, and arrives later, is refused."""
+        """Stop the own robot, or that of the group, and no other, whatever was asked. For others of
+        the group it latches: what was asked before it, and arrives later, is refused, whoever takes
+        the robot over meanwhile."""
         robot = self._turn_of(self._mates(pupil))
-        if robot is not None and robot.pupil is not pupil and robot.hosted is not None:
+        if robot is not None:
             stops = request.get("group_stops", 0)
-            if self._groups.is_new_stop(pupil.token, stops if type(stops) is int else 0):
-                robot.hosted.attending.latch()
-        return self._hosting.answer({**_own_request(pupil, request), "do": "stop", "asked": []})
+            is_own = robot.pupil is pupil
+            if is_own or self._groups.is_new_stop(pupil.token, _count(stops)):
+                robot.stops = next(self._numbers)
+                if not is_own and robot.hosted is not None:
+                    robot.hosted.attending.latch()
+        answer = self._hosting.answer({**_own_request(pupil, request), "do": "stop", "asked": []})
+        return {**answer, **({"stops": robot.stops} if robot is not None else {})}
 
     # -- groups -----------------------------------------------------------------------------------
 
@@ -602,7 +611,8 @@ class Classroom:
         key."""
         group = self._groups.by_key(request.get("group"))
         if group is not None:
-            return {"version": group.program.number, **Work(group.text)._asdict()}
+            return {"version": group.program.number, "history": self._groups.told(group),
+                    **Work(group.text)._asdict()}  # fmt: skip
         pupil = self._pupil(request) or self._kept.get(str(request.get("key")))
         version = pupil.version if isinstance(pupil, Pupil) else 0
         return {"version": version, **(pupil.work if pupil else NOTHING)._asdict()}
@@ -823,6 +833,10 @@ class Classroom:
 def _own_request(pupil: Pupil, request: Json) -> Json:
     """Return a request about the pupil's own robot: what it calls its page tells tabs apart."""
     return {**request, "page": pupil.page, "tab": request.get("page")}
+
+
+def _count(found: object) -> int:
+    return found if type(found) is int else 0
 
 
 def _is_allowed(asked: object) -> bool:

@@ -18,6 +18,8 @@ from pathlib import Path
 from threading import Condition, Lock, RLock
 from time import monotonic
 
+from tiniscript.base.source import LINE_END
+from tiniscript.studio.block_reading import split_loose
 from tiniscript.studio.entrances import new_token
 from tiniscript.studio.names import are_alike, plain_name
 from tiniscript.studio.rates import Rate
@@ -25,8 +27,13 @@ from tiniscript.studio.robot_link import MOST_COUNT, BadRequest, Json, whole_num
 from tiniscript.together.form import (
     BAD,
     TOO_LONG,
+    Delete,
+    Insert,
+    Operation,
     Refused,
+    Replace,
     Taken,
+    Wrap,
     change_of,
     is_uid,
     page_and_count,
@@ -48,6 +55,7 @@ CHANGE_BYTES = 64_000  # as JSON: a whole program is less
 COSTS_BYTES = 2000  # a change costs one for each of these that it begins
 CHANGES = (80, 4)  # of a pupil: who is quick makes one a second; a large one takes 40 ms
 MARKS = 4  # colours
+MOST_TOLD = 200  # changes that the teacher's page shows
 _NODE = re.compile(r"[a-z0-9.]{0,24}")
 _PAGE = re.compile(r"m[0-9]{1,6}")
 
@@ -85,6 +93,7 @@ class Group:
     members: dict[str, Member] = field(default_factory=dict)  # by token
     version: int = 0
     owners: dict[str, str] = field(default_factory=dict)  # tokens by page; the newest ones
+    names: dict[str, str] = field(default_factory=dict)  # of pupils, who may have gone, by page
     news: Condition = field(default_factory=Condition)
 
     @property
@@ -170,6 +179,7 @@ class Groups:
                 for page in list(group.owners)[:-MOST_PAGES]:
                     del group.owners[page]
             member.page, member.heard_s, member.name = before, now_s, name
+            group.names[before] = name
             _tell(group)
             return {"group": group.name, "page": member.page,
                     **group.program.news(member.page, -1, "")}  # fmt: skip
@@ -303,10 +313,16 @@ class Groups:
 
     def history(self, group: Group) -> list[Json]:
         """Return what was done, and by whom as far as that is known."""
-        names = {each.page: each.name for each in group.members.values()}
         with group.news:
-            return [{**taken.data(), "who": names.get(_page(taken), "")}
+            return [{**taken.data(), "who": group.names.get(_page(taken), "")}
                     for taken in group.program.log]  # fmt: skip
+
+    def told(self, group: Group) -> list[str]:
+        """Return the newest of that, one a line, as the teacher's page shows it."""
+        with group.news:
+            newest = [(group.names.get(_page(taken), "?"), ", ".join(map(_deed, taken.operations)))
+                      for taken in reversed(group.program.log[-MOST_TOLD:])]  # fmt: skip
+        return [f"{who}: {did}" for who, did in newest]
 
     def end(self) -> None:
         """Forget all groups, and what is kept of them."""
@@ -377,7 +393,8 @@ def _number(page: str) -> int:
 def _tree_of(text: str) -> Tree:
     """Return the tree of a program with which a group begins. Raises Unparsed, Refused."""
     numbers = count(1)
-    tree = read(text, lambda: f"i.{next(numbers)}")
+    rows, _ = split_loose(LINE_END.split(text))
+    tree = read("\n".join(rows), lambda: f"i.{next(numbers)}")
     if len(text_of(tree)) > MOST_CHARACTERS:
         raise Refused(TOO_LONG)
     return tree_of(tree.snapshot())
@@ -390,6 +407,17 @@ def _tell(group: Group) -> None:
 
 def _said(member: Member) -> Json:
     return {"name": member.name, "mark": member.mark, "at": member.at, "writes": member.writes}
+
+
+def _deed(operation: Operation) -> str:
+    """Return what an operation does, in signs that are the same in each language."""
+    if isinstance(operation, Insert):
+        return "+ " + "; ".join(each.text for each in operation.nodes)
+    if isinstance(operation, Delete):
+        return f"− {len(operation.ids)}"
+    if isinstance(operation, Replace):
+        return "→ " + " ".join(str(value) for _, value in operation.fields if value)
+    return "+ " + operation.node.text if isinstance(operation, Wrap) else "↕"
 
 
 def _page(taken: Taken) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from difflib import SequenceMatcher
 from typing import NamedTuple
 
@@ -54,11 +54,24 @@ NOTHING = CutOut({}, ())
 
 
 def operations(
-    old: Tree, text: str, new_id: Callable[[], str], cut: CutOut = NOTHING
-) -> list[Operation]:
-    """Return operations that make of `old` the program of a text. Raises Unparsed, Refused."""
-    new = read(text)
-    return _Script(old, new, same_nodes(old, new), new_id, cut).steps()
+    old: Tree, text: str, new_id: Callable[[], str], cut: CutOut = NOTHING,
+    owners: Sequence[str] | None = None,
+) -> list[Operation]:  # fmt: skip
+    """Return operations that make of `old` the program of a text. Raises Unparsed, Refused.
+
+    `owners`: whose each line is, where that is known; what has none is new.
+    """
+    if owners is None:
+        new = read(text)
+        return _Script(old, new, same_nodes(old, new), new_id, cut).steps()
+    places: dict[str, int] = {}
+    new = read(text, places=places)
+    found = {ROOT: ROOT, START: START}
+    for id, line in places.items():
+        owner = owners[line] if line < len(owners) else ""
+        if owner in old and old[owner].kind == new[id].kind and owner not in found.values():
+            found[id] = owner
+    return _Script(old, new, found, new_id, cut).steps()
 
 
 # -- which is which -------------------------------------------------------------------------------

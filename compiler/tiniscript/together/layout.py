@@ -64,11 +64,18 @@ def mistaken_lines(text: str) -> frozenset[int]:
     )
 
 
-def read(text: str, new_id: Callable[[], str] | None = None, is_laid_out: bool = False) -> Tree:
-    """Return the tree of a text. Raises Unparsed. `is_laid_out`: as the formatter does it."""
+def read(
+    text: str, new_id: Callable[[], str] | None = None, is_laid_out: bool = False,
+    places: dict[str, int] | None = None,
+) -> Tree:  # fmt: skip
+    """Return the tree of a text. Raises Unparsed. `is_laid_out`: as the formatter does it.
+
+    `places` gets the line of each node, from 0.
+    """
     wrong = mistaken_lines(text)
     if wrong:
         raise Unparsed(wrong)
+    first_lines = [piece.first_line for piece in pieces_of(scan(text))]
     if not is_laid_out:
         text = format_source(Source(text))
     numbers = count(1)
@@ -76,7 +83,7 @@ def read(text: str, new_id: Callable[[], str] | None = None, is_laid_out: bool =
     tree = Tree()
     open_blocks = [ROOT]
     root, start = tree[ROOT], tree[START]
-    for piece in pieces_of(scan(text)):
+    for k, piece in enumerate(pieces_of(scan(text))):
         note = " ".join(piece.comments)
         if piece.is_setup:
             start.text, start.note, start.apart = (
@@ -96,6 +103,8 @@ def read(text: str, new_id: Callable[[], str] | None = None, is_laid_out: bool =
         node = Node(name(), kind, said, note, piece.after_blank, parent=open_blocks[-1])
         tree.nodes[node.id] = node
         tree[open_blocks[-1]].inside.append(node.id)
+        if places is not None and k < len(first_lines):
+            places[node.id] = first_lines[k]
         if node.kind == BLOCK:
             open_blocks.append(node.id)
     return tree

@@ -97,14 +97,14 @@ def do_hold(tree: Tree, conditions: tuple[Condition, ...]) -> bool:
     return all(id in tree and tree[id].mark(name) == uid for id, name, uid in conditions)
 
 
-def conditions(tree: Tree, back: tuple[Operation, ...], uid: str) -> tuple[Condition, ...]:
-    """Return what must still be so that `back` takes back the change `uid`, right after it."""
+def conditions(tree: Tree, back: tuple[Operation, ...]) -> tuple[Condition, ...]:
+    """Return what must still be so that `back` takes back the change that has made this tree."""
     found: list[Condition] = []
     for each in back:
         if isinstance(each, Replace):
-            found += [Condition(each.id, name, uid) for name, _ in each.fields]
+            found += [Condition(each.id, name, tree[each.id].mark(name)) for name, _ in each.fields]
         elif isinstance(each, Move):
-            found += [Condition(id, PLACE, uid) for id in each.ids]
+            found += [Condition(id, PLACE, tree[id].mark(PLACE)) for id in each.ids]
         elif isinstance(each, Delete | Unwrap):
             ids = each.ids if isinstance(each, Delete) else (each.id,)
             found += [Condition(id, name, tree[id].mark(name))

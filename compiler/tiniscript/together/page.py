@@ -19,6 +19,7 @@ from tiniscript.syntax.lexer import scan
 from tiniscript.together import differences
 from tiniscript.together.differences import CutOut
 from tiniscript.together.form import (
+    IS_GONE,
     MOST_OPERATIONS,
     Change,
     Condition,
@@ -36,6 +37,7 @@ from tiniscript.together.layout import (
     OF_END,
     OWN,
     Key,
+    Line,
     Unparsed,
     lines,
     mistaken_lines,
@@ -113,6 +115,9 @@ class Page:
         self._lately: dict[str, list[str]] = {}
         self._uncut: set[str] = set()  # what is there again, since its delete was refused
         self._items: list[Item] = []
+        self._redos: list[Undo] = []
+        self._redoing: set[str] = set()
+        self._owners: list[str] | None = None  # of the lines of the text, where blocks say so
         self._show()
 
     def copy(self) -> Page:
@@ -122,6 +127,7 @@ class Page:
                    self.is_astray)  # fmt: skip
         new.view, new.text, new.caret, new._items = self.view, self.text, self.caret, self._items
         new._undos, new._undoing, new._uncut = self._undos[:], {*self._undoing}, {*self._uncut}
+        new._redos, new._redoing = self._redos[:], {*self._redoing}
         new._lately = {text: ids[:] for text, ids in self._lately.items()}
         return new
 
@@ -193,23 +199,42 @@ class Page:
                     self._lately.setdefault(before[id].text, []).append(id)
         self.count += 1
         self.pending.append(change)
-        if undo:
-            self._undoing.add(change.uid)
         return True
 
-    def do_by_blocks(self, operations: Iterable[Operation]) -> bool:
+    def write(self, text: list[str], owners: list[str]) -> None:
+        """Blocks have become this text, of which `owners` says whose each line is."""
+        self.type(text, self.caret)
+        self._owners = owners
         self.leave()
-        was_done = self.do(operations)
-        self._show()
-        return was_done
+        self._owners = None
+
+    def follow(self, other: Page, before: Page) -> None:
+        """Do what another page has done since it was a copy of `before`."""
+        self.ids = other.ids
+        lost = [change for change in other.pending[len(before.pending) :]
+                if not self.do(change.operations)]  # fmt: skip
+        were = [(draft.rows, draft.covers) for draft in before.drafts]
+        own = [draft for draft in self.drafts if (draft.rows, draft.covers) not in were]
+        self.drafts = [*other.drafts, *own]
+        self._keep_typed(lost)
+        self.told += [(change.uid, IS_GONE) for change in lost]
+        self._show(self.caret)
 
     def undo(self) -> bool:
         """Take back the newest own change that nobody has changed since."""
+        return self._take_back(self._undos, self._undoing)
+
+    def redo(self) -> bool:
+        """Take back the newest undo, where no own change came after it."""
+        return self._take_back(self._redos, self._redoing)
+
+    def _take_back(self, all: list[Undo], uids: set[str]) -> bool:
         self.leave()
-        for undo in reversed(self._undos):
+        for undo in reversed(all):
             if do_hold(self.view, undo.conditions) and self.do(undo.operations, undo):
-                self._undos.remove(undo)
-                self._show()
+                all.remove(undo)
+                uids.add(self.pending[-1].uid)
+                self._show(self.caret)
                 return True
         return False
 
@@ -262,7 +287,7 @@ class Page:
             self._revive(hunk for hunk in hunks if hunk not in held)
             made = differences.operations(
                 self.view, self._text_without(held), self.new_id,
-                CutOut(self._lately, self._uncut),
+                CutOut(self._lately, self._uncut), self._owners and self._owners_without(held),
             )  # fmt: skip
         except (Unparsed, Refused):
             return False
@@ -370,14 +395,28 @@ class Page:
     def _text_without(self, held: list[Hunk], end: int | None = None) -> str:
         """Return the text, up to a line, with the lines of the program in the place of what is
         held."""
-        program = lines(self.view)
         found, at = [], 0
         for hunk in held:
-            covers = set(hunk.covers)
             found += self.text[at : hunk.first]
-            found += [line.text for line in program if line.keys and covers.issuperset(line.keys)]
+            found += [line.text for line in self._covered(hunk)]
             at = hunk.last
         return "\n".join([*found, *self.text[at:end]])
+
+    def _owners_without(self, held: list[Hunk]) -> list[str]:
+        """Return whose each line of that text is."""
+        assert self._owners is not None
+        found, at = [], 0
+        for hunk in held:
+            found += self._owners[at : hunk.first]
+            found += [line.keys[-1][0] for line in self._covered(hunk)]
+            at = hunk.last
+        return [*found, *self._owners[at:]]
+
+    def _covered(self, hunk: Hunk) -> list[Line]:
+        """Return the lines of the program whose place a hunk takes."""
+        covers = set(hunk.covers)
+        return [line for line in lines(self.view)
+                if line.keys and covers.issuperset(line.keys)]  # fmt: skip
 
     def _revive(self, hunks: Iterable[Hunk]) -> None:
         """A line that was finished in the place of one that somebody has deleted is that one."""
@@ -421,9 +460,14 @@ class Page:
                 break
             taken = applied(self.base, Change(row.uid, row.operations), is_sure=True)
             self.base, self.number = taken.tree, row.number
-            if page_and_count(row.uid)[0] == self.name and row.uid not in self._undoing:
-                undo = Undo(taken.back, conditions(self.base, taken.back, row.uid))
+            if page_and_count(row.uid)[0] == self.name:
+                undo = Undo(taken.back, conditions(self.base, taken.back))
+                if row.uid in self._undoing:
+                    self._redos = [*self._redos, undo][-MOST_UNDONE:]
+                    continue
                 self._undos = [*self._undos, undo][-MOST_UNDONE:]
+                if row.uid not in self._redoing:
+                    self._redos.clear()
         self._compare(news)
         refused = self._decide(news)
         self._rebase()

@@ -154,7 +154,7 @@ new Start({
 });
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ beginClass }) => beginClass({
-    panel, work, python, editor, keep: () => programs.keep(), empty: () => editor.replace(''), put: (program) => programs.replace({ ...program, name: '' }),
+    panel, work, python, editor, views, keep: () => programs.keep(), empty: () => editor.replace(''), put: (program) => programs.replace({ ...program, name: '' }),
     newestRun: () => driving.newestRun(), openRun: (file) => driving.openRun(file),
   }));
 }

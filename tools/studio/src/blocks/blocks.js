@@ -72,6 +72,8 @@ export class Blocks {
   #zoom = null;
   /** @type {Finding[]} */
   #findings = [];
+  /** @type {SVGElement[]} */
+  #mates = [];
 
   /**
    * @param {HTMLElement} place
@@ -238,6 +240,39 @@ export class Blocks {
   /** Whether a block is being dragged or a field is being typed in. */
   get isBusy() {
     return this.#workspace.isDragging();
+  }
+
+  /** Whether a field of a block is open. */
+  get isOpen() {
+    return Blockly.WidgetDiv.isVisible() || Blockly.DropDownDiv.isVisible();
+  }
+
+  /** The line of the text whose block has the focus, or 0. */
+  get chosenLine() {
+    const id = this.hasFocus || this.isOpen || this.isBusy ? this.#focused()?.id : '';
+    return this.#places.find(([each]) => each === id)?.[1][0] ?? 0;
+  }
+
+  /** Names whoever else is at a block, in their colour. @param {import('../class/together.js').Place[]} places */
+  showMates(places) {
+    const { createSvgElement } = Blockly.utils.dom;
+    for (const each of this.#mates) each.remove();
+    this.#mates = places.flatMap(({ line, color, said }) => {
+      const block = this.#workspace.getBlockById(this.#places.find(([, [first]]) => first === line)?.[0] ?? '');
+      if (!block) return [];
+      const { width, height } = block.getHeightWidth();
+      const own = block.getBoundingRectangleWithoutChildren();
+      const mark = createSvgElement('g', { class: 'mate_mark' }, block.getSvgRoot());
+      mark.style.setProperty('--mate', color);
+      createSvgElement('rect', { x: -5, y: 0, width: 5, height: own.getHeight() || height }, mark);
+      createSvgElement('text', { x: width + 8, y: 18 }, mark).textContent = said;
+      return [mark];
+    });
+  }
+
+  /** In which line of the text each block is. @returns {[string, number][]} */
+  get lines() {
+    return this.#places.map(([id, [line]]) => [id, line]);
   }
 
   get hasFocus() {

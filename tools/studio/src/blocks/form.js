@@ -21,6 +21,9 @@ import { KINDS } from '../page/words.js';
  * @property {string} note
  * @property {boolean} is_apart
  * @property {Range} [place]
+ * @property {string[]} [said] what its lines were; one is empty that somebody has changed
+ * @property {string} [comment] what its note was, or of a comment itself
+ * @property {boolean} [is_behind] the end of a block, or an arm
  */
 /** @typedef {{start: string, note: string, is_one_line: boolean, body: FormBlock[], loose: {body: FormBlock[], value: Value}[]}} Form */
 
@@ -130,6 +133,11 @@ function stackOf(top) {
   return top.outputConnection ? { body: [], value: valueOf(top) } : { body: bodyOf(top, []), value: [] };
 }
 
+/** What a loose stack is, however it was written. @param {Blockly.Block} top */
+function namedAs(top) {
+  return JSON.stringify(stackOf(top), ['body', 'value', 'kind', 'word', 'values', 'bodies', 'note']);
+}
+
 /** @typedef {Map<string, Blockly.utils.Coordinate[]>} Stood where loose stacks stand, and hats that were moved, or stood last */
 
 /**
@@ -139,8 +147,8 @@ function stackOf(top) {
  */
 export function keepPlaces(workspace, stood) {
   const tops = topsOf(workspace).filter(isLoose);
-  for (const top of tops) stood.set(JSON.stringify(stackOf(top)), []);
-  for (const top of tops) stood.get(JSON.stringify(stackOf(top)))?.push(top.getRelativeToSurfaceXY());
+  for (const top of tops) stood.set(namedAs(top), []);
+  for (const top of tops) stood.get(namedAs(top))?.push(top.getRelativeToSurfaceXY());
   const shown = SHOWN.get(workspace);
   const hats = hatsOf(workspace);
   for (const [k, name] of namesOf(hats).entries()) {
@@ -159,7 +167,7 @@ export function keepPlaces(workspace, stood) {
 export function knownPlaces(workspace, stood) {
   const { left, top, width, height } = workspace.getMetricsManager().getViewMetrics(true);
   const view = new Blockly.utils.Rect(top, top + height - CORNER, left, left + width - CORNER);
-  const here = new Set([...namesOf(hatsOf(workspace)), ...topsOf(workspace).filter(isLoose).map((each) => JSON.stringify(stackOf(each)))]);
+  const here = new Set([...namesOf(hatsOf(workspace)), ...topsOf(workspace).filter(isLoose).map((each) => namedAs(each))]);
   return new Map([...stood].map(([name, places]) => [name, places.filter(({ x, y }) => here.has(name) || view.contains(x, y))]));
 }
 
@@ -205,14 +213,34 @@ function blockOf(block, ids) {
   ids.push(block.id);
   const kept = dataOf(block);
   const inside = block.inputList.filter((input) => /^B\d|^OTHERWISE/.test(input.name)).map((input) => input.connection?.targetBlock() ?? null);
+  const word = String(wordOn(block) ?? kept.word ?? wordOf(block.type)), values = valuesOf(block), note = block.getCommentText() ?? '';
+  const was = kept.was ?? {};
+  const isNoteSame = word === was.word && note === was.note;
   return {
     kind: block.type,
-    word: String(wordOn(block) ?? kept.word ?? wordOf(block.type)),
-    values: valuesOf(block),
+    word,
+    values,
     bodies: (isHat(block) ? [block.getNextBlock()] : inside).map((first) => bodyOf(first, ids)),
-    note: block.getCommentText() ?? '',
+    note,
     is_apart: Boolean(kept.isApart),
+    said: word === was.word ? kept.said.map((/** @type {string} */ line, /** @type {number} */ k) => (lineOf(block, values, k) === was.lines[k] ? line : '')) : [],
+    comment: isNoteSame ? kept.comment : '',
+    is_behind: Boolean(kept.isBehind),
   };
+}
+
+/** What a line of a block is made of besides its word. @param {Blockly.Block} block @param {Value[]} values @param {number} k */
+function lineOf(block, values, k) {
+  return JSON.stringify(block.type === 'if' ? values[k] : values) ?? '';
+}
+
+/** Keeps what the lines of a block are in the text, as long as nobody changes them. @param {Blockly.Block} block @param {FormBlock} form */
+function remember(block, { word, is_apart, is_behind, said = [], comment }) {
+  const values = valuesOf(block);
+  block.data = JSON.stringify({
+    word, isApart: is_apart, isBehind: is_behind, said, comment,
+    was: { word: String(wordOn(block) ?? word), note: block.getCommentText() ?? '', lines: said.map((_, k) => lineOf(block, values, k)) },
+  });
 }
 
 /** @param {Blockly.Block} block @returns {Value[]} what is in its places; of a DEF the names of its values */
@@ -398,7 +426,7 @@ function stand(workspace, { program, hats, loose }, stood) {
   let y = Math.max(...inColumn.map(({ bottom }) => bottom)) + DISTANCE;
   for (const block of loose) {
     if (!block) continue;
-    const known = left.get(JSON.stringify(stackOf(block)))?.shift();
+    const known = left.get(namedAs(block))?.shift();
     block.moveTo(known ?? new Blockly.utils.Coordinate(CORNER, y));
     if (!known) y += block.getHeightWidth().height + DISTANCE;
   }
@@ -483,13 +511,13 @@ function* hang(blocks, place, make, ids) {
     const [word, unit] = block.getField('UNIT') ? each.word.split(' ') : [each.word];
     if (block.getField('WORD')) block.setFieldValue(word, 'WORD');
     if (unit) block.setFieldValue(WAY, 'UNIT');
-    block.data = JSON.stringify({ word: each.word, isApart: each.is_apart });
     if (each.note) block.setCommentText(each.note);
     each.values.forEach((value, k) => put(value, block.getInput(`V${k}`)?.connection ?? null, make));
     for (const [k, body] of each.bodies.entries()) {
       const input = block.getInput(`B${k}`) ?? block.getInput('OTHERWISE');
       yield* hang(body, isHat(block) ? block.nextConnection : input?.connection ?? null, make, ids);
     }
+    remember(block, each);
     if (block.previousConnection) above?.connect(block.previousConnection);
     above = block.nextConnection;
     yield;

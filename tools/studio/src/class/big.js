@@ -35,7 +35,7 @@ class Big {
   }
 }
 
-/** @typedef {{key: string, title: string, said: string, picture: string, text: string, drives: boolean, hand: boolean}} Shown */
+/** @typedef {{key: string, title: string, said: string, picture: string, text: string, history: string[], drives: boolean, hand: boolean}} Shown */
 /** @typedef {{step: (by: number) => void, stop: (key: string) => void, next: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void}} Told */
 
 export class BigPupil extends Big {
@@ -43,7 +43,8 @@ export class BigPupil extends Big {
   #said = made('p');
   #picture = made('img');
   #text = made('pre');
-  #stop; #next; #lower;
+  #history = made('pre');
+  #stop; #next; #lower; #remove;
 
   /** @param {Told} told */
   constructor(told) {
@@ -52,6 +53,7 @@ export class BigPupil extends Big {
     this.#lower = act('class_lower_hand', told.lower);
     this.#stop = act('stop', told.stop);
     this.#next = act('class_next', told.next);
+    this.#remove = act('class_remove', told.remove);
     const step = (/** @type {'left' | 'right'} */ name, /** @type {number} */ by) => {
       const found = button('', () => told.step(by), sign(name));
       found.dataset['label'] = `class_${name}`;
@@ -62,12 +64,14 @@ export class BigPupil extends Big {
     this.#text.tabIndex = 0;
     this.#text.setAttribute('translate', 'no');
     this.title.before(step('left', -1));
-    this.head.append(step('right', 1), this.#said, this.#lower, this.#stop, this.#next, act('class_remove', told.remove));
+    this.head.append(step('right', 1), this.#said, this.#lower, this.#stop, this.#next, this.#remove);
     this.finish();
     this.#picture.alt = '';
     const paper = made('div', '', this.#picture);
     paper.className = 'paper';
-    this.body.append(paper, this.#text);
+    this.#history.tabIndex = 0;
+    this.#history.setAttribute('translate', 'no');
+    this.body.append(paper, this.#text, this.#history);
     this.window.addEventListener('keydown', ({ key, target }) => {
       if (target === this.#text) return;
       if (key === 'ArrowLeft') told.step(-1);
@@ -79,16 +83,20 @@ export class BigPupil extends Big {
   }
 
   /** @param {Shown} shown */
-  show({ key, title, said, picture, text: program, drives, hand }) {
+  show({ key, title, said, picture, text: program, history, drives, hand }) {
     this.key = key;
     say(this.title, title);
     say(this.#said, said);
     say(this.#text, program);
     this.#text.setAttribute('aria-label', text('class_program_of', { name: title }));
+    this.#history.hidden = !history.length;
+    say(this.#history, [text('class_history'), '', ...history].join('\n'));
+    this.#history.setAttribute('aria-label', text('class_history'));
     const paper = /** @type {HTMLElement} */ (this.#picture.parentElement);
     paper.hidden = !picture;
     if (picture && this.#picture.src !== picture) this.#picture.src = picture;
     this.#lower.hidden = !hand;
+    this.#remove.hidden = key.startsWith('group '); // a group is left by its pupils
     this.#stop.hidden = this.#next.hidden = !drives;
     if (!this.window.open) this.window.showModal();
   }

@@ -10,6 +10,7 @@ import { isTeacher } from '../robot/host.js';
  * @property {import('../programs/work.js').Work} work
  * @property {import('../python.js').Python} python
  * @property {import('../writing/editor.js').Editor} editor
+ * @property {import('../writing/views.js').Views} views
  * @property {() => void} keep the program among the earlier ones
  * @property {() => void} empty takes the program off the page
  * @property {() => Promise<string>} newestRun its file, or nothing

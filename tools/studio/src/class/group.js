@@ -7,7 +7,7 @@ import { bugSaid } from '../page/faults.js';
 import { keepAt, keptForm } from '../page/kept.js';
 import { pageState } from '../page/page_state.js';
 import { known, text } from '../page/texts.js';
-import { post } from '../robot/host.js';
+import { hearStops, post } from '../robot/host.js';
 import { shown } from '../robot/plain_text.js';
 import { pause } from '../robot/transport.js';
 import { named, Together } from './together.js';
@@ -110,12 +110,15 @@ export class Group {
         },
         others: (others) => this.#mates.replaceChildren(...named(others.map((each) => ({ ...each, name: shown(each.name) })))),
         refused: () => pageState.note.set(text('group_refused')),
+        places: (places) => this.#page.views.showMates(places),
+        isBusy: () => this.#page.views.isBusy,
         answers: (isHeard) => this.#show(isHeard ? 'group_in' : 'class_silent'),
         keep: (page) => keepAt(PLACE, JSON.stringify({ group, page }), 'sessionStorage'),
       });
       pageState.group.set(group);
       this.#show('group_in');
       await together.begin(answer, before ?? null).then(() => {
+        this.#page.views.join(together);
         document.documentElement.dataset['group'] = 'in';
       }, (why) => {
         this.leave();
@@ -131,6 +134,7 @@ export class Group {
   #end() {
     this.#together?.end();
     this.#together = null;
+    this.#page.views.join(null);
     this.isDriven = false;
     delete document.documentElement.dataset['group'];
     keepAt(PLACE, '', 'sessionStorage');
@@ -145,7 +149,7 @@ export class Group {
     const group_stops = ++this.#stops;
     for (let tries = 0; tries < STOP_TRIES; tries += 1) {
       try {
-        await post({ do: 'stop', page: 'group', group_stops }, { keepalive: true });
+        hearStops((await post({ do: 'stop', page: 'group', group_stops }, { keepalive: true })).stops ?? 0);
         return;
       } catch {
         await pause(100);

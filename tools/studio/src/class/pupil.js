@@ -7,7 +7,7 @@
 
 import { button, labelled, made } from '../page/made.js';
 import { element, say } from '../page/elements.js';
-import { askAs, post } from '../robot/host.js';
+import { askAs, hearStops, post } from '../robot/host.js';
 import { keepDone, lessonsDone } from '../lesson/progress.js';
 import { shown } from '../robot/plain_text.js';
 import { Failed } from '../robot/transport.js';
@@ -26,7 +26,7 @@ const LOOK_MS = 1000;
 const SOON_MS = 300; // while the next turn may be one's own
 
 /** @typedef {{key: string, text: string, robot: string, lessons: string[]}} Given */
-/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string, groups?: import('./group.js').Seen[], driver?: string, run?: number}} Here */
+/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string, groups?: import('./group.js').Seen[], driver?: string, run?: number, stops?: number}} Here */
 
 function newStay() {
   return {
@@ -216,7 +216,8 @@ export class Pupil {
   }
 
   /** @param {Here} here */
-  #show({ place, waiting, robots, robot, left_s, name, hand, groups = [], driver = '' }) {
+  #show({ place, waiting, robots, robot, left_s, name, hand, groups = [], driver = '', stops = 0 }) {
+    hearStops(stops);
     this.#showHand(hand);
     this.#group.see(groups, driver);
     const isNew = place === 0 && this.#stay.place !== 0 && !driver;

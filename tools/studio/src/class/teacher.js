@@ -20,10 +20,12 @@ import { isSecond } from '../page/twice.js';
 /** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[], own_robot: import('../page/own_robot.js').OwnRobot}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
 /** @typedef {{key: string, name: string, lessons: string[], given: number, alike: number[]}} KeptRow `given` and `alike` are pupils: whose page is to have it, who may be who made it */
-/** @typedef {{code: string, turn_s: number, places: number, over: string, goes_on: boolean, lessons: number, kept: KeptRow[], pupils: PupilRow[], robots: RobotRow[]}} State */
-/** @typedef {{text: string, robot: string, version: number}} Known what is known of a program */
+/** @typedef {{key: string, name: string, pupils: number[], version: number}} GroupRow */
+/** @typedef {{code: string, groups: GroupRow[], turn_s: number, places: number, over: string, goes_on: boolean, lessons: number, kept: KeptRow[], pupils: PupilRow[], robots: RobotRow[]}} State */
+/** @typedef {{text: string, robot: string, version: number, history: string[]}} Known what is known of a program */
 
 const LOOK_MS = 1000;
+const GROUP = 'group '; // before the class's key of a group
 const SURE_MS = 5000;
 const MOST_NAMED = 4; // hands that are named above the wall
 
@@ -180,6 +182,13 @@ export class Teacher {
     if (this.#state) this.#show(this.#state);
   }
 
+  /** The pupils of a tile, which are several where it is a group's. @param {string} key */
+  #pupils(key) {
+    const { pupils = [], groups = [] } = this.#state ?? {};
+    const numbers = groups.find((each) => groupKey(each.key) === key)?.pupils;
+    return pupils.filter(({ number }) => (numbers ? numbers.includes(number) : keyOf(number) === key));
+  }
+
   /** @param {Record<string, unknown>} request */
   async #ask(request) {
     clearTimeout(this.#timer);
@@ -201,8 +210,10 @@ export class Teacher {
 
   /** @param {string} what @param {string} key */
   #ofPupil(what, key) {
-    const pupil = this.#pupil(key);
-    if (pupil) this.#ask({ do: what, pupil: pupil.number });
+    const all = this.#pupils(key);
+    for (const { number, hand, robot } of all) {
+      if (all.length === 1 || (what === 'class_hand' ? hand : robot)) this.#ask({ do: what, pupil: number });
+    }
   }
 
   /** @param {string} key */
@@ -289,8 +300,11 @@ export class Teacher {
 
   /** Who is here, and the work of who is not, by name. */
   #tiles() {
-    const { pupils = [], kept = [] } = this.#state ?? {};
-    const tiles = pupils.map((pupil) => ({ key: keyOf(pupil.number), name: pupil.name, lessons: pupil.lessons, pupil: /** @type {PupilRow | null} */ (pupil) }));
+    const { pupils = [], kept = [], groups = [] } = this.#state ?? {};
+    const together = groups.map((group) => ({ ...group, members: this.#pupils(groupKey(group.key)) })).filter(({ members }) => members.length);
+    const alone = pupils.filter(({ number }) => !together.some(({ members }) => members.some((each) => each.number === number)));
+    const tiles = alone.map((pupil) => ({ key: keyOf(pupil.number), name: pupil.name, lessons: pupil.lessons, pupil: /** @type {PupilRow | null} */ (pupil) }));
+    for (const { key, name, members, version } of together) tiles.push(tileOf(groupKey(key), name, members, version));
     for (const { key, name, lessons } of kept) tiles.push({ key: `kept ${key}`, name, lessons, pupil: null });
     return tiles.sort((one, other) => one.name.localeCompare(other.name, undefined, { numeric: true }) || (one.key < other.key ? -1 : 1));
   }
@@ -322,8 +336,9 @@ export class Teacher {
     this.#fetching.set(key, version);
     try {
       const pupil = this.#pupil(key);
-      const found = await post({ do: 'class_text', ...(pupil ? { pupil: pupil.number } : { key: keptOf(key) }) });
-      const known = { text: String(found.text), robot: String(found.robot || 'tinibot'), version: Number(found.version) };
+      const which = pupil ? { pupil: pupil.number } : key.startsWith(GROUP) ? { group: key.slice(GROUP.length) } : { key: keptOf(key) };
+      const found = await post({ do: 'class_text', ...which });
+      const known = { text: String(found.text), robot: String(found.robot || 'tinibot'), version: Number(found.version), history: found.history ?? [] };
       this.#known.set(key, known);
       this.#pictures.want(key, known, (address) => {
         if (!this.#wall.picture(key, address)) URL.revokeObjectURL(address);
@@ -349,7 +364,7 @@ export class Teacher {
     const drives = pupil?.robot ? text('class_drives', { robot: shown(pupil.robot) }) : '';
     const done = text('class_lessons', { done: tile.lessons.length, all: this.#state?.lessons ?? 0 });
     this.#big.show({
-      key, title: shown(tile.name), said: [drives, done].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: known?.text || text('class_empty'),
+      key, title: shown(tile.name), said: [drives, done].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: known?.text || text('class_empty'), history: known?.history ?? [],
       drives: Boolean(drives), hand: Boolean(pupil?.hand),
     });
   }
@@ -386,6 +401,26 @@ function pressedTwice(key, act) {
     if (now) timer = window.setTimeout(() => sure(false), SURE_MS);
   };
   return found;
+}
+
+/** @param {string} key of the class */
+function groupKey(key) {
+  return `${GROUP}${key}`;
+}
+
+/** A tile of a group: what any of its pupils has, it has. @param {string} key @param {string} name @param {PupilRow[]} members @param {number} version */
+function tileOf(key, name, members, version) {
+  const first = /** @type {PupilRow} */ (members.find(({ robot }) => robot) ?? members[0]);
+  const lessons = [...new Set(members.flatMap((each) => each.lessons))];
+  const pupil = {
+    ...first, version, lessons,
+    silent_s: Math.min(...members.map((each) => each.silent_s)),
+    is_right: members.every((each) => each.is_right),
+    hand: Math.max(...members.map((each) => each.hand)),
+    place: Math.max(...members.map((each) => each.place)),
+    own_robot: { ...first.own_robot, name: members.map((each) => each.name).join(', ') },
+  };
+  return { key, name, lessons, pupil: /** @type {PupilRow | null} */ (pupil) };
 }
 
 /** @param {number} pupil */

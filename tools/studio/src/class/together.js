@@ -14,9 +14,12 @@ const AGAIN_MS = 700; // where the class does not answer
 const SLOW_MS = 1500; // where it takes no more changes for now
 const CARET_MS = 300; // between two of its places that others hear
 const FINISHED = ['undo', 'redo', 'input.repair', 'input.blocks']; // changes of lines that nobody is typing
-const COMPOSED_MS = 2000; // that changes of others wait for a composition
+const BUSY_MS = 2000; // that changes of others wait for somebody's hands
+const SOON_MS = 50;
+const DECIDED_MS = 2000; // for what was done before an undo
 
 /** @typedef {{name: string, mark: number, at: string, writes: boolean}} Other */
+/** @typedef {{line: number, color: string, said: string}} Place */
 
 /**
  * @typedef {object} Shown what Python answers
@@ -28,6 +31,9 @@ const COMPOSED_MS = 2000; // that changes of others wait for a composition
  * @property {string} epoch
  * @property {number} told how many changes were refused
  * @property {string} why
+ * @property {number} count of own changes
+ * @property {boolean} [is_shown] whether the text is that of the blocks which it was asked with
+ * @property {[number, number, number, number][]} [places] of these
  * @property {{name: string}} kept
  */
 
@@ -39,6 +45,8 @@ const COMPOSED_MS = 2000; // that changes of others wait for a composition
  * @property {(why: string) => void} refused a change of this page was
  * @property {(kept: {name: string}) => void} keep what a page goes on with that is loaded again
  * @property {(isHeard: boolean) => void} answers whether the class answers
+ * @property {(places: Place[]) => void} places where the others are in the text
+ * @property {() => boolean} isBusy whether somebody has a block in the hand, or a field open
  */
 
 /** A change that somebody else has made, or the layout. @type {import('@codemirror/state').AnnotationType<boolean>} */
@@ -107,6 +115,7 @@ export function named(all) {
 
 export class Together {
   #python;
+  #editor;
   #view;
   #heard;
   #isOver = false;
@@ -116,15 +125,18 @@ export class Together {
   #meanwhile = null;
   /** @type {any[]} */
   #news = [];
-  /** @type {Promise<void> | null} */
+  /** @type {Promise<unknown> | null} */
   #waiting = null;
+  /** @type {Promise<unknown>} */
   #steps = Promise.resolve();
   #isSending = false;
   #saw = 0;
   /** @type {Other[]} */
   #others = [];
   /** @type {Shown} */
-  #shown = { version: 0, changes: [], ids: [], pending: [], since: -1, epoch: '', told: 0, why: '', kept: { name: '' } };
+  #shown = { version: 0, changes: [], ids: [], pending: [], since: -1, epoch: '', told: 0, why: '', count: 0, kept: { name: '' } };
+  /** @type {{line: number, writes: boolean} | null} */
+  #chosen = null; // of the blocks
   #at = '';
   #caret = 0;
 
@@ -135,7 +147,9 @@ export class Together {
    */
   constructor(python, editor, heard) {
     this.#python = python;
+    this.#editor = editor;
     this.#heard = heard;
+    editor.handUndo((how) => this.#takeBack(how));
     this.#view = editor.extend([others, looks, EditorView.updateListener.of((update) => this.#updated(update))]);
   }
 
@@ -156,13 +170,36 @@ export class Together {
     if (this.#isOver) return;
     this.#isOver = true;
     this.#others = [];
-    this.#view.dispatch({ effects: setOthers.of([]) });
+    this.#mark();
+    this.#editor.handUndo(null);
   }
 
-  /** What is finished becomes the group's. @returns {Promise<void>} */
+  /** What is finished becomes the group's. @returns {Promise<unknown>} */
   finish() {
     this.#isHot = false;
     return this.#step();
+  }
+
+  /** Python has what the editor has. @returns {Promise<unknown>} */
+  meet() {
+    return this.#step();
+  }
+
+  /** The blocks show what the editor has: each is in a line. @param {[string, number][]} lines @returns {Promise<{is_known: boolean}>} */
+  blocksShown(lines) {
+    return this.#python.ask({ do: 'group_blocks', version: this.#shown.version, lines });
+  }
+
+  /** The blocks are this now. @param {import('../blocks/form.js').Form} form @param {string[]} ids @returns {Promise<Shown | null>} null of who has left */
+  write(form, ids) {
+    return this.#do({ blocks: { form, ids } });
+  }
+
+  /** @param {'undo' | 'redo'} how */
+  async #takeBack(how) {
+    await this.finish();
+    for (let waited = 0; this.#shown.pending.length && waited < DECIDED_MS; waited += SOON_MS) await pause(SOON_MS); // what is not decided yet is the newest
+    await this.#do({ back: how });
   }
 
   /** @param {import('@codemirror/view').ViewUpdate} update */
@@ -184,41 +221,56 @@ export class Together {
     this.#tellCaret();
   }
 
-  /** Has Python take what is in the editor, and what has come; one at a time. @returns {Promise<void>} */
+  /** Has Python take what is in the editor, and what has come; one at a time. @returns {Promise<unknown>} */
   #step() {
-    this.#waiting ??= this.#steps = this.#steps.then(async () => {
+    this.#waiting ??= this.#do({}, () => {
       this.#waiting = null;
-      while (!this.#isOver && !(await this.#try())) { /* somebody has typed where others have changed something */ }
-      this.#send();
-    }).catch((why) => {
-      this.end();
-      this.#heard.fails(why);
     });
     return this.#waiting;
   }
 
-  /** @returns {Promise<boolean>} whether what Python answers is shown */
-  async #try() {
-    const began_ms = performance.now();
-    while (this.#view.composing && performance.now() - began_ms < COMPOSED_MS) await pause(100);
+  /** @param {Record<string, unknown>} more that is done, too @param {() => void} [begins] @returns {Promise<Shown | null>} */
+  #do(more, begins) {
+    const done = this.#steps.then(async () => {
+      begins?.();
+      if (!Object.keys(more).length) await this.#waitForHands();
+      let shown = null;
+      while (!this.#isOver && !shown) shown = await this.#try(more);
+      this.#send();
+      return shown;
+    }).catch((why) => {
+      this.end();
+      this.#heard.fails(why);
+      return null;
+    });
+    this.#steps = done;
+    return done;
+  }
+
+  /** What others have changed waits while a sign is composed, a block is dragged or a field is open. */
+  async #waitForHands() {
+    for (let waited = 0; waited < BUSY_MS && (this.#view.composing || this.#heard.isBusy()); waited += SOON_MS) await pause(SOON_MS);
+  }
+
+  /** @param {Record<string, unknown>} more @returns {Promise<Shown | null>} what is shown now; null where somebody has typed what others have changed */
+  async #try(more) {
     const { doc, selection } = this.#view.state;
     const news = this.#news.slice();
     this.#meanwhile = ChangeSet.empty(doc.length);
     const caret = doc.lineAt(selection.main.head).number - 1;
     /** @type {Shown} */
-    const shown = await this.#python.ask({ do: 'group_step', from: this.#shown.version, caret, hot: this.#isHot, news }, new TextEncoder().encode(doc.toString()));
+    const shown = await this.#python.ask({ do: 'group_step', from: this.#shown.version, caret, hot: this.#isHot, news, ...more }, new TextEncoder().encode(doc.toString()));
     const typed = this.#meanwhile;
     this.#meanwhile = null;
-    if (this.#isOver) return true;
-    if (meet(doc, typed, shown.changes)) return false;
+    if (this.#isOver || meet(doc, typed, shown.changes)) return null;
     this.#news.splice(0, news.length);
     this.#take(shown, doc.length, typed);
-    return true;
+    return shown;
   }
 
   /** @param {Shown} shown @param {number} length of the text that it was made of @param {ChangeSet | null} typed since */
   #take(shown, length, typed) {
-    const { told } = this.#shown;
+    const { told, count } = this.#shown;
     this.#shown = shown;
     const changes = ChangeSet.of(shown.changes.map(([from, to, insert]) => ({ from, to, insert })), length);
     const after = typed && !typed.empty ? changes.map(typed) : changes;
@@ -229,6 +281,7 @@ export class Together {
       selection: selection.map(after, isFirst ? 1 : -1),
       annotations: [brought.of(true), Transaction.addToHistory.of(false)],
     });
+    if (shown.count > count) this.#editor.handUndo((how) => this.#takeBack(how));
     this.#mark();
     this.#heard.keep(shown.kept);
     if (shown.told > told && this.#shown.version > 1) this.#heard.refused(shown.why);
@@ -237,6 +290,13 @@ export class Together {
   #mark() {
     const places = this.#others.map((other) => ({ line: this.#shown.ids.indexOf(other.at) + 1, other })).filter(({ line }) => line > 0);
     this.#view.dispatch({ effects: setOthers.of(places) });
+    this.#heard.places(places.map(({ line, other: { name, mark, writes } }) => ({ line, color: COLORS[mark] ?? '', said: writes ? `${name} …` : name })));
+  }
+
+  /** The blocks have the focus in this line, or nowhere. @param {number} line @param {boolean} writes */
+  chose(line, writes) {
+    this.#chosen = line ? { line, writes } : null;
+    this.#tellCaret();
   }
 
   // -- the class --
@@ -302,14 +362,14 @@ export class Together {
 
   /** Tells the others where the caret is, now and then. */
   #tellCaret() {
-    const at = this.#shown.ids[this.#line - 1] ?? '';
-    const told = JSON.stringify([at, this.#isHot]);
+    const { line, writes } = this.#chosen ?? { line: this.#line, writes: this.#isHot };
+    const at = this.#shown.ids[line - 1] ?? '';
+    const told = JSON.stringify([at, writes]);
     if (told === this.#at || !this.#shown.kept.name) return;
     this.#at = told;
     clearTimeout(this.#caret);
-    const isHot = this.#isHot;
     this.#caret = window.setTimeout(() => {
-      if (!this.#isOver) this.#ask({ at, writes: isHot });
+      if (!this.#isOver) this.#ask({ at, writes });
     }, CARET_MS);
   }
 }

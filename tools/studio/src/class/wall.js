@@ -93,7 +93,8 @@ export class Wall {
   }
 
   /** @param {Tile} tile @param {Seen} seen @param {number} lessons */
-  #fill(tile, { name, lessons: done, pupil }, lessons) {
+  #fill(tile, { key, name, lessons: done, pupil }, lessons) {
+    const isGroup = key.startsWith('group '); // whose pupils leave it
     const plain = shown(name);
     const state = !pupil ? 'gone' : pupil.silent_s > SILENT_S ? 'away' : pupil.is_right ? 'right' : 'wrong';
     const drives = pupil?.robot ? shown(pupil.robot) : '';
@@ -105,7 +106,8 @@ export class Wall {
     say(tile.name, [plain, shown(own_name)].filter(Boolean).join(' · '));
     say(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
     tile.hand.hidden = !pupil?.hand;
-    tile.play.hidden = state === 'gone' || state === 'away';
+    tile.play.hidden = isGroup || state === 'gone' || state === 'away';
+    tile.out.hidden = isGroup;
     const badge = drives ? `${drives} ${clock(pupil?.left_s ?? 0)}` : pupil?.place ? text('class_place_short', { place: pupil.place }) : '';
     tile.badge.hidden = !badge;
     if (tile.badge.dataset['said'] !== badge) {

@@ -91,6 +91,13 @@ export async function hostPorts() {
   }
 }
 
+let sawStops = 0; // of the group's robot: whatever was pressed before this page hears of another one is void
+
+/** @param {number} stops */
+export function hearStops(stops) {
+  sawStops = Math.max(sawStops, stops); // an answer may be late
+}
+
 let connections = 0; // of this page
 let presses = 0; // of STOP
 
@@ -120,11 +127,11 @@ export class HostRobot extends Asking {
       this.#met = resolve;
       this.#fails = reject;
     });
-    this.#open({ port, robot, language });
+    this.#open({ port, robot, language, saw_stops: sawStops });
     return met;
   }
 
-  /** The same connect is done once, however often it comes. @param {Record<string, string>} request */
+  /** The same connect is done once, however often it comes. @param {Record<string, string | number>} request */
   async #open(request) {
     for (let tries = 1; !this.isOver && !this.#isThere; tries += 1) {
       try {

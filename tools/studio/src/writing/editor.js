@@ -4,10 +4,10 @@
 // exception for styles in elements.
 
 import { autocompletion, completionKeymap } from '@codemirror/autocomplete';
-import { defaultKeymap, history, historyKeymap, isolateHistory, redo, undo } from '@codemirror/commands';
+import { defaultKeymap, history, historyKeymap, isolateHistory, redo, redoDepth, undo, undoDepth } from '@codemirror/commands';
 import { bracketMatching } from '@codemirror/language';
 import { lintGutter, lintKeymap, setDiagnostics } from '@codemirror/lint';
-import { Compartment, EditorState, StateEffect, StateField } from '@codemirror/state';
+import { Compartment, EditorState, Prec, StateEffect, StateField } from '@codemirror/state';
 import { Decoration, EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
 import { breakpoints, placesOf, pointsOf, pressed, setBreakpoints } from './breakpoints.js';
 import { colors, completionOf, languageOf } from './language.js';
@@ -61,7 +61,10 @@ const theme = EditorView.theme({
 export class Editor {
   #robot = new Compartment();
   #words = new Compartment();
+  #history = new Compartment();
   #view;
+  /** What takes back what is not typed in a line that is being typed: in a group. @type {((how: 'undo' | 'redo') => void) | null} */
+  #takesBack = null;
   /** Where parts of the newest text begin; null while it is not compiled. @type {import('./parts.js').Places | null} */
   #places = null;
   #marked = ''; // what runs
@@ -88,7 +91,11 @@ export class Editor {
           }),
           breakpoints(toggle, () => pageState.breakpoints.set(this.#breakpoints)),
           lineNumbers({ domEventHandlers: { mousedown: (_, line, event) => pressed(line, event, toggle) } }),
-          history(),
+          this.#history.of(history()),
+          Prec.high(keymap.of([
+            { key: 'Mod-z', run: () => this.#back('undo'), shift: () => this.#back('redo') },
+            { key: 'Mod-y', run: () => this.#back('redo') },
+          ])),
           // Tab leaves the editor: who has no mouse must get out.
           keymap.of([...completionKeymap, ...lintKeymap, ...defaultKeymap, ...historyKeymap]),
           bracketMatching(),
@@ -130,11 +137,26 @@ export class Editor {
   }
 
   undo() {
-    undo(this.#view);
+    this.#back('undo');
   }
 
   redo() {
-    redo(this.#view);
+    this.#back('redo');
+  }
+
+  /** @param {'undo' | 'redo'} how */
+  #back(how) {
+    const { state } = this.#view;
+    if (!this.#takesBack || (how === 'undo' ? undoDepth(state) : redoDepth(state))) (how === 'undo' ? undo : redo)(this.#view);
+    else this.#takesBack(how);
+    return true;
+  }
+
+  /** From now on somebody else has what was done before; null: nobody has. @param {((how: 'undo' | 'redo') => void) | null} takesBack */
+  handUndo(takesBack) {
+    this.#takesBack = takesBack;
+    this.#view.dispatch({ effects: this.#history.reconfigure([]) });
+    this.#view.dispatch({ effects: this.#history.reconfigure(history()) });
   }
 
   /** Puts in the text of changed blocks, as one step of undo. @param {string} whole */

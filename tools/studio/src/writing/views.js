@@ -22,6 +22,7 @@ import { text } from '../page/texts.js';
  */
 
 const TYPING_MS = 200; // of silence before blocks are made of a text
+const TELL_MS = 300; // between two times that a group hears which block is chosen
 const BUSY_MS = 50; // until a block that is dragged is looked at again
 const LEVELS = /** @type {const} */ ([['few', 'level_few'], ['usual', 'level_usual'], ['all', 'level_all']]);
 
@@ -46,6 +47,11 @@ export class Views {
   #findings = [];
   /** @type {import('./editor.js').Range[]} */
   #running = [];
+  #telling = 0;
+  /** @type {import('../class/together.js').Place[]} */
+  #mates = [];
+  /** Who edits the program, too. @type {import('../class/together.js').Together | null} */
+  #group = null;
   #pane = element('blocks', HTMLElement);
   #note = element('blocks_note', HTMLElement);
   #level = element('level', HTMLSelectElement);
@@ -67,7 +73,7 @@ export class Views {
     // A block that is touched while the text is ahead of it must not take the text back.
     for (const kind of ['pointerdown', 'focusin']) {
       this.#pane.addEventListener(kind, (event) => {
-        if (!this.#isStale()) return;
+        if (!this.#isStale() || (this.#group && this.#shown !== null)) return; // a group has changes by their blocks
         if (kind === 'pointerdown') event.stopPropagation();
         this.#refresh(true);
       }, { capture: true });
@@ -244,13 +250,34 @@ export class Views {
     if (this.#isReady) this.#refresh(true);
   }
 
+  /** Others edit the program, too: what is done to blocks is theirs, by the blocks. @param {import('../class/together.js').Together | null} group */
+  join(group) {
+    if (group === this.#group) return;
+    this.#group = group;
+    clearInterval(this.#telling);
+    if (group) this.#telling = window.setInterval(() => group.chose(this.#blocks?.chosenLine ?? 0, this.isBusy), TELL_MS);
+    this.#shown = null;
+    if (this.#isOn) this.#refresh(true);
+  }
+
+  /** @param {import('../class/together.js').Place[]} places where the others of a group are */
+  showMates(places) {
+    this.#mates = places;
+    if (!this.#isStale()) this.#blocks?.showMates(places);
+  }
+
+  /** Whether a block is in somebody's hand, or one of its fields is open. */
+  get isBusy() {
+    return Boolean(this.#blocks?.isBusy || (this.#group && this.#blocks?.isOpen));
+  }
+
   #isStale() {
     return this.#shown !== this.#page.editor.text;
   }
 
   /** Undo and redo once what the blocks are has become text; not while one is dragged. @param {() => void} act */
   async #again(act) {
-    if (this.#blocks?.isBusy) return;
+    if (this.isBusy) return;
     await this.#send();
     act();
     if (this.#isOn) this.#refresh(true);
@@ -267,7 +294,7 @@ export class Views {
   /** Makes the text of the blocks, unless somebody has changed the text meanwhile. */
   async #send() {
     if (!this.#blocks || this.#shown === null || this.#isSending || !this.#changes) return;
-    if (this.#blocks.isBusy) {
+    if (this.isBusy) {
       clearTimeout(this.#sending);
       this.#sending = window.setTimeout(() => this.#send(), BUSY_MS);
       return;
@@ -275,7 +302,8 @@ export class Views {
     this.#isSending = true;
     const before = this.#page.editor.text;
     try {
-      while (this.#changes && this.#shown === before) {
+      if (this.#group) await this.#write(this.#group);
+      else while (this.#changes && this.#shown === before) {
         this.#changes = 0;
         const { form, ids } = this.#blocks.read();
         const whole = JSON.stringify(form);
@@ -298,6 +326,22 @@ export class Views {
     else this.#showState();
   }
 
+  /** Has a group take what was done to blocks since they were shown. @param {import('../class/together.js').Together} group */
+  async #write(group) {
+    while (this.#blocks) {
+      this.#changes = 0;
+      const { form, ids } = this.#blocks.read();
+      const whole = JSON.stringify(form);
+      if (whole === this.#form) return;
+      this.#form = whole;
+      const answer = await group.write(form, ids);
+      if (!answer?.is_shown) return;
+      this.#shown = this.#page.editor.text;
+      this.#blocks.placed(ids, answer.places ?? []);
+      this.#showBreakpoints();
+    }
+  }
+
   /**
    * Makes the blocks of the text. While somebody types a text that does not parse, the blocks stay
    * as they are, unless `isWanted`.
@@ -309,11 +353,16 @@ export class Views {
     this.#isRefreshing = true;
     try {
       while (this.#isStale()) {
+        const group = this.#group;
+        if (group) {
+          await this.#settle();
+          if (!this.#isStale()) break;
+        }
         const now = this.#page.editor.text;
         /** @type {Form & {size: number}} */
         const form = await this.#page.python.ask({ do: 'blocks', robot: pageState.robotName.value }, new TextEncoder().encode(now));
-        while (this.#blocks.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
-        if (now !== this.#page.editor.text) continue;
+        while (this.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
+        if (now !== this.#page.editor.text || group !== this.#group || (group && this.#isTouched)) continue;
         const isKept = !this.#isWanted && this.#page.editor.hasFocus && this.#shown !== null && hasGrey(form);
         if (!form.body || isKept) {
           this.#showState(form.body ? text('blocks_wait') : text('blocks_many'));
@@ -323,6 +372,7 @@ export class Views {
         this.#changes = 0;
         this.#blocks.show(form);
         this.#form = JSON.stringify(this.#blocks.read().form);
+        if (group && !(await group.blocksShown(this.#blocks.lines)).is_known) this.#shown = null;
         this.#showAll();
       }
       this.#showState();
@@ -334,11 +384,28 @@ export class Views {
     }
   }
 
+  /** Whether blocks are others than they were shown. */
+  get #isTouched() {
+    return this.#shown !== null && JSON.stringify(this.#blocks?.read().form) !== this.#form;
+  }
+
+  /** In a group: what was done to blocks is in the text before others are made of it, and Python has that text. */
+  async #settle() {
+    while (this.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
+    while (this.#isSending) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
+    if (this.#isTouched) {
+      this.#changes ||= 1; // Blockly tells of it a moment later
+      await this.#send();
+    }
+    await this.#group?.meet();
+  }
+
   /** Blocks that are new have nothing at them yet. */
   #showAll() {
     this.#blocks?.showFindings(this.#findings);
     this.#blocks?.showFault(pageState.fault.value.range, pageState.fault.value.said);
     this.#blocks?.showRunning(this.#running);
+    this.#blocks?.showMates(this.#mates);
     this.#showBreakpoints();
   }
 

@@ -1,0 +1,225 @@
+"""Changes of blocks in a group, in Python alone: operations of the blocks that were touched, and of
+no others, whatever the others of the group do meanwhile."""
+
+from __future__ import annotations
+
+import json
+from itertools import count
+from random import Random
+from typing import Any
+
+import pytest
+
+from tiniscript import robots
+from tiniscript.studio import page_together
+from tiniscript.studio.block_form import data_of, from_data, in_order
+from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_reading import read as read_blocks
+from tiniscript.together.form import At, Delete, Insert, Replace, change_of
+from tiniscript.together.form import Change as Made
+from tiniscript.together.layout import read, text_of
+from tiniscript.together.ordering import SharedProgram
+from tiniscript.together.tree import ROOT, START, Part
+
+Json = dict[str, Any]
+KIT = robots.load("tinibot").kit
+TEXT = """SI|F(1.50, (80));  // first
+LOOP(3);
+  B(1, 40);
+
+  R(0.50, 60);
+END_LOOP;  // three
+IF(DISTANCE < 2.0);
+  S;
+ELSEIF((DISTANCE) < 9);  // near
+  W(1.0);
+ELSE;  // else
+  BEEP(1, 440);
+ENDIF;
+W(2);
+"""
+
+
+class Ana:
+    """A page with blocks: a block has the number that it was made with, wherever it goes."""
+
+    def __init__(self, program: SharedProgram) -> None:
+        self.program = program
+        self.numbers = count(1)
+        self.text = ""
+        self.takes(page_together.begin({"news": {"page": "a", **self.news(-1, "")}}, b""))
+        self.show()
+
+    def news(self, since: int, epoch: str) -> Json:
+        found: Json = json.loads(json.dumps(self.program.news("a", since, epoch)))
+        return found
+
+    def takes(self, answer: Json) -> None:
+        for first, last, text in reversed(answer["changes"]):
+            self.text = self.text[:first] + text + self.text[last:]
+        self.answer = answer
+
+    def show(self) -> None:
+        form = read_blocks(self.text, KIT)
+        blocks = in_order(form.body)
+        self.form: Json = json.loads(json.dumps(data_of(form)))
+        self.ids = [f"b{next(self.numbers)}" for _ in blocks]
+        for data, id in zip(self.inside(self.form["body"]), self.ids, strict=True):
+            data["id"] = id
+        lines = [[id, block.place[0]] for id, block in zip(self.ids, blocks, strict=True)]
+        fields = {"version": self.answer["version"], "lines": lines}
+        assert page_together.blocks(fields, b"") == {"is_known": True}
+
+    def inside(self, body: list[Json]) -> list[Json]:
+        found = []
+        for data in body:
+            found.append(data)
+            for own in data["bodies"]:
+                found += self.inside(own)
+        return found
+
+    def step(self, **more: Any) -> Json:
+        news = [self.news(self.answer["since"], self.answer["epoch"])]
+        fields = {"from": self.answer["version"], "caret": 0, "hot": False, "news": news, **more}
+        answer = page_together.step(fields, self.text.encode())
+        self.takes(json.loads(json.dumps(answer)))
+        return answer
+
+    def writes(self) -> Json:
+        ids = [data["id"] for data in self.inside(self.form["body"])]
+        return self.step(blocks={"form": self.form, "ids": ids})
+
+    def sends(self) -> None:
+        self.program.submit([change_of(each) for each in self.answer["pending"]])
+        self.step()
+
+
+def program_of(text: str = TEXT) -> SharedProgram:
+    numbers = count(1)
+    return SharedProgram(read(text, lambda: f"i.{next(numbers)}"), "e")
+
+
+def changes(body: list[Json], rng: Random, new: Any) -> set[str]:
+    """Change blocks at random; return the ids of those that were touched."""
+    bodies = [body, *(own for data in body for own in data["bodies"])]
+    here = [each for each in bodies if each]
+    if not here:
+        return set()
+    where = rng.choice(here)
+    data = rng.choice(where)
+    kind = rng.randrange(4)
+    if kind == 0 and data["values"] and data["kind"] != "if":
+        data["values"][0] = [["NUMBER", str(rng.randrange(2, 9))]]
+        data["said"] = []
+        return {data["id"]}
+    if kind == 1:
+        where.remove(data)
+        return {data["id"]}
+    if kind == 2 and not data["bodies"]:
+        where.remove(data)
+        target = rng.choice(bodies)
+        target.insert(rng.randrange(len(target) + 1), data)
+        return {data["id"]}
+    block = {"kind": "move", "word": "L", "values": [[["NUMBER", "1"]], [["NUMBER", "60"]]],
+             "bodies": [], "note": "", "is_apart": False, "id": new()}  # fmt: skip
+    where.insert(rng.randrange(len(where) + 1), block)
+    return set()
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
+    rng = Random(seed)
+    program = program_of()
+    ana = Ana(program)
+    before = {id: node.copy() for id, node in program.tree.nodes.items()}
+    nodes = dict(page_together._newest.blocks.nodes)  # type: ignore[union-attr]
+    touched: set[str] = set()
+    for _ in range(rng.randrange(1, 5)):
+        touched |= changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
+    want = print_blocks(from_data(ana.form)).text
+    answer = ana.writes()
+    assert ana.text == want == text_of(page_together._newest.page.view)  # type: ignore[union-attr]
+    assert answer["is_shown"]
+    ana.sends()
+    assert text_of(program.tree) == ana.text
+    ids = {nodes[id] for id in touched if id in nodes}
+    below = {each for id in ids for each in
+             ([id, *before[id].inside] if id in before else [id])}  # fmt: skip
+    for id, node in before.items():
+        if id not in below and id not in (ROOT, START):
+            now = program.tree[id]
+            assert (now.text, now.mark("text")) == (node.text, node.mark("text")), id
+    there = {each["id"] for each in ana.inside(ana.form["body"])}
+    for block, id in nodes.items():
+        assert block not in there or id not in before or id in program.tree, (block, id)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_others_do_meanwhile_stays(seed: int) -> None:
+    """Two changes of blocks that were shown before; others have changed the program twice."""
+    rng = Random(seed)
+    program = program_of()
+    ana = Ana(program)
+    loop = next(id for id in program.tree.below() if program.tree[id].text == "LOOP(3)")
+    last = program.tree[ROOT].inside[-1]
+    first = Made("z:1", (Insert(At(loop, ""), (Part("z.1", "BEEP(0.25, 990)"),)),))
+    program.submit([first])
+    ana.step()
+    changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
+    ana.writes()
+    program.submit([Made("z:2", (Replace(last, (("text", "W(7.25)"),)),))])
+    ana.step()
+    changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
+    ana.writes()
+    ana.sends()
+    assert ana.text == text_of(program.tree)
+    is_loop_there = loop in program.tree
+    assert ("BEEP(0.25, 990)" in ana.text) is is_loop_there
+    assert last not in program.tree or program.tree[last].text != "W(2)"
+
+
+def test_an_empty_place_is_nobody_elses() -> None:
+    program = program_of()
+    ana = Ana(program)
+    ana.form["body"][0]["values"][0] = [["NOTHING", ""]]
+    ana.form["body"][0]["said"] = []
+    assert ana.writes()["is_shown"]
+    ana.sends()
+    assert "F(, " in ana.text
+    assert text_of(program.tree) == TEXT
+    ana.form["body"][0]["values"][0] = [["NUMBER", "4"]]
+    ana.writes()
+    ana.sends()
+    assert text_of(program.tree).startswith("SI|F(4, (80));")
+    assert ana.text == text_of(program.tree)
+
+
+def test_a_deleted_block_that_somebody_has_put_something_into_stays() -> None:
+    program = program_of()
+    ana = Ana(program)
+    loop = next(id for id in program.tree.below() if program.tree[id].text == "LOOP(3)")
+    ana.form["body"] = [data for data in ana.form["body"] if data["kind"] != "loop"]
+    program.submit([Made("z:1", (Insert(At(loop, ""), (Part("z.1", "BEEP(0.25, 990)"),)),))])
+    ana.writes()
+    ana.sends()
+    assert "BEEP(0.25, 990)" in text_of(program.tree)
+    assert ana.text == text_of(program.tree)
+    assert ana.answer["why"] == "has_new"
+    program.submit([Made("z:2", (Delete(tuple(program.tree.below(loop))),))])
+    ana.step()
+    assert "LOOP" not in ana.text
+
+
+def test_of_two_that_are_equal_the_one_is_changed_that_was_touched() -> None:
+    program = program_of("W(1);\nB(1, 40);\nB(1, 40);\nW(2);\n")
+    [_, one, other, _] = (id for id in program.tree[ROOT].inside if id != START)
+    ana = Ana(program)
+    del ana.form["body"][1]
+    ana.writes()
+    ana.sends()
+    assert one not in program.tree
+    assert other in program.tree
+    ana.form["body"].reverse()
+    ana.writes()
+    ana.sends()
+    assert program.tree[ROOT].inside.index(other) == 2

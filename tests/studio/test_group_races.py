@@ -1,0 +1,191 @@
+"""One robot of a group, where one pupil runs and another one stops: whatever arrives first, no
+robot drives on.
+
+`python -m tests.studio.test_group_races 100` lets so many meet.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from functools import partial
+from random import Random
+from threading import Thread
+from typing import Any
+
+import pytest
+
+from tests.support.command import FOREVER
+from tests.support.pty_robot import PtyRobot
+from tests.support.waiting import HANGS_S, until
+from tiniscript import compile, robots
+from tiniscript.studio.attending import LATCH_S
+from tiniscript.studio.classroom import Classroom
+from tiniscript.studio.hosting import Hosting
+
+Json = dict[str, Any]
+BEAT_S = 0.1
+LATE_S = 1.5  # that a request may be on its way
+STANDS_S = 0.6  # for as long the robot is looked at
+PROGRAM = compile(FOREVER).image.hex()
+PUPILS = ("Ana", "Luz", "Teo")
+
+
+class Mate:
+    """A pupil's page, which beats while it drives; what it asks for may be late."""
+
+    def __init__(self, group: Group, name: str) -> None:
+        self.group, self.name = group, name
+        joined = group.room.answer("", name, {"do": "join", "code": group.room.code, "name": name})
+        self.token = joined["token"]
+        text = FOREVER + "\n"
+        assert "group" in self.ask("group_join", name="Red", text=text)
+        self.presses = self.ids = self.connection = self.seen = self.saw_stops = 0
+        self.asked: list[Json] = []
+        self.is_there = False
+        self.thread = Thread(target=self._beats, daemon=True)
+        self.thread.start()
+
+    def ask(self, do: str, **more: Any) -> Json:
+        return self.group.room.answer(self.token, self.name, {"do": do, **more})
+
+    def drive(self, do: str, **more: Any) -> Json:
+        return self.ask(do, page=self.name, connection=self.connection, seen=self.seen,
+                        stops=self.presses, **more)  # fmt: skip
+
+    def _beats(self) -> None:
+        while not self.group.is_over:
+            time.sleep(BEAT_S)
+            self.saw_stops = self.ask("here").get("stops", 0)
+            if not self.is_there:
+                continue
+            asked, self.asked = self.asked, []
+            for news in self.drive("beat", asked=asked)["news"]:
+                self.seen = max(self.seen, news["number"])
+                if news.get("over"):
+                    self.is_there = False
+
+    def connects(self, saw_stops: int) -> None:
+        self.connection += 1
+        self.seen = 0
+        port = self.group.robot.port
+        answer = self.drive("connect", port=port, robot="tinibot", language="en",
+                            saw_stops=saw_stops)  # fmt: skip
+        self.is_there = "failure" not in answer
+
+    def runs(self, stops: int, seen: int) -> None:
+        """Ask for a run, which was pressed after so many presses of STOP, and so much news."""
+        self.ids += 1
+        self.asked.append({"do": "upload", "id": self.ids, "image": PROGRAM, "robot": "tinibot",
+                           "runs": True, "stops": stops, "seen": seen})  # fmt: skip
+
+    def stops(self) -> None:
+        if self.is_there:
+            self.drive("stop")
+        self.ask("stop", page="group", group_stops=self.presses)
+
+
+class Group:
+    """Three pupils, who have one turn of one robot."""
+
+    def __init__(self, robot: PtyRobot, seed: int) -> None:
+        self.robot = robot
+        self.chance = Random(seed)
+        self.hosting = Hosting()
+        self.room = Classroom(self.hosting, [robot.port])
+        self.is_over = False
+        self.late: list[Thread] = []
+        self.mates = [Mate(self, name) for name in PUPILS]
+
+    def begins(self) -> None:
+        self.mates[0].ask("here", wants=True)
+        until(lambda: self.mates[0].ask("here")["place"] == 0, "it is their turn")
+
+    def later(self, act: Callable[[], None], most_s: float = LATE_S) -> None:
+        delay_s = self.chance.random() * most_s
+
+        def acts() -> None:
+            time.sleep(delay_s)
+            act()
+
+        self.late.append(Thread(target=acts, daemon=True))
+        self.late[-1].start()
+
+    def drives(self, mate: Mate) -> None:
+        """Let a pupil drive, whoever has driven."""
+        end_s = time.monotonic() + HANGS_S
+        while not self.robot.moves:
+            assert time.monotonic() < end_s, "it never drives"
+            if not mate.is_there:
+                mate.connects(mate.saw_stops)
+            time.sleep(0.3)
+            mate.runs(mate.presses, mate.seen)
+            time.sleep(0.7)
+
+    def races(self) -> None:
+        """One drives; then some press Run, and one presses STOP after them."""
+        driver, *others = self.chance.sample(self.mates, 3)
+        self.drives(driver)
+        for mate in self.chance.sample(others, self.chance.randrange(3)):
+            pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
+            self.later(pressed)
+        if self.chance.random() < 0.5:
+            self.later(partial(driver.runs, driver.presses, driver.seen))
+        time.sleep(self.chance.random() * LATE_S)
+        stopper = self.chance.choice(self.mates)
+        stopper.presses += 1
+        for _ in range(self.chance.randrange(1, 4)):
+            self.later(stopper.stops, 0.2)
+        self.meet()
+        until(lambda: not self.robot.moves, "the robot stands", 3)
+        end_s = time.monotonic() + STANDS_S
+        while time.monotonic() < end_s:
+            assert not self.robot.moves, "it drives on"
+            time.sleep(0.01)
+        time.sleep(LATCH_S)
+
+    def _takes(self, mate: Mate, stops: int, saw_stops: int) -> None:
+        """Who has pressed Run takes the robot over, and then sends the program."""
+        mate.connects(saw_stops)
+        seen = mate.seen
+        time.sleep(self.chance.random() * 0.3)
+        mate.runs(stops, seen)
+
+    def meet(self) -> None:
+        for thread in self.late:
+            thread.join(HANGS_S)
+        self.late.clear()
+
+    def ends(self) -> None:
+        self.is_over = True
+        for mate in self.mates:
+            mate.thread.join(HANGS_S)
+        self.hosting.close()
+
+
+def race(count: int, seed: int) -> None:
+    with PtyRobot(robots.load("tinibot").kit) as robot:
+        group = Group(robot, seed)
+        try:
+            group.begins()
+            for _ in range(count):
+                group.races()
+        finally:
+            group.ends()
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_stop_of_any_pupil_wins_in_every_order(seed: int) -> None:
+    race(3, seed)
+
+
+def main() -> None:
+    count = int(sys.argv[1])
+    for seed in range(count // 10):
+        race(10, seed)
+        print(f"{10 * (seed + 1)} races: none drives on", flush=True)
+
+
+if __name__ == "__main__":
+    main()

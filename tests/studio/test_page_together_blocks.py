@@ -1,0 +1,296 @@
+"""Pupils of a group in browsers, one of them with blocks: what is done to blocks is a change of
+these blocks alone.
+
+`python -m tests.studio.test_page_together_blocks 200` lets them make so many changes; a folder
+after it gets a picture of each page.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from random import Random
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_blocks import PROGRAM as PROGRAM_BLOCKS
+from tests.studio.test_page_blocks import block, box_of, drag
+from tests.studio.test_page_class import joined
+from tests.studio.test_page_together import enters, goes_to, has, lines, types
+from tests.support import studio
+from tests.support.studio import Class, Pages, image, shown, write
+from tests.support.waiting import until
+from tiniscript import compile
+from tiniscript.studio.class_keeping import MOST_PUPILS
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+PROGRAM = """F(1.50, (80));  // first
+LOOP(3);
+  B(1, 40);
+  R(0.50, 60);
+END_LOOP;  // three
+S;
+"""
+ROWS = [row.strip() for row in PROGRAM.splitlines()]
+
+
+@pytest.fixture(scope="module")
+def taught(browser: Browser) -> Iterator[Class]:
+    with studio.taught([]) as made:
+        made.room.teach({"do": "class_places", "places": MOST_PUPILS})
+        yield made
+
+
+@pytest.fixture(scope="module")
+def pages(browser: Browser, taught: Class) -> Iterator[Pages]:
+    found = Pages(browser, taught.server.address)
+    yield found
+    found.close()
+    assert not found.wrong
+
+
+@pytest.fixture(scope="module")
+def both(pages: Pages, taught: Class) -> tuple[Page, Page]:
+    return group_of(pages, taught)
+
+
+def group_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
+    """Ana has blocks, Luz has the text."""
+    ana = joined(pages, taught, "Ana")
+    write(ana, PROGRAM)
+    luz = joined(pages, taught, "Luz")
+    for page in (ana, luz):
+        enters(page)
+    ana.set_viewport_size({"width": 1366, "height": 768})
+    ana.click("#view_blocks")
+    return ana, luz
+
+
+@pytest.fixture
+def two(both: tuple[Page, Page]) -> tuple[Page, Page]:
+    """Both have the program."""
+    ana, luz = both
+    write(luz, PROGRAM)
+    luz.locator(".cm-content").evaluate("(it) => it.blur()")
+    has(luz, *ROWS)
+    until(lambda: text_of(ana) == PROGRAM, "Ana has the program")
+    shown(ana)
+    return both
+
+
+def text_of(page: Page) -> str:
+    found = page.evaluate("JSON.parse(sessionStorage['tiniscript.work']).text")
+    return str(found)
+
+
+def field(page: Page, words: str, which: int = 0) -> None:
+    """Open a field of a block, with nothing in it."""
+    page.locator("html").evaluate("() => getSelection().removeAllRanges()")
+    block(page, words).locator(".blocklyNumberField").nth(which).click()
+    page.locator(".blocklyWidgetDiv input").wait_for()
+    page.keyboard.press("Control+a")
+
+
+def ends(two: tuple[Page, Page], *rows: str) -> None:
+    """Both have these lines, as text, and compiled; blocks are those of the text."""
+    ana, luz = two
+    luz.locator(".cm-content").evaluate("(it) => it.blur()")
+    has(luz, *rows)
+    until(lambda: text_of(ana) == text_of(luz), "both have the same")
+    shown(ana)
+    for page in two:
+        page.locator("html[data-state=checked]").wait_for(state="attached")
+        until(lambda page=page: image(page) == compile(text_of(luz)).image, "compiled")  # type: ignore[misc]
+
+
+def changed(*pairs: tuple[str, str]) -> list[str]:
+    return [dict(pairs).get(row, row) for row in ROWS]
+
+
+def test_a_changed_field_is_a_change_of_its_line_alone(two: tuple[Page, Page]) -> None:
+    ana, _ = two
+    field(ana, "back")
+    types(ana, "7\n")
+    ends(two, *changed(("B(1, 40);", "B(7, 40);")))
+
+
+def test_a_half_typed_field_is_none_and_stays_open(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    field(ana, "back")
+    types(ana, "6")
+    goes_to(luz, "S;")
+    types(luz, "\nw(2)\n")
+    until(lambda: "W(2);" in text_of(ana), "the others' line arrives after a while")
+    assert "B(1, 40);" in text_of(luz)
+    types(ana, "5")  # the field is where it was
+    assert "B(1, 40);" in text_of(luz)
+    ana.keyboard.press("Enter")
+    ends(two, *changed(("B(1, 40);", "B(65, 40);")), "W(2);")
+    block(ana, "wait").wait_for()
+
+
+def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    held, target = box_of(block(ana, "stop")), box_of(block(ana, "forward"))
+    ana.mouse.move(held["x"] + 8, held["y"] + 10)
+    ana.mouse.down()
+    ana.mouse.move(held["x"] + 60, held["y"] + 40, steps=4)
+    goes_to(luz, "B(1, 40)")
+    types(luz, "\nBEEP(1, 440)\n")
+    until(lambda: "BEEP" in text_of(ana), "the others' line arrives after a while")
+    ana.mouse.move(target["x"] + 10, target["y"] + target["height"] + 8, steps=8)
+    ana.mouse.up()
+    first, loop, back, *rest = ROWS[:-1]
+    ends(two, first, "S;", loop, back, "BEEP(1, 440);", *rest)
+
+
+def test_of_two_of_one_block_the_later_one_wins_whole(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    field(ana, "back")
+    types(ana, "6")
+    goes_to(luz, "B(1, 40)")
+    for _ in range(4):
+        luz.keyboard.press("Backspace")
+    types(luz, "95)")
+    luz.keyboard.press("ArrowDown")
+    until(lambda: "B(1, 95);" in text_of(ana), "the others' value arrives")
+    ana.keyboard.press("Enter")
+    ends(two, *changed(("B(1, 40);", "B(6, 40);")))
+
+
+def test_what_hangs_on_nothing_is_on_the_own_page_alone(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    drag(ana, "Move", "left", None)
+    goes_to(luz, "S;")
+    types(luz, "\nw(2)\n")
+    until(lambda: "W(2);" in text_of(ana), "the others' line arrives")
+    shown(ana)
+    assert block(ana, "left").count() == 1
+    assert "///" in text_of(ana)
+    assert "///" not in text_of(luz)
+    loose = box_of(block(ana, "left"))
+    ana.mouse.move(loose["x"] + 8, loose["y"] + 10)
+    ana.mouse.down()
+    target = box_of(block(ana, "wait"))
+    ana.mouse.move(target["x"] + 60, target["y"] + 90, steps=4)
+    ana.mouse.move(target["x"] + 10, target["y"] + target["height"] + 8, steps=8)
+    ana.mouse.up()
+    until(lambda: any(row.strip().startswith("L(") for row in lines(luz)), "it is joined")
+    luz.locator(".cm-content").evaluate("(it) => it.blur()")
+    until(lambda: text_of(ana) == text_of(luz), "both have the same")
+
+
+def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    field(ana, "back")
+    types(ana, "7\n")
+    has(luz, *changed(("B(1, 40);", "B(7, 40);")))
+    goes_to(luz, "S;")
+    types(luz, "\nw(2)\n")
+    until(lambda: "W(2);" in text_of(ana), "the others' line arrives")
+    shown(ana)
+    ana.locator("#speed").focus()
+    ana.keyboard.press("Control+z")
+    ends(two, *ROWS, "W(2);")
+    ana.click("#redo")
+    ends(two, *changed(("B(1, 40);", "B(7, 40);")), "W(2);")
+    goes_to(luz, "B(7, 40)")
+    for _ in range(4):
+        luz.keyboard.press("Backspace")
+    types(luz, "95)")
+    luz.keyboard.press("ArrowDown")
+    until(lambda: "B(7, 95);" in text_of(ana), "the others' value arrives")
+    shown(ana)
+    ana.click("#undo")  # what was his is another one's now
+    ends(two, *changed(("B(1, 40);", "B(7, 95);")), "W(2);")
+
+
+def test_each_sees_at_which_block_the_other_is(two: tuple[Page, Page]) -> None:
+    ana, luz = two
+    goes_to(luz, "B(1, 40)")
+    mark = block(ana, "back").locator("> .mate_mark")
+    mark.filter(has_text="Luz").wait_for()
+    types(luz, " ")
+    mark.filter(has_text="Luz …").wait_for()
+    luz.keyboard.press("ArrowDown")
+    block(ana, "right").locator("> .mate_mark").filter(has_text="Luz").wait_for()
+    assert mark.count() == 0
+    block(ana, "stop").click(position={"x": 6, "y": 6})
+    name = luz.locator(".cm-line", has_text="S;").locator(".cm-mate")
+    name.filter(has_text="Ana").wait_for()
+
+
+def random_change(page: Page, has_blocks: bool, rng: Random) -> None:
+    """Do something as a person does it: in blocks to a number, in text to a line."""
+    if has_blocks:
+        found = page.locator(f"{PROGRAM_BLOCKS} .blocklyNumberField")
+        which = rng.randrange(max(1, found.count()))
+        try:
+            found.nth(which).click(timeout=3000)
+        except Exception:  # others have taken it away meanwhile
+            return
+        page.keyboard.press("Control+a")
+        types(page, f"{rng.randrange(1, 60)}\n")
+        return
+    rows = [row for row in lines(page) if row.strip()]
+    row = rng.choice(rows)
+    at = page.locator(".cm-line").filter(has_text=row.strip()).first
+    try:
+        at.click(timeout=3000)
+    except Exception:  # others have changed it meanwhile
+        return
+    page.keyboard.press("End")
+    if rng.random() < 0.3 and len(rows) > 5 and not row.strip().startswith(("LOOP", "END_")):
+        for key in ("Home", "Shift+End", "Delete"):
+            page.keyboard.press(key)
+    else:
+        types(page, f"\n{rng.choice('FBRL')}({rng.randrange(1, 9)}, {rng.randrange(20, 99)})")
+    page.keyboard.press("ArrowUp")
+
+
+def race(two: tuple[Page, Page], count: int, seed: int) -> None:
+    """Let both change the program, and look at the end whether all is one."""
+    ana, luz = two
+    rng = Random(seed)
+    for _ in range(count):
+        page = rng.choice(two)
+        random_change(page, page is ana, rng)
+    luz.locator(".cm-content").evaluate("(it) => it.blur()")
+    until(lambda: text_of(ana).strip() == text_of(luz).strip(), "both have the same", 60)
+    shown(ana)
+    for page in two:
+        page.locator("html[data-state=checked]").wait_for(state="attached")
+        until(lambda page=page: image(page) == compile(text_of(luz)).image, "compiled")  # type: ignore[misc]
+    said = ana.locator(f"{PROGRAM_BLOCKS} .blocklyBlock").count()
+    assert said >= len([row for row in text_of(luz).splitlines() if row and "END_" not in row])
+
+
+def test_both_end_with_the_same_program(two: tuple[Page, Page]) -> None:
+    race(two, 12, 1)
+
+
+def main() -> None:
+    """Let pupils make so many changes in two browsers: 200, say."""
+    count = int(sys.argv[1])
+    with (
+        studio.taught([]) as made,
+        studio.driver() as playwright,
+        studio.browser(playwright) as browser,
+    ):
+        found = Pages(browser, made.server.address)
+        two = group_of(found, made)
+        for k in range(count // 20):
+            race(two, 20, k)
+            print(f"{20 * (k + 1)} changes: text, blocks and image are one", flush=True)
+        for page, name in zip(two, ("blocks", "text"), strict=True):
+            if len(sys.argv) > 2:
+                page.screenshot(path=f"{sys.argv[2]}/{name}.png")
+        found.close()
+        assert not found.wrong
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,265 @@
+"""The page in WebKit's engine, which every browser of an iPad has: Debian's `webkit2gtk-driver`.
+
+    python -m tools.webkit
+
+Needs the packages `webkit2gtk-driver` and `xvfb`, the built page and the robot of the tests. What
+it drives is what a pupil does; it has a mouse and keys, and no fingers. It prints a row for each.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from tests.support.command import FOREVER
+from tests.support.pty_robot import PtyRobot
+from tests.support.studio import served, taught
+from tiniscript import robots
+from tiniscript.lessons import catalogue
+
+Json = Any
+DRIVER, SCREEN = "WebKitWebDriver", "Xvfb"
+PACKAGES = "webkit2gtk-driver xvfb"
+PATIENCE_S = 90.0
+CONTROL, ENTER, DELETE = "\ue009", "\ue007", "\ue017"
+ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
+EDITOR = "document.querySelector('#editor').shadowRoot.querySelector('.cm-content')"
+
+
+class Failed(Exception):
+    """A page has not come to what a step waits for."""
+
+
+class Browser:
+    """A session of WebKit's driver."""
+
+    def __init__(self, port: int, binary: Path) -> None:
+        self._base = f"http://127.0.0.1:{port}/session"
+        options = {"binary": str(binary), "args": ["--automation"]}
+        wanted = {"capabilities": {"alwaysMatch": {"webkitgtk:browserOptions": options}}}
+        found = self._ask("POST", "", wanted)
+        self.version = f"WebKitGTK {found['capabilities']['browserVersion']}"
+        self._base += f"/{found['sessionId']}"
+
+    def _ask(self, method: str, path: str, body: Json = None) -> Json:
+        data = json.dumps(body).encode() if body is not None else None
+        request = urllib.request.Request(self._base + path, data, method=method)
+        with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
+            return json.loads(answer.read())["value"]
+
+    def open(self, address: str) -> None:
+        self._ask("POST", "/url", {"url": address})
+
+    def run(self, script: str, *values: Json) -> Json:
+        return self._ask("POST", "/execute/sync", {"script": script, "args": list(values)})
+
+    def until(self, condition: str, what: str) -> None:
+        end_s = time.monotonic() + PATIENCE_S
+        while not self.run(f"return Boolean({condition})"):
+            if time.monotonic() > end_s:
+                raise Failed(what)
+            time.sleep(0.1)
+
+    def data(self, name: str, value: str) -> None:
+        """Wait until the page says so of itself."""
+        self.until(f"document.documentElement.dataset['{name}'] === '{value}'", f"{name} {value}")
+
+    def click(self, selector: str) -> None:
+        found = self._ask("POST", "/element", {"using": "css selector", "value": selector})
+        self._ask("POST", f"/element/{found[ELEMENT]}/click", {})
+
+    def keys(self, text: str, held: str = "") -> None:
+        actions = [{"type": "keyDown", "value": held}] if held else []
+        for sign in text:
+            actions += [{"type": "keyDown", "value": sign}, {"type": "keyUp", "value": sign}]
+        actions += [{"type": "keyUp", "value": held}] if held else []
+        keys = [{"type": "key", "id": "keys", "actions": actions}]
+        self._ask("POST", "/actions", {"actions": keys})
+
+    def write(self, text: str) -> None:
+        """Replace the program as a person does."""
+        self.run(f"{EDITOR}.focus()")
+        self.keys("a", CONTROL)
+        self.keys(DELETE)
+        self.keys(text.replace("\n", ENTER))
+        self.data("state", "checked")
+
+    def fill(self, selector: str, which: int, text: str) -> None:
+        self.run("document.querySelectorAll(arguments[0])[arguments[1]].focus()", selector, which)
+        self.keys(text)
+
+    def text(self, selector: str) -> str:
+        return str(self.run("return document.querySelector(arguments[0]).innerText", selector))
+
+    def close(self) -> None:
+        self._ask("DELETE", "")
+
+
+def enter(page: Browser, address: str) -> None:
+    page.open(address)
+    page.data("state", "checked")
+    if page.run("return document.documentElement.dataset.screen") == "start":
+        page.click("#start_write")
+    page.click("#view_text")
+
+
+def first_minute(page: Browser) -> None:
+    page.click("#run")
+    page.data("phase", "ended")
+
+
+def mistake(page: Browser) -> None:
+    page.run(
+        "const it = document.querySelector('#language'); it.value = 'es';"
+        "it.dispatchEvent(new Event('change', {bubbles: true}))"
+    )
+    page.until("document.documentElement.lang === 'es'", "Spanish")
+    page.write("F(2, 80)\nAVANZA\n")
+    page.until("/AVANZA/.test(document.querySelector('#messages').innerText)", "the message")
+
+
+def lesson(page: Browser) -> None:
+    folder = catalogue.folders()[0]
+    page.click("#side_lessons")
+    page.until("document.querySelector('#lesson:enabled')", "the lessons")
+    page.run(
+        "const it = document.querySelector('#lesson'); it.value = '1';"
+        "it.dispatchEvent(new Event('change', {bubbles: true}))"
+    )
+    page.until("document.querySelector('#lesson_page[data-lesson=\"1\"]')", "the first lesson")
+    page.write(catalogue.answers(folder)[0][0].program)
+    page.run("[...document.querySelectorAll('#lesson_steps button')].at(-1).click()")
+    page.until("document.querySelector('#lesson_check:enabled')", "its task")
+    page.click("#lesson_check")
+    page.until("document.querySelector('#lesson_said[data-verdict]')", "its verdict")
+    if page.run("return document.querySelector('#lesson_said').dataset.verdict") != "passed":
+        raise Failed(page.text("#lesson_said"))
+
+
+def joins(page: Browser, address: str, code: str) -> None:
+    enter(page, address)
+    page.click("#side_real")
+    page.fill("#class_pupil input", 0, code)
+    page.fill("#class_pupil input", 1, "Ana")
+    page.click("[data-text=class_join]")
+    page.data("pupil", "class_in")
+
+
+def group(page: Browser, changes: Callable[[], None], has: Callable[[str], bool]) -> None:
+    page.write("F(1, 80)\nS\n")
+    page.fill("#class_group input", 0, "Red")
+    page.click("[data-text=group_join]")
+    page.data("group", "in")
+    page.run(f"{EDITOR}.focus()")
+    page.keys("\ue010", CONTROL)  # the end of the text
+    page.keys(f"W(2){ENTER}")
+    end_s = time.monotonic() + PATIENCE_S
+    while not has("W(2);"):
+        if time.monotonic() > end_s:
+            raise Failed("the class has the line")
+        time.sleep(0.1)
+    changes()
+    page.until(f"{EDITOR}.innerText.includes('BEEP(1, 440)')", "the line of another pupil")
+
+
+def stop(page: Browser, robot: PtyRobot) -> None:
+    page.click("[data-text=class_ask]")
+    page.data("robot", "connected")
+    page.write(FOREVER + "\n")
+    page.click("#link_upload")
+    robot.until(lambda: robot.moves, "it drives")
+    page.click("#stop")
+    robot.until(lambda: not robot.moves, "it stands")
+
+
+@contextmanager
+def browsers() -> Iterator[Callable[[], Browser]]:
+    """Yield what opens a browser on a screen that nobody sees."""
+    binary = next(Path("/usr/lib").glob("*/webkit2gtk-4.*/MiniBrowser"), None)
+    if binary is None or not shutil.which(DRIVER) or not shutil.which(SCREEN):
+        sys.exit(f"webkit: apt-get install {PACKAGES}")
+    with tempfile.TemporaryDirectory() as home, socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+        free.close()
+        screen = subprocess.Popen(
+            [SCREEN, "-displayfd", "1", "-screen", "0", "1400x900x24"], stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL, text=True,
+        )  # fmt: skip
+        assert screen.stdout is not None
+        number = screen.stdout.readline().strip()
+        env = {**os.environ, "DISPLAY": f":{number}", "HOME": home, "XDG_RUNTIME_DIR": home,
+               "LIBGL_ALWAYS_SOFTWARE": "1"}  # fmt: skip
+        driver = subprocess.Popen([DRIVER, f"--port={port}"], env=env)
+        try:
+            time.sleep(1)
+            yield lambda: Browser(port, binary)
+        finally:
+            driver.terminate()
+            screen.terminate()
+            driver.wait()
+            screen.wait()
+
+
+def main() -> int:
+    failed = 0
+
+    def step(name: str, act: Callable[[], None]) -> None:
+        nonlocal failed
+        began_s = time.monotonic()
+        try:
+            act()
+            said = "works"
+        except (Failed, OSError, AssertionError) as why:
+            said, failed = f"FAILS: {why}", failed + 1
+        print(f"{name:32} {said}  ({time.monotonic() - began_s:.1f} s)", flush=True)
+
+    with browsers() as opens:
+        page = opens()
+        print(page.version)
+        with served() as server:
+            step("opens and compiles", lambda: enter(page, server.address))
+            step("the first minute", lambda: first_minute(page))
+            step("a mistake, in Spanish", lambda: mistake(page))
+            step("a lesson", lambda: lesson(page))
+            ways = "['serial', 'bluetooth']"
+            lacks = page.run(f"return {ways}.filter((each) => !(each in navigator))")
+            print(f"{'lacks':32} {', '.join(lacks)}")
+        with PtyRobot(robots.load("tinibot").kit) as robot, taught([robot.port]) as school:
+            room = school.room
+
+            def changes() -> None:
+                luz = room.answer("", "luz", {"do": "join", "code": room.code, "name": "Luz"})
+                token = luz["token"]
+                joined = room.answer(token, "luz", {"do": "group_join", "name": "Red", "text": ""})
+                nodes = [{"id": f"{joined['page']}.1", "text": "BEEP(1, 440)"}]
+                ops = [{"do": "insert", "at": ["root", ""], "nodes": nodes}]
+                change = {"uid": f"{joined['page']}:1", "ops": ops}
+                room.answer(token, "luz", {"do": "group", "page": joined["page"], "since": -1,
+                                           "epoch": "", "changes": [change]})  # fmt: skip
+
+            def has(row: str) -> bool:
+                found = room.teach({"do": "class"})["groups"]
+                text = room.teach({"do": "class_text", "group": found[0]["key"]})["text"]
+                return row in text
+
+            step("a class", lambda: joins(page, school.server.address, room.code))
+            step("a group", lambda: group(page, changes, has))
+            step("STOP", lambda: stop(page, robot))
+        page.close()
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
