@@ -60,7 +60,7 @@ class Drive : public Execution {
   void leave_move(TaskRecord* task);
   void stand_still(TaskRecord* task);
   bool is_below() const;
-  void take();
+  void take_motors();
   void set_motors_of_move();
 };
 
