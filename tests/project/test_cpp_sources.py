@@ -34,7 +34,6 @@ OF_AVR = {
     "receiver_avr.h",
     "link_avr.h",
 }  # for its compiler alone
-GENERATED_BY_ROBOT = {"texts.cpp"}  # a table for robots that say all, and a shorter one
 ASSEMBLY_THAT_CHOOSES = {"bytecode_avr.S"}
 CONDITION = re.compile(r"#\s*(if|ifdef|ifndef|elif|else|endif)\b")
 HEADERS = sorted(path for part in ("src", "extras") for path in (SOURCES / part).rglob("*.h"))
@@ -80,7 +79,7 @@ def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
     assert not words & set(FORBIDDEN)
 
 
-@each_row("path", [path for path in PORTABLE if path.name not in CHOOSING | GENERATED_BY_ROBOT])
+@each_row("path", [path for path in PORTABLE if path.name not in CHOOSING])
 def test_what_a_build_has_is_chosen_in_few_headers(path: Path) -> None:
     """Elsewhere a condition encloses all of a file, or chooses which file is included."""
     rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
