@@ -33,7 +33,7 @@ class Drive : public Execution {
   // A new program has no way that the robot measures.
   static void forget_way();
 
-  // How far the clock of a task is behind now; `wide_avr.S` is the same for the AVR.
+  // How far the clock of a task is behind now; `execute_control_avr.S` is the same for the AVR.
   uint32_t late_ms(const TaskRecord* task) const;
 
   // Sets a task's clock to now.
