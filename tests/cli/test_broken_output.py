@@ -24,7 +24,7 @@ from tiniscript import robots
 from tiniscript.cli import EXIT_OF_CLOSED_PIPE, streams
 from tiniscript.cli.robot import connect, fleet
 from tiniscript.library import opening
-from tiniscript.link.messages import STATUSES, STOP_RUN
+from tiniscript.link.messages import STATUSES, STOP_ZEROS
 from tiniscript.link.payloads import SentReply
 from tiniscript.link.requests import Reply, reply_of
 
@@ -128,7 +128,7 @@ def test_many_robots_are_stopped() -> None:
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
         for pupil in room.pupils:
             assert any(line.startswith("MOTORS") for line in pupil.did)
-            assert bytes(STOP_RUN) in pupil.heard
+            assert bytes(STOP_ZEROS) in pupil.heard
 
 
 @pytest.mark.parametrize(("verb", "is_detached", "is_stopped"), [
@@ -258,7 +258,7 @@ def test_a_fleet_whose_output_nobody_reads_ends_with_ctrl_c(extra: list[str]) ->
         command.signal(signal.SIGINT)
         assert command.process.wait(HANGS_S) == 2
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
-        assert all(bytes(STOP_RUN) in pupil.heard for pupil in room.pupils)
+        assert all(bytes(STOP_ZEROS) in pupil.heard for pupil in room.pupils)
         done = command.ended()
         assert done.out and "Traceback" not in done.err
 

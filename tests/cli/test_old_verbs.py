@@ -17,7 +17,14 @@ from tests.support.texts import said as all_said
 from tiniscript.base.languages import FOLDER
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts.options import choosers_of, chosen, options_of
-from tiniscript.cli.texts.verbs import COMMANDS, FORMER_COMMANDS, STEPS, VERBS, command_words
+from tiniscript.cli.texts.verbs import (
+    COMMANDS,
+    FORMER_COMMANDS,
+    STEPS,
+    VERBS,
+    command_words,
+    steps_of,
+)
 from tiniscript.cli.verbless import is_help
 
 OLD = "|".join(FORMER_COMMANDS)
@@ -63,11 +70,16 @@ def test_what_is_searched_for_is_found() -> None:
 # -- what texts say that can be typed -------------------------------------------------------------
 
 
-def commands_in(text: str, is_document: bool) -> Iterator[str]:
-    """Yield the commands of a text: between backticks, and in messages after two blanks, too."""
+def commands_in(text: str, is_document: bool, is_robots: bool = False) -> Iterator[str]:
+    """Yield the commands of a text: between backticks, and in messages after two blanks, too.
+
+    A robot has neither: in what it says, and in what its sources say, a command ends at a sign.
+    """
     yield from re.findall(r"`tsc ([^`\n]+)`", text)
     yield from re.findall(r"^\$ tsc (.+)$", text, re.M)
-    if not is_document:
+    if is_robots:
+        yield from re.findall(r"\btsc ([a-z][-a-z ]*)", text)
+    elif not is_document:
         yield from re.findall(r"  tsc ((?:[^ `]+ ?)+)", text)
 
 
@@ -81,6 +93,9 @@ def wrong_in(command: str) -> str | None:
     if words[0] not in VERBS and not is_help(words[0]):
         return words[0]
     name, _ = chosen(words[0] if words[0] in VERBS else "help", words[1:])
+    heads = {STEPS[step].head for step in steps_of(words[0])} - {words[0]}
+    if heads and name == words[0] and re.fullmatch("[a-z]+", "".join(words[1:2])):
+        return words[1]  # `tsc set` has its steps by a word
     known = {
         flag for option in [*options_of(name), *choosers_of(name)] for flag in option.flags.split()
     }
@@ -96,10 +111,34 @@ def test_what_messages_say_to_type_is_a_command(language: str) -> None:
         if path.stem == "language" or not all_said(language, path.stem):
             continue
         for key, text in all_said(language, path.stem).items():
-            for command in commands_in(text, is_document=False):
+            is_robots = path.stem == "robot"
+            for command in commands_in(text, is_document=False, is_robots=is_robots):
                 found += 1
                 assert wrong_in(command) is None, (path.stem, key, command)
     assert found > 100
+    owned = all_said(language, "robot")["remark/NOT_OWNER"]
+    assert [*commands_in(owned, is_document=False, is_robots=True)]
+
+
+def test_what_sources_of_robots_say_to_type_is_a_command() -> None:
+    """The compiler says it to who builds a firmware."""
+    found = 0
+    for path in files():
+        if path.suffix in (".cpp", ".h") and "src" in path.parts:
+            strings = re.findall(r'"((?:\\.|[^"\\\n])*)"', path.read_text(encoding="utf-8"))
+            for command in commands_in(" ".join(strings), is_document=False, is_robots=True):
+                found += 1
+                assert wrong_in(command) is None, (path.relative_to(ROOT), command)
+    assert found
+
+
+def test_what_is_no_command_is_found_in_what_a_robot_says() -> None:
+    for wrong in (
+        "Owned: tsc set txet on, or button 2 s.",
+        "Take other pins with tsc firmwear -b.",
+    ):
+        (command,) = commands_in(wrong, is_document=False, is_robots=True)
+        assert wrong_in(command) in ("txet", "firmwear")
 
 
 def test_what_documents_say_to_type_is_a_command() -> None:

@@ -30,7 +30,7 @@ from tiniscript.link.messages import (
     OWNERS,
     SAVED,
     STATUSES,
-    STOP_RUN,
+    STOP_ZEROS,
     WIFI_RESTS,
     YOURS,
 )
@@ -102,7 +102,7 @@ def test_a_robot_that_is_fine_and_is_only_asked(is_radio: bool) -> None:
     end.deaf = 3
     found(end, is_radio=is_radio, kit=KIT)
     assert set(end.requests) == QUESTIONS
-    assert b"\0" * STOP_RUN not in b"".join(end.got)
+    assert b"\0" * STOP_ZEROS not in b"".join(end.got)
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ LOOK_MS = (
 )
 BUSY = "F(FOREVER, 60);" + "TASK;X = 0;LOOP(FOREVER);X = X + 1;END_LOOP;END_TASK;" * 4
 STOP = bytes(8)
-STOP_RUN = (
+STOP_ZEROS = (
     3  # the last zero of a stop that a robot must have seen after a frame, which ends with one
 )
 STOP_US = 12
@@ -137,7 +137,7 @@ def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
     robot.send(STOP)
     robot.run_ms(20)
     stopped = max(robot.pins[name].cycle for name in ("left", "right"))
-    last = robot.received_bytes[STOP_RUN - 1 - len(STOP)].cycle
+    last = robot.received_bytes[STOP_ZEROS - 1 - len(STOP)].cycle
     assert states(robot) == OFF
     assert 0 < stopped - last < STOP_US * CYCLES_PER_MS // 1000
     wired.run(300)

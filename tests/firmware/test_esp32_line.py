@@ -12,7 +12,7 @@ from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import session, talk
 from tests.support.images import image_of
-from tiniscript.link.messages import STOP_RUN
+from tiniscript.link.messages import STOP_ZEROS
 
 NAMES = ["tinibot32", "tinibotc3"]
 FORWARD, OFF = "MOTORS 80 80", "MOTORS 0 0"
@@ -107,7 +107,7 @@ def test_each_byte_with_a_framing_error_counts_as_soon_as_the_first_one(pause_ms
     robot = typed(booted())
     for _ in range(3):
         assert happened(robot)[-1] == FORWARD
-        for _ in range(STOP_RUN):
+        for _ in range(STOP_ZEROS):
             robot.wait(pause_ms)
             robot.spoil_byte()
         robot.wait(FIFO_MS + 2)

@@ -105,7 +105,7 @@ void loop() {
   if (test_turn != nullptr) test_turn();
   switch (board_button(now_ms)) {
     case Press::kNothing:
-    case Press::kHeld:
+    case Press::kDown:
       break;
     case Press::kPressed:
       may_start = !is_running;

@@ -34,7 +34,6 @@ OF_AVR = {
     "receiver_avr.h",
     "link_avr.h",
 }  # for its compiler alone
-GENERATED_BY_ROBOT = {"texts.cpp"}  # a table for robots that say all, and a shorter one
 ASSEMBLY_THAT_CHOOSES = {"bytecode_avr.S"}
 CONDITION = re.compile(r"#\s*(if|ifdef|ifndef|elif|else|endif)\b")
 HEADERS = sorted(path for part in ("src", "extras") for path in (SOURCES / part).rglob("*.h"))
@@ -80,7 +79,7 @@ def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
     assert not words & set(FORBIDDEN)
 
 
-@each_row("path", [path for path in PORTABLE if path.name not in CHOOSING | GENERATED_BY_ROBOT])
+@each_row("path", [path for path in PORTABLE if path.name not in CHOOSING])
 def test_what_a_build_has_is_chosen_in_few_headers(path: Path) -> None:
     """Elsewhere a condition encloses all of a file, or chooses which file is included."""
     rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
@@ -109,6 +108,45 @@ def test_what_assembly_chooses_stands_in_the_files_that_build_h_names(path: Path
         return
     assert inner in ([], [inner[0], len(rows) - 1] if inner else []), [rows[k] for k in inner]
     assert all(row.startswith("#include") for row in rows[: inner[0] if inner else 0])
+
+
+def first_comment(path: Path) -> str:
+    """Return the comment that a file begins with, as one line."""
+    rows = path.read_text(encoding="utf-8").splitlines()
+    rows = rows[: next(k for k, row in enumerate(rows) if row[:1] != ";")]
+    return " ".join(row.lstrip("; ") for row in rows)
+
+
+WITH_TWIN = [
+    path
+    for path in sorted((SOURCES / "src").rglob("*.S"))
+    if "the same as `" in path.read_text(encoding="utf-8")
+]
+
+
+@each_row("path", WITH_TWIN)
+def test_what_exists_in_assembly_too_exists_in_the_files_that_it_names(path: Path) -> None:
+    """Its first lines say what the other chips run, and a reader finds each function there."""
+    about = first_comment(path)
+    (same,) = re.findall(r"[Mm]eans? the same as (.*?)[.] [A-Z`]", about)
+    twins = [path.parent / name for name in re.findall(r"`([\w/]+\.(?:cpp|h))`", same)]
+    twins += [twin for each in twins if (twin := VM / each.name).exists()]
+    code = "\n".join(code_of(twin) for twin in twins if twin.exists())
+    defined = set(re.findall(r"\b(\w+)\([^;{}()]*\)(?: const)? \{", code))
+    text = path.read_text(encoding="utf-8")
+    mangled = re.findall(r"(?:\.global|^function) _ZNK?10tiniscript(\d\w+)", text, re.M)
+    names = [names_in(each)[-1] for each in mangled]
+    names += re.findall(r"^starts tiniscript_(\w+)", text, re.M)
+    assert names and set(names) <= defined, {*names} - defined
+
+
+MUST_STAY = {"execute_avr.S", "number_avr.S"}  # the loop and the arithmetic: a factor of four
+
+
+@each_row("path", [path for path in WITH_TWIN if path.name not in MUST_STAY])
+def test_what_exists_in_assembly_too_says_what_it_saves_and_when_it_may_go(path: Path) -> None:
+    about = first_comment(path)
+    assert re.search(r"\d+ (bytes|cycles)", about) and "lets it go" in about
 
 
 @each_row("path", BOARDS)

@@ -215,6 +215,29 @@ def test_paths_in_sources_exist() -> None:
     assert not wrong, "\n".join(wrong)
 
 
+# `stop_run` and `end_run` (`firmware/run.cpp`), `Receiver::keep` in `link/receiver.cpp`
+SPAN = r"`[^`]+`"
+IN_FILE = re.compile(
+    rf"({SPAN}(?:(?:, | and |, and ){SPAN})*),?\s+(?:in|of|\()\s*`([\w/]+\.(?:cpp|h|py))`"
+)
+
+
+def test_what_architecture_says_is_in_a_file_is_there() -> None:
+    text = (ROOT / "docs/develop/architecture.md").read_text(encoding="utf-8")
+    paths = text[text.index("### The path of a program") : text.index("### Ten files to read")]
+    found = 0
+    for names, file in IN_FILE.findall(paths):
+        matches = [path for path in SOURCES if path.as_posix().endswith(f"/{file}")]
+        matches += (ROOT / "vm_arduino" / "src").rglob(file)
+        assert matches, file
+        code = "\n".join(path.read_text(encoding="utf-8") for path in matches)
+        for span in re.findall(r"`([\w:]+)`", names):
+            found += 1
+            name = span.rpartition("::")[2]
+            assert re.search(rf"\b{name}\b", code), f"{file} has no {span}"
+    assert found >= 15
+
+
 @each_row("document", DOCUMENTS)
 def test_a_row_of_a_table_has_the_cells_of_its_heading(document: Path) -> None:
     cells = 0

@@ -77,6 +77,21 @@ def test_a_benchmark_fills_in_the_rows_of_its_tables(name: str) -> None:
     assert len(shown) == len(rows) or name == "machine"
 
 
+def test_the_last_row_of_the_history_of_an_uno_is_what_it_takes_now() -> None:
+    """Both are on the page, and only one is printed by a benchmark."""
+    ((_, flash, holds, *_),) = (
+        page.cells(row)
+        for table in page.tables("firmware_size")
+        for row in table.rows
+        if page.cells(row)[0] == "`tinibot`, Uno"
+    )
+    history = page.PAGE.read_text(encoding="utf-8").partition("\n| added | bytes | firmware |")[2]
+    *_, last = history.partition("\n\n")[0].split("\n")
+    _, _, firmware, left = page.cells(last)
+    assert firmware == flash
+    assert int(left) == int(holds.replace(",", "")) - int(flash.replace(",", ""))
+
+
 def test_no_other_row_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     name = "text"
     row, other = (page.cells(each) for each in page.tables(name)[0].rows)

@@ -7,7 +7,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
@@ -22,12 +22,15 @@ from tiniscript import compile_text, robots
 from tiniscript.base import languages
 from tiniscript.base.source import Source
 from tiniscript.base.words import WORDS
+from tiniscript.codegen import lower
+from tiniscript.codegen.sketch import statements
 from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics import codes
 from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.kit_words import pack_range
 from tiniscript.robots.text_levels import LEVELS, Level
+from tiniscript.semantics import ir
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.description import description
@@ -258,6 +261,12 @@ def test_what_needs_no_more_than_the_table_has_a_word_with_a_role_of_its_own(
     assert found["block"] == ["plain_1", "SI|LAMP(50)\n", "{LAMP} LAMP"]
     assert found["says"] == SAID["es"]
     assert f"\n- Otras instrucciones: `LAMP(POWER)` {SAID['es']}\n" in found["reference"]
+
+
+@each_row("stage", [lower, statements])
+def test_each_statement_of_the_ir_has_a_row_where_code_is_made_of_it(stage: Any) -> None:
+    """Else what a new word with a role of its own becomes would be found by who runs it."""
+    assert set(stage._STATEMENTS) == {*get_args(ir.Statement)}
 
 
 @pytest.mark.parametrize(("language", "says"), SAID.items())

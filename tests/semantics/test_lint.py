@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.support.rows import each_row
+from tests.support.texts import said
 from tiniscript import check_text, robots
 from tiniscript.base.source import apply_edits
 from tiniscript.diagnostics import codes
@@ -212,13 +215,19 @@ def test_no_advice(text: str) -> None:
     assert check_text(text, KIT).diagnostics == []
 
 
-# By other stages: of a number's text, and of the robot's memory.
-OF_OTHERS = {codes.ROUNDED, codes.BOARD_MAY_BE_TOO_SMALL, codes.GIVES_WAY}
+# What the catalogue says is wrong; `tests/diagnostics/test_rendering.py` holds what each is told.
+WRONG = [text for key, text in said("en", "messages").items() if key.endswith("/wrong")]
 
 
 def test_the_table_has_every_warning() -> None:
     warnings = {code for code in codes.CODES.values() if not code.is_mistake}
-    assert {code for row in lints.TABLE for code in row.codes} == warnings - OF_OTHERS
+    found = {code for row in lints.TABLE for code in row.codes}
+    assert found == warnings - set(lints.FOUND_ELSEWHERE)
+    names = {code: name for name, code in vars(codes).items() if isinstance(code, codes.Code)}
+    for code, module in lints.FOUND_ELSEWHERE.items():
+        source = find_spec(f"tiniscript.{module}")
+        assert source is not None and source.origin is not None
+        assert f"codes.{names[code]}" in Path(source.origin).read_text(encoding="utf-8")
 
 
 def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -236,7 +245,7 @@ def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
     rows = {at: [*map(watched, its)] for at, its in lints._ROWS.items()}
     monkeypatch.setattr(lints, "_ROWS", rows)
-    for text, _ in ADVISED:
+    for text in [*(text for text, _ in ADVISED), *WRONG]:
         check_text(text, KIT)
     assert reported == {row: set(row.codes) for row in lints.TABLE}
 

@@ -25,7 +25,7 @@ from tools.uno import CYCLES_PER_MS, HERTZ, Masked, Uno
 
 TEXT = b"// nobody reads that\n", b"// nor this line, which nobody ends"
 STOP = bytes(8)
-STOP_RUN = 4
+STOP_ZEROS = 4
 
 PERIOD = 16_384  # cycles between two interrupts of the clock
 COARSE = 64  # cycles: the interrupt takes longer
@@ -112,7 +112,7 @@ class Busy:
             chip.run_until(self._trigger, "high", PING_MS)
             chip.run_until(self._trigger, "low", PING_MS)
         bit = HERTZ / self.baud
-        cycles = round((len(text) + STOP_RUN - 1) * BITS_PER_BYTE * bit + SEEN_BITS * bit)
+        cycles = round((len(text) + STOP_ZEROS - 1) * BITS_PER_BYTE * bit + SEEN_BITS * bit)
         begin = chip.cycle + CYCLES_PER_MS
         begin += (place.at - begin - cycles) % PERIOD
         last = begin + cycles
@@ -138,7 +138,7 @@ class Busy:
             and event["pin"] in self._motors
         ]
         self._wired.run(2 * QUIET_MS)
-        self.cycles.append(max(off) - zeros[STOP_RUN - 1])
+        self.cycles.append(max(off) - zeros[STOP_ZEROS - 1])
         return self.cycles[-1]
 
     def together(self) -> int:

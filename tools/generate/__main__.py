@@ -216,6 +216,7 @@ MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
 PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
 TEXT = ROOT / "vm_arduino" / "src" / "text"
+ALL_TEXTS, SMALL_TEXTS = "texts_all.h", "texts_small.h"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
 DOCS, PICTURES = ROOT / "docs", ROOT / "docs" / "pictures"
 
@@ -233,7 +234,9 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (TEXT / "problems.h", partial(text_tables.problems_header, COMMAND)),
     (TEXT / "remarks.h", partial(remark_tables.remarks_header, COMMAND)),
     (TEXT / "texts.h", partial(remark_tables.texts_header, COMMAND)),
-    (TEXT / "texts.cpp", partial(remark_tables.texts, COMMAND)),
+    (TEXT / "texts.cpp", partial(remark_tables.texts, COMMAND, ALL_TEXTS, SMALL_TEXTS)),
+    (TEXT / ALL_TEXTS, partial(remark_tables.tables_of_texts, COMMAND, ALL_TEXTS, is_small=False)),
+    (TEXT / SMALL_TEXTS, partial(remark_tables.tables_of_texts, COMMAND, SMALL_TEXTS, True)),
     *((ROOT / name, make) for name, make in DOCUMENTS.items()),
     (PAYLOADS, partial(payloads, COMMAND)),
     *((DOCS / "poster" / name, make) for name, make in posters(COMMAND).items()),

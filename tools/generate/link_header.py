@@ -37,7 +37,7 @@ def header(command: str) -> str:
         + constants_of(
             messages, "SMALL_FRAME", "LARGE_FRAME", "LARGE_WINDOW", "HEAD_BYTES",
             "CRC_BYTES", "REPLY", "SEALED", "NAME_BYTES", "MOST_BALANCE", "MOST_LEAST",
-            "STOP_RUN", "SILENCE_MS", "ZERO_MS", "TEXT_MS", "HELD_MS", "DEAD_MAN_MS", "LISTEN_MS",
+            "STOP_ZEROS", "SILENCE_MS", "ZERO_MS", "TEXT_MS", "HELD_MS", "DEAD_MAN_MS", "LISTEN_MS",
             "AGAIN_MS", "KEY_BYTES", "CHALLENGE_BYTES", "TAG_BYTES", "AUTHORITY_MS",
             "LONG_MS", "CLAIM_MS", "FORGET_MS", "NETWORK_BYTES",
             "WIFI_TEXT_BYTES", "PASSWORD_BYTES", "LEAST_PASSWORD", "CLASS_BYTES",

@@ -99,31 +99,28 @@ def _unused_remarks() -> set[tuple[str, str]]:
     return levels | words | faults | {("remark", "NO_KEYS")}
 
 
-def texts(command: str) -> str:
-    """Return `texts.cpp`."""
+def tables_of_texts(command: str, name: str, is_small: bool) -> str:
+    """Return a header with the packed texts, for `texts.cpp` alone."""
+    about = "The packed texts of a robot that says all."
+    if is_small:
+        about = "The packed texts of an ATmega328P that reads text: what it never says is empty."
+    tables = [
+        row
+        for item in answer_languages()
+        for row in (*_tables(item, rows(item, is_small=is_small)), "")
+    ]
+    return file_of(command, name, about, ["namespace {", "", *tables, "}  // namespace"])
+
+
+def texts(command: str, all_texts: str, small_texts: str) -> str:
+    """Return `texts.cpp`, which takes one of the two headers."""
     return file_of(
         command,
         "texts.cpp",
         "",
         [
-            "namespace {",
-            "",
-            "#ifdef tiniscript_has_discs",
-            "",
-            *(row for item in answer_languages() for row in (*_tables(item, rows(item)), "")),
-            "#else",
-            "",
-            "// An ATmega328P that reads text: what it never says is empty.",
-            'static_assert(!kReadsDefs, "it never says where a DEF goes");',
-            "",
-            *(
-                row
-                for item in answer_languages()
-                for row in (*_tables(item, rows(item, is_small=True)), "")
-            ),
-            "#endif",
-            "",
-            "}  // namespace",
+            "static_assert(kHasDiscs || !kReadsDefs,",
+            '              "the shorter table does not say where a DEF goes");',
             "",
             *_table_function("packed_texts()", ""),
             "",
@@ -134,6 +131,12 @@ def texts(command: str) -> str:
         "../vm/build.h",
         "kit_words.h",
         "reader.h",
+        "",
+        "#ifdef tiniscript_has_discs",
+        all_texts,
+        "#else",
+        small_texts,
+        "#endif",
     )
 
 

@@ -35,7 +35,7 @@ void tick_board() {
   uart_tick();
   const Press press = board_button(now_ms);
   if (press == Press::kPressed) firmware_on_pressed();
-  if (press == Press::kHeld) firmware_on_held();
+  if (press == Press::kDown) firmware_on_down();
   if (press == Press::kReleased) firmware_on_released();
   if (firmware_has_due_live()) return;
   if (board_has_disconnected()) firmware_on_disconnect();

@@ -9,6 +9,7 @@ stand.
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
+from collections.abc import Callable
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import clamp, whole
@@ -110,37 +111,19 @@ class _Lowering:
             self.statement(statement)
 
     def statement(self, statement: ir.Statement) -> None:
-        out = self.out
-        out.span = statement.span
-        if isinstance(statement, ir.Read):
-            out.add("READ", statement.sensor)
-        elif isinstance(statement, ir.Move):
-            self.move(statement)
-        elif isinstance(statement, ir.Stop):
-            out.add("STOP")
-        elif isinstance(statement, ir.Assign):
-            self.assign(statement)
-        elif isinstance(statement, ir.If):
-            self.if_(statement)
-        elif isinstance(statement, ir.Loop):
-            self.loop(statement)
-        elif isinstance(statement, ir.While):
-            self.while_(statement)
-        elif isinstance(statement, ir.Break):
-            loop = self.loops[-1]
-            out.add("BREAK_LOOP" if loop.is_counted else "BREAK", to=loop.label)
-        elif isinstance(statement, ir.Call):
-            out.add("CALL", to=self.entries[statement.procedure])
-        elif isinstance(statement, ir.Motors):
-            self.motors(statement)
-        elif isinstance(statement, ir.Beep):
-            self.beep(statement)
-        elif isinstance(statement, ir.Show):
-            add_value(out, statement.value)
-            out.add("SHOW_YES_NO" if statement.is_yes_no else "SHOW")
-        elif isinstance(statement, ir.Set):
-            add_value(out, statement.value)
-            out.add("SET", statement.actuator)
+        self.out.span = statement.span
+        _STATEMENTS[type(statement)](self, statement)
+
+    def read(self, read: ir.Read) -> None:
+        self.out.add("READ", read.sensor)
+
+    def show(self, show: ir.Show) -> None:
+        add_value(self.out, show.value)
+        self.out.add("SHOW_YES_NO" if show.is_yes_no else "SHOW")
+
+    def set(self, statement: ir.Set) -> None:
+        add_value(self.out, statement.value)
+        self.out.add("SET", statement.actuator)
 
     # -- moves --------------------------------------------------------------------------------
 
@@ -191,6 +174,9 @@ class _Lowering:
             add_value(self.out, left)
             add_value(self.out, right)
             self.out.add("MOTORS")
+
+    def stop(self, _: ir.Stop) -> None:
+        self.out.add("STOP")
 
     # -- variables ----------------------------------------------------------------------------
 
@@ -287,6 +273,13 @@ class _Lowering:
         out.add("NEXT" if is_counted else "AGAIN", to=start)
         out.mark(end)
 
+    def break_(self, _: ir.Break) -> None:
+        loop = self.loops[-1]
+        self.out.add("BREAK_LOOP" if loop.is_counted else "BREAK", to=loop.label)
+
+    def call(self, call: ir.Call) -> None:
+        self.out.add("CALL", to=self.entries[call.procedure])
+
     # -- numbers that the text says -----------------------------------------------------------
 
     def constant_of(self, expression: ir.Expression) -> int | None:
@@ -302,6 +295,24 @@ class _Lowering:
         if value is None:
             return power
         return (power[0]._replace(value=clamp(whole(value), low, 100) * 1000),)
+
+
+# A statement of the IR that has no row here is a KeyError, not a program that lacks it.
+_STATEMENTS: dict[type, Callable[..., None]] = {
+    ir.Read: _Lowering.read,
+    ir.Move: _Lowering.move,
+    ir.Motors: _Lowering.motors,
+    ir.Stop: _Lowering.stop,
+    ir.Beep: _Lowering.beep,
+    ir.Show: _Lowering.show,
+    ir.Set: _Lowering.set,
+    ir.Assign: _Lowering.assign,
+    ir.If: _Lowering.if_,
+    ir.Loop: _Lowering.loop,
+    ir.While: _Lowering.while_,
+    ir.Break: _Lowering.break_,
+    ir.Call: _Lowering.call,
+}
 
 
 # -- layout -----------------------------------------------------------------------------------

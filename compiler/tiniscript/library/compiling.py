@@ -219,9 +219,9 @@ def compile_source(
 
 def add_robot_hints(compiled: Compiled, robot: Robot, is_chosen: bool = False) -> Compiled:
     """Return `compiled` with hints to the robots that have a word that this robot lacks."""
-    from tiniscript.library.other_robots import add_robot_hints
+    from tiniscript.library.other_robots import with_robot_hints
 
-    named = add_robot_hints(compiled.diagnostics, compiled.source.text, robot, is_chosen)
+    named = with_robot_hints(compiled.diagnostics, compiled.source.text, robot, is_chosen)
     return compiled._replace(diagnostics=named)
 
 

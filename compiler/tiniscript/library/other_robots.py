@@ -30,7 +30,7 @@ LESSON_ROBOTS = ("grabber", "liner", "tinibot")
 _ORDINALS = ("first", "second", "third")
 
 
-def add_robot_hints(
+def with_robot_hints(
     diagnostics: list[Diagnostic], text: str, robot: Robot, is_chosen: bool
 ) -> list[Diagnostic]:
     """Return diagnostics with hints to the robots that have a word that `robot` lacks.

@@ -111,7 +111,7 @@ PAYLOAD_BYTES = payload_bytes(SMALL_FRAME)
 SEALED_PAYLOAD_BYTES = payload_bytes(SMALL_FRAME, is_sealed=True)
 
 STOP_BYTES = 8  # zeros that a computer sends to stop a robot
-STOP_RUN = 4  # zeros in a row that stop it
+STOP_ZEROS = 4  # zeros in a row that stop it
 SILENCE_MS = 1000  # after this silence everything is text, until a 0x00
 ZERO_MS = 400  # after this silence a sender of frames sends a 0x00 first
 TEXT_MS = 1100  # text waits so long after a frame

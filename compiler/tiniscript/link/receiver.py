@@ -1,4 +1,4 @@
-"""Splits bytes into packets: frames, lines of text, and the run of zeros that stops a robot.
+"""Splits bytes into packets: frames, lines of text, and the zeros that stop a robot.
 
 Everything is text until a 0x00. After a 0x00 everything is frames, until a second passes without a
 byte. A frame ends with 0x00. In frames, CR or LF after one or more bytes that since the last 0x00
@@ -15,7 +15,7 @@ from collections import deque
 from enum import Enum, auto
 from typing import NamedTuple
 
-from tiniscript.link.messages import HEAD_BYTES, LARGE_FRAME, SILENCE_MS, SMALL_FRAME, STOP_RUN
+from tiniscript.link.messages import HEAD_BYTES, LARGE_FRAME, SILENCE_MS, SMALL_FRAME, STOP_ZEROS
 
 # A frame and the first byte of its COBS. A packet that begins with a byte of more than LARGE_FIRST
 # is no large frame.
@@ -48,7 +48,7 @@ class Receiver:
         self.damaged = 0  # packets that were cut, too long, or ended by silence
         self.dropped = 0  # packets that arrived while one was waiting
         self._state = State.TEXT
-        self._zeros = ZeroRun()
+        self._zeros = StopSequence()
         self._keys = KeySequence()
         self._data = bytearray()  # of the open packet, as many as fit
         self._length = 0  # of the open packet; 0 between two
@@ -65,7 +65,7 @@ class Receiver:
         return packet
 
     def put(self, byte: int, now_ms: int) -> bool:
-        """Take a byte; return whether it completes a run of four zeros, which is a stop.
+        """Take a byte; return whether it completes a stop sequence.
 
         A byte with a framing error counts as 0.
         """
@@ -162,8 +162,8 @@ class Receiver:
         return self._frame_bytes if self._data[0] <= LARGE_FIRST else SMALL_PACKET
 
 
-class ZeroRun:
-    """Counts zeros in a row: four are a stop, eight are two."""
+class StopSequence:
+    """The stop sequence: four zeros in a row are a stop, eight are two."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -172,8 +172,8 @@ class ZeroRun:
         self._count = 0
 
     def put(self, byte: int) -> bool:
-        """Take a byte; return whether it completes a run."""
-        self._count = (self._count + 1) % STOP_RUN if byte == 0 else 0
+        """Take a byte; return whether it completes one."""
+        self._count = (self._count + 1) % STOP_ZEROS if byte == 0 else 0
         return byte == 0 and self._count == 0
 
 

@@ -49,7 +49,7 @@ def go(m: Execution, after: int, to: int) -> Step:
 
 @handles("AGAIN", "AGAIN_FAR")
 def _again(m: Execution, after: int, to: int) -> Step:
-    return m.back_to(to)
+    return m.go_back(to)
 
 
 @handles("FOREVER", "WHILE", "WHILE_FAR")
@@ -80,7 +80,7 @@ def _loop(m: Execution, after: int, to: int) -> Step:
 
 @handles("NEXT", "NEXT_FAR")
 def _next(m: Execution, after: int, to: int) -> Step:
-    counters, back = m.task.counters, m.back_to(to)
+    counters, back = m.task.counters, m.go_back(to)
 
     def step() -> int:
         left = counters[-1] - 1

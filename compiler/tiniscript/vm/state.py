@@ -126,7 +126,7 @@ class Execution:
         self.task.stack.pop()
         return after
 
-    def back_to(self, to: int) -> Step:
+    def go_back(self, to: int) -> Step:
         """Return the step that goes back to the start of a loop."""
         return lambda: to
 

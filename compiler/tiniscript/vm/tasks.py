@@ -2,7 +2,8 @@
 
 Knows when each task has its turn, and which one has the motors. What an instruction does is where
 it is for all programs: here is what it does in a task. `bytecode_spec.md` has the same in words;
-`vm_arduino/src/vm/scheduler.h` and `drive.h` have the same names.
+`vm_arduino/src/vm/scheduler.h` and `drive.h` have the same names, but for those that
+`tests/project/test_twins.py` lists.
 """
 
 from __future__ import annotations
@@ -131,7 +132,7 @@ class TaskMachine(Machine):
         self.status = RUNNING
         at, left = self.at, budget
         try:
-            while left and self._next_turn():
+            while left and self._finds_turn():
                 run, pc = self._steps, self.me.pc
                 while left:
                     left -= 1
@@ -154,7 +155,7 @@ class TaskMachine(Machine):
         self.steps += budget - left
         return self.status
 
-    def _next_turn(self) -> bool:
+    def _finds_turn(self) -> bool:
         """Go on with a turn, or begin the next one of the round; FALSE: the round is over."""
         while not self.in_turn:
             if self.next_rank == len(self.tasks):
@@ -190,8 +191,8 @@ class TaskMachine(Machine):
                 self._go_to(self._begin_move())
         elif task.to_its_end:
             self._end_move()
-        elif not task.has_begun and self._must_wait_for_motors():
-            self._go_to(self._block())  # they have been taken since its check began
+        elif not task.has_begun and self._blocks():
+            self._go_to(mark_stop(task.check))  # they have been taken since its check began
 
     def _go_to(self, pc: int) -> None:
         """Go on where a step says."""
@@ -210,11 +211,13 @@ class TaskMachine(Machine):
 
     def end(self) -> int:
         """Finish this task, and the program with the last one."""
+        return super().end() if self._end_task() else mark_stop(self.me.pc)
+
+    def _end_task(self) -> bool:
+        """Finish this task; return whether it was the last one."""
         self.me.has_ended = True
         self.me.forget_set()
-        if all(task.has_ended for task in self.tasks):
-            return super().end()
-        return mark_stop(self.me.pc)
+        return all(task.has_ended for task in self.tasks)
 
     # -- time ---------------------------------------------------------------------------------
 
@@ -230,7 +233,7 @@ class TaskMachine(Machine):
         self.me.has_waited = True
         return mark_stop(after)
 
-    def back_to(self, to: int) -> Step:
+    def go_back(self, to: int) -> Step:
         def step() -> int:
             me = self.me
             if not me.has_waited:
@@ -268,12 +271,12 @@ class TaskMachine(Machine):
     def drive(self, move_ms: int, powers: Powers, after: int) -> int:
         self._keep_move(move_ms, powers, after)
         self.me.after = after
-        return self._block() if self._is_below() else self._begin_move()
+        return mark_stop(after) if self._blocks() else self._begin_move()
 
     def watch(self, move_ms: int, powers: Powers | None, after: int) -> int:
         self._keep_move(move_ms, powers, after)
         self.me.after = -1  # after its UNTIL
-        return self._block() if self._must_wait_for_motors() else after
+        return mark_stop(after) if self._blocks() else after
 
     def _keep_move(self, move_ms: int, powers: Powers | None, check: int) -> None:
         me = self.me
@@ -332,14 +335,16 @@ class TaskMachine(Machine):
         self.me.leave_move()
         self._set_motors(MOTORS_OFF)
 
-    def _block(self) -> int:
-        """Wait for the motors."""
+    def _blocks(self) -> bool:
+        """Wait for the motors where its move needs them and a higher task has them."""
         me = self.me
+        if me.powers is None or not self._is_below():
+            return False
         me.forget_set()
         me.is_moving = me.is_blocked = me.has_waited = True
         me.drives = False
         me.keeps = me.is_when
-        return mark_stop(me.check)
+        return True
 
     # -- the motors ---------------------------------------------------------------------------
 
@@ -366,10 +371,6 @@ class TaskMachine(Machine):
     def _is_below(self) -> bool:
         """Whether a higher task has the motors."""
         return self.holder is not None and self.holder.rank < self.me.rank
-
-    def _must_wait_for_motors(self) -> bool:
-        """Whether its move, or what is no wait that an UNTIL watches, may not begin."""
-        return self.me.powers is not None and self._is_below()
 
     def _take_motors(self) -> None:
         """Give the motors to the task whose turn it is; no higher one has them."""

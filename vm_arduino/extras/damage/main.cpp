@@ -253,9 +253,9 @@ struct Typed {
   uint16_t pause_ms;
 };
 
-// What a stop may be at a byte. kHeld: of its frame, if that is not whole. kWaits: where silence follows.
+// What a stop may be at a byte. kInFrame: of its frame, if that is not whole. kWaits: where silence follows.
 // kEither: the laws leave it open, or it depends on what was deleted.
-enum class Law : uint8_t { kNone, kStop, kHeld, kWaits, kEither };
+enum class Law : uint8_t { kNone, kStop, kInFrame, kWaits, kEither };
 
 const char* const kWords[] = {"s", "stop", "stopnow", "alto", "para", "parar", "pare", "detente", "halt"};
 
@@ -365,7 +365,7 @@ Law law_of(const std::vector<Typed>& all, size_t restart, bool is_running) {
     if (odd < last) {
       if (odd == text || !is_end(all[odd].byte)) {  // a frame
         const bool is_held = is_end(byte) && is_strict(between(std::max(text, restart), last));
-        return is_held ? Law::kHeld : Law::kNone;
+        return is_held ? Law::kInFrame : Law::kNone;
       }
     } else if (odd == text && !is_printable(byte)) {
       return Law::kNone;  // a frame begins, or a 0x00 follows another one
@@ -466,7 +466,7 @@ void judge_typed(uint64_t seed) {
     const Found found = finder.put(byte, now_ms);
     law = law_of(all, restart, is_running);
     if (law == Law::kStop && !is_stop) note("a typed stop is not seen");
-    const bool may_wait = law == Law::kHeld || law == Law::kWaits;
+    const bool may_wait = law == Law::kInFrame || law == Law::kWaits;
     if (may_wait && !is_stop && !receiver.is_held()) note("a stop that waits is not seen");
     if (law == Law::kNone && is_stop && !was_held) note("a stop that nobody has typed");
     if (law == Law::kNone && receiver.is_held() && !waited) note("a stop waits that nobody has typed");
@@ -475,7 +475,7 @@ void judge_typed(uint64_t seed) {
     }
     const bool is_urgent = is_stop && byte != 0 && !is_end(byte) && !was_held;
     if (restart == 0 && law != Law::kEither) {
-      const bool is_in_frame = law == Law::kHeld;
+      const bool is_in_frame = law == Law::kInFrame;
       const bool ends_waiting = law == Law::kWaits && (byte == 0 || is_end(byte));
       const Found wanted = is_urgent ? Found::kOfRun
                            : law == Law::kStop || ends_waiting || are_zeros ? Found::kStop
@@ -484,7 +484,7 @@ void judge_typed(uint64_t seed) {
       if (found != wanted && (is_running || found != Found::kOfRun)) note("a finder says something else");
     }
     if (is_urgent && is_running) restart = all.size();
-    was_held = byte != 0 && !is_stop && (was_held || law == Law::kHeld);
+    was_held = byte != 0 && !is_stop && (was_held || law == Law::kInFrame);
     return is_stop;
   };
   const auto take = [&] {
@@ -542,11 +542,11 @@ void judge_typed(uint64_t seed) {
     const bool is_sure = is_silent || begin == kZeroBegins;
     const bool is_seen = law == Law::kStop || law == Law::kWaits;
     if (is_loose && is_sure && !is_seen) note("the judge does not see the stop");
-    if (!is_loose && (is_sure || begin < kFresh) && law != Law::kStop && law != Law::kHeld) {
+    if (!is_loose && (is_sure || begin < kFresh) && law != Law::kStop && law != Law::kInFrame) {
       note("the judge does not see the strict stop");
     }
   }
-  if (law == Law::kHeld && receiver.is_held()) {  // its packet ends in another way than whole
+  if (law == Law::kInFrame && receiver.is_held()) {  // its packet ends in another way than whole
     const bool is_cut = draw.below(2) == 0;
     bool has_stopped = false;
     for (uint32_t k = is_cut ? 1 : 80 * 4; k > 0 && receiver.is_held(); k--) {

@@ -218,7 +218,7 @@ void answer_step(RequestReader* request, Writer* answer) {
   if ((flags & 1) != 0) firmware_on_pressed();
   if ((flags & 2) != 0) firmware_on_released();
   if ((flags & 8) != 0) firmware_on_disconnect();
-  if ((flags & 32) != 0) firmware_on_held();
+  if ((flags & 32) != 0) firmware_on_down();
   answer->text(pass(now_ms, ticks, heard.data.get() + next, heard.length - next));
   answer->text(table.log);
   answer->u8(table.is_lit);

@@ -308,7 +308,7 @@ tini_exported("unheard") uint32_t module_unheard() { return to_hear - heard; }
 
 tini_exported("press") void module_press() {
   firmware_on_pressed();
-  firmware_on_held();  // it has no spikes
+  firmware_on_down();  // it has no spikes
 }
 tini_exported("let_go") void module_let_go() { firmware_on_released(); }
 

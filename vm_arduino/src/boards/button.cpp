@@ -45,7 +45,7 @@ Press button_read(bool is_down, uint32_t now_ms) {
   if (it->steady_ms < kDebounceMs || (is_down && it->state == State::kDown)) return Press::kNothing;
   const State before = it->state;
   it->state = is_down ? State::kDown : State::kUp;
-  if (is_down) return Press::kHeld;
+  if (is_down) return Press::kDown;
   return before == State::kDown ? Press::kReleased : Press::kNothing;
 }
 

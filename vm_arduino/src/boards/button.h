@@ -11,14 +11,14 @@ namespace tiniscript {
 enum class Press : uint8_t {
   kNothing,
   kPressed,  // it goes down, or there is a spike on its wire
-  kHeld,     // it has been down for 30 ms: a press, not a spike; alone if it began before the reset
-  kReleased,  // it has been up for 30 ms after kHeld
+  kDown,     // it has been down for 30 ms: a press, not a spike; alone if it began before the reset
+  kReleased,  // it has been up for 30 ms after kDown
 };
 
 // Whether the button has changed since the last call.
 bool button_has_moved(bool is_down);
 
-// What has happened since the last call. A button that is down after a reset is reported as held,
+// What has happened since the last call. A button that is down after a reset is reported as down,
 // not as pressed.
 Press button_read(bool is_down, uint32_t now_ms);
 

@@ -37,7 +37,7 @@ void firmware_on_pressed();
 void firmware_on_released();
 
 // The button has been down for a while: also stops what was started since its first edge.
-void firmware_on_held();
+void firmware_on_down();
 
 // The radio module reports that the client has disconnected: ends an attached run.
 void firmware_on_disconnect();

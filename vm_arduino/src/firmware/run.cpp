@@ -158,7 +158,7 @@ void firmware_on_pressed() {
   press();
 }
 
-void firmware_on_held() {
+void firmware_on_down() {
   hold_press();
   if (is_running()) press();
 }

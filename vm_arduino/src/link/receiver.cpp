@@ -13,6 +13,8 @@ constexpr uint8_t kDelete = 0x7f;
 // What every byte of a line is that a frame never looks like.
 bool is_printable(uint8_t byte) { return byte >= ' ' && byte < kDelete; }
 
+bool is_running() { return port_status().state == State::kRunning; }
+
 bool is_control(uint8_t byte) { return (byte < ' ' && byte != '\t') || byte == kDelete; }
 
 }  // namespace
@@ -42,7 +44,7 @@ inline bool Receiver::put_zero() {
   bool is_stop = false;
   Line next = Line::kNothing;
   if (state_ >= State::kFrame) {
-    is_stop = !end_packet(Waiting::kFrame) && state_ == State::kHeld;
+    is_stop = !end_packet(Waiting::kFrame) && state_ == State::kStopInFrame;
     is_cut_ = false;
   } else if (state_ == State::kLine || line_ >= Line::kSome) {
     is_stop = is_printable_ && typed_.found() != TypedStop::kNone;
@@ -57,7 +59,7 @@ inline bool Receiver::put_zero() {
   line_ = next;
   state_ = State::kBegin;
   if (is_stop) stop();
-  if (zeros_.is_whole()) due_stop_ = Cause::kSequence;
+  if (zeros_.take_whole()) due_stop_ = Cause::kSequence;
   return is_stop;
 }
 
@@ -97,7 +99,7 @@ inline bool Receiver::put_text(uint8_t byte) {
 // Looks for a stop that does not wait for the end of its line.
 inline bool Receiver::watch(uint8_t byte) {
   typed_.put(byte);
-  if (!typed_.is_urgent() || port_status().state != tiniscript::State::kRunning) return false;
+  if (!typed_.is_urgent() || !is_running()) return false;
   typed_.begin();
   return stop_at_mark(state_ == State::kText);
 }
@@ -138,14 +140,14 @@ inline bool Receiver::put_packet(uint8_t byte) {
 inline bool Receiver::put_frame(uint8_t byte) {
   if (ends_line(byte)) {
     may_be_line_ = true;
-    if (typed_.found() == TypedStop::kStrict) state_ = State::kHeld;
+    if (typed_.found() == TypedStop::kStrict) state_ = State::kStopInFrame;
   }
   if (is_control(byte)) {
     typed_.begin();
   } else {
     typed_.put(byte);
   }
-  if (state_ != State::kHeld || !is_dropping_) return false;
+  if (state_ != State::kStopInFrame || !is_dropping_) return false;
   state_ = State::kFrame;  // what is dropped is never whole
   stop();
   return true;
@@ -182,7 +184,7 @@ bool Receiver::end_packet(Waiting as) {
   if (is_dropping_) return false;
   taken_ = 0;
   if (as == Waiting::kFrame || (text_.is_empty() && is_first())) {
-    may_stop_[filled()] = state_ == State::kHeld;
+    may_stop_[filled()] = state_ == State::kStopInFrame;
     waiting_[filled()] = as;
     if (as == Waiting::kFrame) fill_on();
     return true;

@@ -6,7 +6,7 @@
 // text, because no whole frame looks so, and text goes on.
 // Knows where a packet begins and ends; `frames.h` checks whether a frame is whole. Holds frames
 // until they are released, kWindow of them; a frame that finds no place is dropped. Text is passed
-// on as it arrives. Finds the same packets as `receiver.py`, in the same states and in kHeld, as
+// on as it arrives. Finds the same packets as `receiver.py`, in the same states and in kStopInFrame, as
 // typed stops are a class of their own there. `put` may be called from an interrupt, everything
 // else from the main loop.
 
@@ -20,7 +20,7 @@
 #include "sizes.h"
 #include "text_ring.h"
 #include "typed_stop.h"
-#include "zero_run.h"
+#include "stop_sequence.h"
 
 namespace tiniscript {
 
@@ -67,7 +67,7 @@ class Receiver : private PacketPlaces<kWindow> {
     kBegin,  // after a 0x00
     kLine,   // in a frame, or in a line of text: all of it is printable
     kFrame,  // in a frame
-    kHeld,   // in a frame with a typed stop in it
+    kStopInFrame,  // in a frame with a typed stop in it
   };
 
   // What has come of a line of text: nothing, a stop that waits for silence, bytes that are skipped,
@@ -107,7 +107,7 @@ class Receiver : private PacketPlaces<kWindow> {
 
   // Whether a typed stop is in the unfinished frame or was all between two 0x00, or Ctrl-C is all that
   // has come of a line: it stops when no byte has come for kHeldMs.
-  bool is_held() const { return state() == State::kHeld || line() == Line::kHeld; }
+  bool is_held() const { return state() == State::kStopInFrame || line() == Line::kHeld; }
 
   // Whether what has come of a line would be a typed stop if it ended here.
   bool is_at_stop() const { return state() < State::kFrame && typed_.found() != TypedStop::kNone; }
@@ -209,7 +209,7 @@ class Receiver : private PacketPlaces<kWindow> {
   volatile Waiting waiting_[kWindow];
   volatile bool has_begun_;
   volatile Cause due_stop_;
-  ZeroRun zeros_;
+  StopSequence zeros_;
   State state_;
   Line line_;
   bool is_printable_;  // all of the line is printable ASCII

@@ -7,8 +7,8 @@
 namespace tiniscript {
 
 struct Receiver::Layout {
-  static constexpr size_t zeros_at() { return offsetof(Receiver, zeros_) + ZeroRun::zeros_at(); }
-  static constexpr size_t last_ms_at() { return offsetof(Receiver, zeros_) + ZeroRun::last_ms_at(); }
+  static constexpr size_t zeros_at() { return offsetof(Receiver, zeros_) + StopSequence::zeros_at(); }
+  static constexpr size_t last_ms_at() { return offsetof(Receiver, zeros_) + StopSequence::last_ms_at(); }
 };
 
 // A known address takes less flash than a pointer in memory does, and less time.

@@ -1,8 +1,10 @@
 ; What the reader does most often with its code and its memory, for the AVR in its own language:
 ; short, since calls of these take a tenth of the reader.
 ;
-; Mean the same as those of `reader_code.cpp`, which are for all other chips. `reader.h` says which
-; registers they change: the reader is in Y, an argument in r24, and all others stay as they are.
+; Means the same as `reader_portable.cpp`, and the last one as `cpu_portable.h`, which are for all other
+; chips. Takes 506 bytes of flash less; without them an Uno would read no text. A chip with more flash
+; in its place lets it go: then delete this file, and `reader_calls_avr.h`. `reader.h` says which
+; registers these change: the reader is in Y, an argument in r24, and all others stay as they are.
 
 #ifdef __AVR__
 
@@ -146,7 +148,7 @@ starts tiniscript_emit_number
     rcall load_value
 1:  movw r26, value0
     movw r30, value2
-    rcall tiniscript_divide_10
+    rcall tiniscript_cut_digit
     brne 2f
     dec places
     brne 1b
@@ -246,8 +248,8 @@ load_value:
     ldd value3, Y + tini_value_at + 3
     ret
 
-; divide_10: the value becomes a tenth, r24 what remains. Z is set if that is nothing.
-starts tiniscript_divide_10
+; cut_digit: the value becomes a tenth, r24 what remains. Z is set if that is nothing.
+starts tiniscript_cut_digit
     clr r24
     ldi r25, 32
 1:  lsl value0

@@ -28,7 +28,7 @@ inline int32_t flash_long(const uint8_t* address) {
 inline uint8_t cut_digit(uint32_t* number) {
   register uint32_t rest asm("r18") = *number;
   register uint8_t digit asm("r24");
-  asm("%~call tiniscript_divide_10" : "+r"(rest), "=r"(digit) : : "r25");
+  asm("%~call tiniscript_cut_digit" : "+r"(rest), "=r"(digit) : : "r25");
   *number = rest;
   return digit;
 }

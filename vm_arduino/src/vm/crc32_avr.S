@@ -1,6 +1,8 @@
 ; The CRC-32 of `crc32.h` for the AVR, in its own language: every frame and every image waits for it.
 ;
-; Means the same as `crc32.cpp`, which is for all other chips. Calls are those of avr-gcc, as in
+; Means the same as `crc32.cpp`, which is for all other chips. Takes 80 cycles for each byte instead of
+; the compiler's 188, and 18 bytes of flash more. An Uno that needs these, or a chip that is twice as
+; fast in its place, lets it go: then delete this file. Calls are those of avr-gcc, as in
 ; `number_avr.S`.
 
 #ifdef __AVR__

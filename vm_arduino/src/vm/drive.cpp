@@ -100,7 +100,7 @@ tini_noinline bool Drive::go_on() {
   const bool measures = me->measures();
   if (!me->is(kHasBegun)) {
     if (me->is_move()) {
-      take();
+      take_motors();
       me->state |= kIsMoving | kDrives;
       if (measures) {
         go_way();
@@ -204,7 +204,7 @@ void Drive::motors(Powers powers) {
   if (is_below()) {
     want(task_.me);
   } else {
-    take();
+    take_motors();
     set_motors(powers);
   }
   task_.me->set = powers;
@@ -223,7 +223,7 @@ void Drive::stop_motors() {
 }
 
 // Gives the motors to the task whose turn it is; no higher one has them.
-tini_noinline void Drive::take() {
+tini_noinline void Drive::take_motors() {
   want(task_.me);
   TaskRecord* const holder = task_.holder;
   task_.holder = task_.me;

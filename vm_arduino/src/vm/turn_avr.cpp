@@ -12,17 +12,17 @@ namespace tiniscript {
 
 bool Machine::run_turn() {
   uint8_t budget = left_;
-  bool may_go_on = false;
+  bool is_cut_short = false;
   for (;;) {
     execute(1);
     if (left_ != 0 || fault_ != Fault::kNone || status_ == Status::kDone) break;
     budget--;
-    if (code_[at_] < static_cast<uint8_t>(Op::kCall) && !goes_back()) break;
-    may_go_on = budget == 0 || Flag<Bit::kEvent>();
-    if (may_go_on) break;
+    if (code_[at_] < static_cast<uint8_t>(Op::kCall) && !go_back()) break;
+    is_cut_short = budget == 0 || Flag<Bit::kEvent>();
+    if (is_cut_short) break;
   }
   left_ = budget;
-  return may_go_on;
+  return is_cut_short;
 }
 
 }  // namespace tiniscript

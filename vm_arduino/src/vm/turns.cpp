@@ -1,10 +1,10 @@
-// The turns of tasks. `tasks_avr.S` is the same for an Uno without discs.
+// The turns of tasks, and their round. `tasks_avr.S` is the same for an Uno without discs.
 
 #include "build.h"
 
 #ifdef tiniscript_drives_in_turns
 
-#include "scheduler.h"
+#include "machine.h"
 
 namespace tiniscript {
 
@@ -21,6 +21,14 @@ void to_the_end(Frame* frames, uint8_t count, uint8_t all) {
 }
 
 }  // namespace
+
+void Machine::run_round() {
+  for (bool is_over = false; finds_turn(is_over) && left_ != 0; is_over = true) {
+    if (run_turn() || fault_ != Fault::kNone || status_ == Status::kDone) return;
+    // before all others the main task waits for a reading, too
+    if (!has_had_turn() && status_ == Status::kRunning) return;
+  }
+}
 
 bool Scheduler::finds_turn(bool is_over) {
   if (!is_over && task_.me != nullptr) return true;
@@ -91,7 +99,7 @@ void Scheduler::end_turn() {
 }
 
 // Goes back to the start of a loop, where a task that has not waited since it last did so waits.
-bool Scheduler::goes_back() {
+bool Scheduler::go_back() {
   TaskRecord* const me = task_.me;
   const bool has_waited = me->is(kHasWaited);
   if (!has_waited) wait(1);

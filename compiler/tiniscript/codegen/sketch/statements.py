@@ -6,7 +6,7 @@ Knows which helper does what a word means. `Uses` collects what the sketch has t
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import ONE, as_text, clamp, whole
@@ -72,15 +72,12 @@ class Statements:
         self.depth = 1
         self.loops = 0
         self.given: frozenset[int] = frozenset()  # the variables that calls set: arguments
+        self.values: list[ir.Expression] = []  # of the arguments of the call that is next
 
     def body(self, body: ir.Body) -> None:
-        arguments: list[ir.Expression] = []
         for statement in body:
             if isinstance(statement, ir.Assign) and statement.variable in self.given:
-                arguments.append(statement.value)
-            elif isinstance(statement, ir.Call):
-                self.call_def(statement, arguments)
-                arguments = []
+                self.values.append(statement.value)
             else:
                 self.statement(statement)
 
@@ -131,48 +128,41 @@ class Statements:
 
     def statement(self, statement: ir.Statement) -> None:
         start = statement.span.start
-        if isinstance(statement, ir.If):
-            self.if_(statement)
-            return
         self.remarks(start)
-        text = self.instruction_text(start)
-        if isinstance(statement, ir.Read):
-            name = text.upper() if text.replace("_", "").isalnum() else ""
-            self.line(self.reading(statement.sensor), name)
-        elif isinstance(statement, ir.Move):
-            self.move(statement, text)
-        elif isinstance(statement, ir.Motors):
-            powers = ((statement.left, (-100, 100)), (statement.right, (-100, 100)))
-            self.call("motors", text, self.arguments(*powers))
-        elif isinstance(statement, ir.Stop):
-            self.line(f"{self.use('stop_motors')}();", text)
-        elif isinstance(statement, ir.Beep):
-            parts = ((statement.time, None), (statement.hertz, (31, 20_000)))
-            self.call("beep", text, self.arguments(*parts))
-        elif isinstance(statement, ir.Show):
-            self.show(statement, text)
-        elif isinstance(statement, ir.Set):
-            self.set(statement, text)
-        elif isinstance(statement, ir.Assign):
-            name = self.names.variables[statement.variable]
-            self.line(f"{name} = {self.write.text(statement.value)};", text)
-        elif isinstance(statement, ir.Loop):
-            self.loop(statement, text)
-        elif isinstance(statement, ir.While):
-            self.while_(statement, text)
-        elif isinstance(statement, ir.Break):
-            self.line("break;", text)
+        _STATEMENTS[type(statement)](self, statement, self.instruction_text(start))
 
-    def call_def(self, call: ir.Call, arguments: Sequence[ir.Expression]) -> None:
+    def read(self, read: ir.Read, said: str) -> None:
+        name = said.upper() if said.replace("_", "").isalnum() else ""
+        self.line(self.reading(read.sensor), name)
+
+    def motors(self, motors: ir.Motors, said: str) -> None:
+        powers = ((motors.left, (-100, 100)), (motors.right, (-100, 100)))
+        self.call("motors", said, self.arguments(*powers))
+
+    def stop(self, _: ir.Stop, said: str) -> None:
+        self.line(f"{self.use('stop_motors')}();", said)
+
+    def beep(self, beep: ir.Beep, said: str) -> None:
+        parts = ((beep.time, None), (beep.hertz, (31, 20_000)))
+        self.call("beep", said, self.arguments(*parts))
+
+    def assign(self, assign: ir.Assign, said: str) -> None:
+        name = self.names.variables[assign.variable]
+        self.line(f"{name} = {self.write.text(assign.value)};", said)
+
+    def break_(self, _: ir.Break, said: str) -> None:
+        self.line("break;", said)
+
+    def call_def(self, call: ir.Call, said: str) -> None:
         """Call a function; of its arguments with a RANDOM all but the last come before."""
-        self.remarks(call.span.start)
+        arguments, self.values = self.values, []
         texts = [self.write.text(argument) for argument in arguments]
         for k in [k for k, terms in enumerate(arguments) if has_random(terms)][:-1]:
             first = self.write.keep()
             self.line(f"{first} = {texts[k]};")
             texts[k] = first
         name = self.names.procedures[call.procedure]
-        self.line(f"{name}({', '.join(texts)});", self.instruction_text(call.span.start))
+        self.line(f"{name}({', '.join(texts)});", said)
 
     def reading(self, sensor: int) -> str:
         self.read_sensors.add(sensor)
@@ -273,7 +263,7 @@ class Statements:
         self.loops -= is_loop
         self.depth -= 1
 
-    def if_(self, statement: ir.If) -> None:
+    def if_(self, statement: ir.If, _said: str) -> None:
         nested = 0
         for k, arm in enumerate(statement.arms):
             text = self.instruction_text(arm.span.start)
@@ -333,6 +323,24 @@ class Statements:
             self.depth -= 1
         self.block(loop.body, is_loop=True)
         self.line("}")
+
+
+# A statement of the IR that has no row here is a KeyError, not a sketch that lacks it.
+_STATEMENTS: dict[type, Callable[..., None]] = {
+    ir.Read: Statements.read,
+    ir.Move: Statements.move,
+    ir.Motors: Statements.motors,
+    ir.Stop: Statements.stop,
+    ir.Beep: Statements.beep,
+    ir.Show: Statements.show,
+    ir.Set: Statements.set,
+    ir.Assign: Statements.assign,
+    ir.If: Statements.if_,
+    ir.Loop: Statements.loop,
+    ir.While: Statements.while_,
+    ir.Break: Statements.break_,
+    ir.Call: Statements.call_def,
+}
 
 
 def comment_text(text: str) -> str:

@@ -1,6 +1,7 @@
 """The lint: warnings about a program that has no mistakes, never mistakes.
 
-`TABLE` has all of them: the codes, where each is looked for, and what finds it there.
+`TABLE` has all of them: the codes, where each is looked for, and what finds it there. What cannot
+be looked for in a program that is checked is in `FOUND_ELSEWHERE`.
 """
 
 from __future__ import annotations
@@ -75,6 +76,13 @@ TABLE = (
     Row((codes.TASK_DONE_ONCE, codes.WHEN_GOES_ON), TASKS, tasks.report_brief_tasks),
     Row((codes.LONE_TASK,), TASKS, tasks.report_lone_task),
 )  # fmt: skip
+
+# What is found before there is a program, or knows the board: in which module.
+FOUND_ELSEWHERE: dict[Code, str] = {
+    codes.ROUNDED: "syntax.expressions",
+    codes.BOARD_MAY_BE_TOO_SMALL: "library.compiling",
+    codes.GIVES_WAY: "syntax.later_words",
+}
 
 
 _STATEMENTS = (*get_args(ir.Statement), ir.Task)

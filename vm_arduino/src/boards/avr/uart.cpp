@@ -41,7 +41,7 @@ constexpr uint8_t kListening = _BV(RXEN0) | _BV(TXEN0) | _BV(RXCIE0);  // UCSR0B
 
 // A byte under way is over after this many turns of timer 0 (about 1 ms each). A line that is low
 // in all of them, with no byte received, is held low.
-constexpr uint8_t kHeldTurns = static_cast<uint8_t>(10000 / kBaud + 3);
+constexpr uint8_t kLowTurns = static_cast<uint8_t>(10000 / kBaud + 3);
 
 #ifdef tiniscript_has_quick_stop
 
@@ -58,7 +58,7 @@ void tiniscript_on_zero() {
       "subi r30, lo8(%[silence])\n\tsbci r31, hi8(%[silence])\n\tbrcc 1b"
       :
       : [receiver] "i"(&receiver), [zeros] "n"(Receiver::Layout::zeros_at()),
-        [last] "n"(Receiver::Layout::last_ms_at()), [now] "i"(&clock), [run] "M"(kStopRun),
+        [last] "n"(Receiver::Layout::last_ms_at()), [now] "i"(&clock), [run] "M"(kStopZeros),
         [silence] "n"(kSilenceMs)
       : "r24", "r30", "r31");
   motors_stop_quickly();
@@ -99,10 +99,10 @@ tini_always_inline void leave_line() { TIMSK0 &= static_cast<uint8_t>(~_BV(OCIE0
 void look_at_line() {
   if (is_high(kReceive)) return leave_line();
   low_turns = static_cast<uint8_t>(low_turns + 1);
-  if (low_turns <= kHeldTurns) return;
+  if (low_turns <= kLowTurns) return;
   look_for_stop();
   take(0);
-  if (low_turns < kHeldTurns + kStopRun) return;
+  if (low_turns < kLowTurns + kStopZeros) return;
   was_high = false;
   leave_line();
 }

@@ -127,7 +127,7 @@ void take(Transport transport, Pipe* pipe) {
 
 // A stop that the bytes do not have.
 void stop(Transport transport) {
-  for (uint8_t zeros = 0; zeros < kStopRun; zeros++) on_rx_byte(transport, 0);
+  for (uint8_t zeros = 0; zeros < kStopZeros; zeros++) on_rx_byte(transport, 0);
 }
 
 }  // namespace

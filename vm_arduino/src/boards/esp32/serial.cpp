@@ -41,7 +41,7 @@ constexpr Pin kReceive = {3};
 
 // A byte under way is over after so many milliseconds. A line that is low in all of them, with no byte
 // received, is held low.
-constexpr uint8_t kHeldMs = static_cast<uint8_t>(10000 / kBaud + 3);
+constexpr uint8_t kLowMs = static_cast<uint8_t>(10000 / kBaud + 3);
 
 // The driver hands a byte over before so many, and tells of its framing error at once.
 constexpr uint8_t kFifoMs = static_cast<uint8_t>(128 * 10000 / kBaud + 1);
@@ -116,9 +116,9 @@ void note_high() {
 void look_at_line() {
   if (!was_high || framing == watched || is_high(kReceive)) return;
   low_ms = static_cast<uint8_t>(low_ms + 1);
-  if (low_ms <= kHeldMs) return;
+  if (low_ms <= kLowMs) return;
   take(0);
-  if (low_ms == kHeldMs + kStopRun) was_high = false;
+  if (low_ms == kLowMs + kStopZeros) was_high = false;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 #include "../../link/key_sequence.h"
 #include "../../link/typed_stop.h"
-#include "../../link/zero_run.h"
+#include "../../link/stop_sequence.h"
 
 namespace tiniscript {
 
@@ -33,19 +33,19 @@ class StopFinder {
   Found put(uint8_t byte, uint16_t now_ms) {
     const bool are_zeros = zeros_.stops(byte, now_ms);
     if (zeros_.keep(byte, now_ms)) end_silence();
-    zeros_.is_whole();
+    zeros_.take_whole();
     if (byte == 0) return put_zero() || are_zeros ? Found::kStop : Found::kNothing;
     return state_ == State::kText ? put_text(byte) : put_packet(byte);
   }
 
   // Whether what has come of a line stops what runs, if silence follows.
   bool is_at_stop() const {
-    return line_ == Line::kControlC || (state_ != State::kFrame && is_typed());
+    return line_ == Line::kHeld || (state_ != State::kFrame && is_typed());
   }
 
  private:
   enum class State : uint8_t { kText, kBegin, kLine, kFrame };
-  enum class Line : uint8_t { kNothing, kControlC, kSkipped, kSome };
+  enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome };
 
   bool is_typed() const { return typed_.found() != TypedStop::kNone; }
   static bool is_printable(uint8_t byte) { return byte >= ' ' && byte < 0x7f; }
@@ -84,14 +84,14 @@ class StopFinder {
   }
 
   Found put_text(uint8_t byte) {
-    if (ends_line(byte)) return end_line(line_ == Line::kControlC || is_typed());
+    if (ends_line(byte)) return end_line(line_ == Line::kHeld || is_typed());
     if (keys_.put(byte)) {
       if (line_ != Line::kSome) line_ = Line::kSkipped;
       return Found::kNothing;
     }
     if (line_ != Line::kSome) {
       if (byte <= ' ' || byte == kDelete) {
-        line_ = byte == kControlC && line_ <= Line::kControlC ? Line::kControlC : Line::kSkipped;
+        line_ = byte == kControlC && line_ <= Line::kHeld ? Line::kHeld : Line::kSkipped;
         return Found::kNothing;
       }
       line_ = Line::kSome;
@@ -121,7 +121,7 @@ class StopFinder {
   static constexpr uint8_t kControlC = 3;
   static constexpr uint8_t kDelete = 0x7f;
 
-  ZeroRun zeros_;
+  StopSequence zeros_;
   State state_;
   Line line_;
   bool is_printable_;  // all of the line is printable ASCII

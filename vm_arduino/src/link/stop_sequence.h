@@ -1,4 +1,4 @@
-// Counts the zeros that stop a robot: four in a row, whatever is around them.
+// The stop sequence: four zeros in a row, whatever is around them.
 //
 // A second of silence begins a new count. Knows the time of the last byte, and no packet.
 
@@ -12,15 +12,15 @@
 
 namespace tiniscript {
 
-class ZeroRun {
+class StopSequence {
  public:
-  // Whether this byte completes a run. Call it once for each byte, before `keep`; an AVR's interrupt
+  // Whether this byte completes one. Call it once for each byte, before `keep`; an AVR's interrupt
   // does it in assembly, at `zeros_at` and `last_ms_at`.
   tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) {
     if (byte != 0) return false;
     const uint8_t zeros = static_cast<uint8_t>(zeros_ + 1);
     zeros_ = zeros;
-    if (zeros != kStopRun || is_quiet(now_ms)) return false;
+    if (zeros != kStopZeros || is_quiet(now_ms)) return false;
     last_ms_ = now_ms;
     return true;
   }
@@ -34,17 +34,18 @@ class ZeroRun {
     return was_quiet;
   }
 
-  // Whether the zero that was kept last has completed a run. Four more are another one.
-  tini_always_inline bool is_whole() {
-    if (zeros_ != kStopRun) return false;
+  // Takes the one that the zero which was kept last has completed: four more are another one. False:
+  // it has completed none.
+  tini_always_inline bool take_whole() {
+    if (zeros_ != kStopZeros) return false;
     zeros_ = 0;
     return true;
   }
 
   uint16_t last_ms() const { return last_ms_; }
 
-  static constexpr size_t zeros_at() { return offsetof(ZeroRun, zeros_); }
-  static constexpr size_t last_ms_at() { return offsetof(ZeroRun, last_ms_); }
+  static constexpr size_t zeros_at() { return offsetof(StopSequence, zeros_); }
+  static constexpr size_t last_ms_at() { return offsetof(StopSequence, last_ms_); }
 
  private:
   tini_always_inline bool is_quiet(uint16_t now_ms) const {

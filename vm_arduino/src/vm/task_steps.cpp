@@ -1,4 +1,4 @@
-// What a task does in its turn beside moving: on every chip.
+// What a task does in its turn beside moving, and when the next one is due: on every chip.
 
 #include "build.h"
 

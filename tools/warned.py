@@ -1,0 +1,56 @@
+"""Which warnings programs get: `python -m tools.warned FOLDER` counts them, rarest first.
+
+The folder has programs, `NAME.ts`; without one it takes the right answers of the lessons. A warning
+that no program gets is listed, too: `docs/develop/decisions.md` says what such a one is for.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from tiniscript import robots
+from tiniscript.diagnostics import codes
+from tiniscript.lessons import catalogue
+from tiniscript.library.compiling import compile_source
+from tiniscript.library.named_robot import robot_of
+
+
+def programs_in(folder: Path | None) -> Iterator[str]:
+    """Yield the programs of a folder, or the right answers of all lessons."""
+    if folder is not None:
+        for path in sorted(folder.rglob("*.ts")):
+            yield path.read_text(encoding="utf-8")
+        return
+    for lesson in catalogue.folders():
+        right, _ = catalogue.answers(lesson)
+        yield from (answer.program for answer in right)
+
+
+def warnings_in(program: str) -> set[str]:
+    """Return the numbers of the warnings that a program gets on the robot that it names."""
+    data = program.encode()
+    robot = robot_of(data, robots.load(robots.DEFAULT))
+    found = compile_source(data, robot, "", is_strict=False).diagnostics
+    return {each.code.number for each in found if not each.is_mistake}
+
+
+def main(arguments: Iterable[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Count which warnings programs get.")
+    parser.add_argument("folder", type=Path, nargs="?")
+    folder = parser.parse_args(None if arguments is None else [*arguments]).folder
+    programs = [*programs_in(folder)]
+    if not programs:
+        sys.exit(f"{folder} has no programs (*.ts).")
+    counted = Counter(number for each in programs for number in warnings_in(each))
+    numbers = [each.number for each in codes.CODES.values() if not each.is_mistake]
+    for number in sorted(numbers, key=lambda each: (counted[each], each)):
+        print(f"{number} {counted[number]} of {len(programs)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
