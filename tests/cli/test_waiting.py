@@ -77,7 +77,7 @@ def test_who_waits_for_a_board_is_told_until_it_is_written(
 
     monkeypatch.setattr(avrdude, "write", write)
     made = Ready("tinibot", "uno", "1", Path("x"))
-    assert firmware._write_firmware([], UNO, "/dev/x", made, "en").how == avrdude.DONE
+    assert firmware._write_firmware([], UNO, "/dev/x", made, "en").outcome == avrdude.DONE
 
 
 SILENT_VERBS = [

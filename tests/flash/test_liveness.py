@@ -82,7 +82,7 @@ def test_what_stands_still_ends(clock: Clock, seed: int) -> None:
     some = parts[: rng.randrange(len(parts) - 1)]
     last_s = some[-1][0] if some else 0.0
     how, at_s = watched(clock, some, WHOLE_S + 1)
-    assert how and how.how == (avrdude.BROKEN_OFF if len(some) > 1 else avrdude.NOBODY)
+    assert how and how.outcome == (avrdude.BROKEN_OFF if len(some) > 1 else avrdude.NOBODY)
     limit_s = SILENCE_S if len(some) > 1 else NOBODY_S
     assert limit_s - LOOK_S < at_s - last_s < limit_s + 2 * LOOK_S
 

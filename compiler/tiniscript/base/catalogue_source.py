@@ -131,8 +131,8 @@ def decode_file(path: Path) -> tuple[str, list[Problem]]:
 
 def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
     """Return the rows of a TOML file, what stands below all of them, and what is no TOML."""
-    found: dict[str, Row] = {}
-    again: list[Row] = []  # a key that is there twice
+    row_by_key: dict[str, Row] = {}
+    repeated_rows: list[Row] = []  # a key that is there twice
     problems: list[Problem] = []
     above, table = "", ""
     lines = re.findall(r".*\n|.+", text)
@@ -149,16 +149,16 @@ def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
             value, block = {_key(lines[at]): None} if is_row else {}, "".join(lines[at:end])
         if is_row:
             row = Row(*next(iter(value.items())), at + 1, block, above, table)
-            if (first := found.setdefault(row.key, row)) is not row and not first.takes(row):
-                again.append(row)
+            if (first := row_by_key.setdefault(row.key, row)) is not row and not first.takes(row):
+                repeated_rows.append(row)
             above = ""
         else:
             above += block
             table = next(iter(value), table)
         at = end
-    if not problems and not again:
-        problems = [(line, f"this is no TOML: {said}") for line, said in _toml_problems(text)]
-    return sorted([*found.values(), *again], key=lambda row: row.line), above, problems
+    if not problems and not repeated_rows:
+        problems = [(line, f"this is no TOML: {reason}") for line, reason in _toml_problems(text)]
+    return sorted([*row_by_key.values(), *repeated_rows], key=lambda row: row.line), above, problems
 
 
 def _is_row_start(line: str) -> bool:

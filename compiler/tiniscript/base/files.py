@@ -205,13 +205,15 @@ def try_lock(number: int) -> bool:
     return True
 
 
-def remove_abandoned(folder: Path, names: list[str], kept: tuple[str, ...] = (".json",)) -> None:
-    """Remove what killed commands have left in a folder of ours; `kept` is what names may end in.
+def remove_abandoned(
+    folder: Path, names: list[str], kept_endings: tuple[str, ...] = (".json",)
+) -> None:
+    """Remove what killed commands have left in a folder of ours, but for names with `kept_endings`.
 
     `names` are those of the folder. A file that may still become whole is left alone.
     """
     for name in names:
-        if not name.endswith(kept):
+        if not name.endswith(kept_endings):
             with suppress(OSError):
                 if (folder / name).lstat().st_mtime < time() - ABANDONED_AFTER_S:
                     (folder / name).unlink()

@@ -113,7 +113,7 @@ def _form_of(rule: str, names: tuple[object, ...]) -> tuple[str, str]:
 
 def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
     """Return the hashes of a language by file and key, and what is wrong with the file of them."""
-    found: dict[str, list[str]] = {}
+    hashes_by_key: dict[str, list[str]] = {}
     text, problems = decode_file(path) if path.is_file() else ("", [])
     for number, line in enumerate(text.split("\n"), 1):
         row = _SEEN_ROW.fullmatch(line)
@@ -121,11 +121,11 @@ def read_seen(path: Path) -> tuple[dict[str, list[str]], list[Problem]]:
             continue
         if row is None:
             problems.append((number, f"this is no file, key and hash: {line[:60]}"))
-        elif row[1] in found:
+        elif row[1] in hashes_by_key:
             problems.append((number, f"{row[1]} is there twice"))
         else:
-            found[row[1]] = row[2].split()
-    return found, problems
+            hashes_by_key[row[1]] = row[2].split()
+    return hashes_by_key, problems
 
 
 @dataclass
@@ -218,16 +218,16 @@ def without_translation(entry: Entry) -> Entry:
 def assign_translations(group: list[Entry], texts: list[Forms], hashes: list[str]) -> str:
     """Give each English text of a key its translation; return why one has no text, or nothing."""
     own = {place: entry.hash for place, entry in enumerate(group)}
-    given = {place for place, forms in enumerate(texts) if forms}
+    places_left = {place for place, forms in enumerate(texts) if forms}
     has_moved = False
-    for place in sorted(given):
+    for place in sorted(places_left):
         if places := [at for at, value in own.items() if value == hashes[place]]:
             at = place if place in places else places[0]
             has_moved |= at != place
             group[at].translation, group[at].seen = texts[place], hashes[place]
             del own[at]
-            given.remove(place)
-    for place in sorted(given):
+            places_left.remove(place)
+    for place in sorted(places_left):
         if hashes[place] == UNKNOWN_HASH and has_moved:
             return "its English texts have other places now: first run  python -m tools.languages"
         if place not in own:
@@ -243,18 +243,20 @@ def misfits(entry: Entry, language: Language) -> list[str]:
     used = {language.forms[int(digit)] for digit in language.form_of}
     wanted, known = (used, {*language.forms, "other"}) if entry.plural else ({""}, {""})
     if not wanted <= entry.translation.keys() <= known:
-        has, needs = (", ".join(sorted(item)) or "one text" for item in (entry.translation, wanted))
-        return [f"it has {has}, and needs {needs}"]
+        gaps_found, gaps_needed = (
+            ", ".join(sorted(item)) or "one text" for item in (entry.translation, wanted)
+        )
+        return [f"it has {gaps_found}, and needs {gaps_needed}"]
     places = gap_names(entry.english) | gap_names(entry.plural)
-    matches = []
+    problems = []
     for form in entry.translation.values():
         try:
             own = gap_names(form)
         except ValueError:
             return ["a brace { or } has no other half"]
-        matches += [f"{{{gap}}} is missing" for gap in sorted(gap_names(entry.english) - own)]
-        matches += [f"{{{gap}}} is no gap of the English text" for gap in sorted(own - places)]
-    return list(dict.fromkeys(matches))
+        problems += [f"{{{gap}}} is missing" for gap in sorted(gap_names(entry.english) - own)]
+        problems += [f"{{{gap}}} is no gap of the English text" for gap in sorted(own - places)]
+    return list(dict.fromkeys(problems))
 
 
 def texts_of(catalogue: Catalogue) -> dict[str, str | Forms]:

@@ -417,14 +417,14 @@ _EXPRESSION_ROLES = ("end", "value", "join")
 _CHECK_ROLES = ("read", "until", "look")
 
 
-def load_image(data: bytes, kit: Kit, has: int = ALL_NEEDS) -> Image:
+def load_image(data: bytes, kit: Kit, capabilities: int = ALL_NEEDS) -> Image:
     """Return the image in `data`, for a machine that has so much of `needs`.
 
     Looks at its header, its code, and the devices that the code uses, as every machine does.
 
     Raises ImageRefused, or Refused.
     """
-    image = unpack(data, has)
+    image = unpack(data, capabilities)
     check(image, kit)
     return image
 

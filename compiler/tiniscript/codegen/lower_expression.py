@@ -67,13 +67,13 @@ class Emitter:
         del self.items[-1]
         return True
 
-    def widen(self, which: set[int]) -> None:
-        """Give the jumps at the indexes `which` their far forms."""
+    def widen(self, positions: set[int]) -> None:
+        """Give the jumps at the indexes `positions` their far forms."""
         items: list[Item] = []
         moved = []
         for k, item in enumerate(self.items):
             moved.append(len(items))
-            items += _far_form(item) if k in which else (item,)
+            items += _far_form(item) if k in positions else (item,)
         moved.append(len(items))
         self.labels = [moved[index] for index in self.labels]
         self.items = items

@@ -157,7 +157,7 @@ VARIABLE_ALONE = _mistake("TS116")
 NOT_CALLABLE = _mistake("TS118")
 OTHER_ROBOT = _mistake("TS119")
 NO_BUTTON = _mistake("TS120")
-WHICH_WAY = _mistake("TS121")
+TURN_WITHOUT_DIRECTION = _mistake("TS121")
 SWITCH_WHAT = _mistake("TS122")
 UNTAUGHT = _mistake("TS129")
 SAME_AGAIN = _mistake("TS130")
@@ -239,7 +239,7 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
 
     What begins where another mistake begins is most often its consequence.
     """
-    kept = []
+    result = []
     mistaken = set()
     seen = set()
     meant = {
@@ -254,7 +254,7 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
         if key in seen or (diagnostic.is_mistake and start in mistaken):
             continue
         seen.add(key)
-        kept.append(diagnostic)
+        result.append(diagnostic)
         if diagnostic.is_mistake:
             mistaken.add(start)
-    return sorted(kept, key=lambda diagnostic: (diagnostic.span, diagnostic.code.number))
+    return sorted(result, key=lambda diagnostic: (diagnostic.span, diagnostic.code.number))

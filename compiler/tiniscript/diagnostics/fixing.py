@@ -101,29 +101,29 @@ def _tidied(edit: Edit, text: str) -> Edit:
 
 def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     """Give the sure repairs that do not touch, and then each one alone."""
-    sure = [
+    sure_repairs = [
         item.repair.edits
         for item in diagnostics[: codes.ENOUGH]
         if item.repair and item.repair.is_sure
     ]
     together: list[tuple[Edit, ...]] = []
-    for edits in sure:
+    for edits in sure_repairs:
         if not any(overlap(edits, other) for other in together):
             together.append(edits)
     if len(together) > 1:
         yield together
-    yield from ([edits] for edits in sure)
+    yield from ([edits] for edits in sure_repairs)
 
 
 def edits_offered(
-    text: str, diagnostics: Sequence[Diagnostic], which: int, check: Check
+    text: str, diagnostics: Sequence[Diagnostic], position: int, check: Check
 ) -> list[Edit]:
     """Return the changes of one of a text's diagnostics that a reader may choose to make, or none.
 
     With them the program has fewer mistakes, or for a warning no more of them and the warning is
     gone. They may be a guess, and change what the program does: somebody looks at them.
     """
-    source, diagnostic = Source(text), diagnostics[which]
+    source, diagnostic = Source(text), diagnostics[position]
     edits = edits_of(diagnostic) or []
     lines = (source.line_text(source.position(edit.span.start)[0]) for edit in edits)
     if not edits or any("~" in line for line in lines):  # else it is copied again
@@ -153,10 +153,10 @@ def drop_wrong_offers(
     another mistake in it may be told as well. In a long text what is told last is not looked at.
     """
     left = min(MOST_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
-    told = list(diagnostics)
+    result = list(diagnostics)
     for _ in _SHOWN_GAPS:
         offers = [
-            edits_of(diagnostic) or [] if diagnostic.is_mistake else [] for diagnostic in told
+            edits_of(diagnostic) or [] if diagnostic.is_mistake else [] for diagnostic in result
         ]
         joined: list[Edit] = []
         for edits in offers:
@@ -164,24 +164,24 @@ def drop_wrong_offers(
         in_all = _InPlace(text, joined, check)
         suspects = [
             k for k, edits in enumerate(offers)
-            if told[k].is_mistake and (edits or told[k].values.get("fix"))
-            and not (edits and set(edits) <= set(joined) and in_all.is_right(told[k], edits))
+            if result[k].is_mistake and (edits or result[k].values.get("fix"))
+            and not (edits and set(edits) <= set(joined) and in_all.is_right(result[k], edits))
         ]  # fmt: skip
         lines: dict[tuple[Code, str], bool] = {}  # of those that name no changes: each once
         for k in suspects[:left]:
-            others = _covered_by_offer(told, offers, k, text)
-            line = told[k].code, told[k].values.get("fix", "")
+            others = _covered_by_offer(result, offers, k, text)
+            line = result[k].code, result[k].values.get("fix", "")
             if offers[k] or line not in lines:
                 lines[line] = any(
-                    _InPlace(text, edits, check).is_right(told[k], edits, others)
-                    for edits in ([offers[k]] if offers[k] else _shown_edits(told[k], text))
+                    _InPlace(text, edits, check).is_right(result[k], edits, others)
+                    for edits in ([offers[k]] if offers[k] else _shown_edits(result[k], text))
                 )
             if not lines[line]:
-                told[k] = _without_offer(told[k])
+                result[k] = _without_offer(result[k])
         left -= len(suspects)
         if not suspects:
             break
-    return told
+    return result
 
 
 def _covered_by_offer(
@@ -252,10 +252,10 @@ def _without_offer(diagnostic: Diagnostic) -> Diagnostic:
     """Return a diagnostic without the changes that it asks for, and without the words for them."""
     gaps = ("fix", "right") if diagnostic.repair else _GAPS_BY_CODE.get(diagnostic.code, ("fix",))
     text = next((gap for gap in gaps if diagnostic.values.get(gap)), "")
-    gone = [text, "whole", "lines", "times"]
-    gone += ["line"] if diagnostic.code is not codes.WRONG_END else []  # of its header
-    gone += ["right"] if diagnostic.code is codes.BRACES else []
-    values = {gap: "" if gap in gone else value for gap, value in diagnostic.values.items()}
+    emptied_gaps = [text, "whole", "lines", "times"]
+    emptied_gaps += ["line"] if diagnostic.code is not codes.WRONG_END else []  # of its header
+    emptied_gaps += ["right"] if diagnostic.code is codes.BRACES else []
+    values = {gap: "" if gap in emptied_gaps else value for gap, value in diagnostic.values.items()}
     if text == "near":
         values["meant"] = diagnostic.values["near"]  # what is asked may lead further
     return diagnostic._replace(values=values, repair=None)

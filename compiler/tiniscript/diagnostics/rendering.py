@@ -78,8 +78,8 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     message = _format_text(f"{number}/message", diagnostic.values, lang)
     for gap in _SAID_OF_IT:
         if diagnostic.values.get(gap):
-            said = message if message[-1:] in (".", "?", "!") else message + "."
-            values = {**diagnostic.values, "said": said}
+            sentence = message if message[-1:] in (".", "?", "!") else message + "."
+            values = {**diagnostic.values, "said": sentence}
             message = _format_text(f"label/{gap}", values, lang)
     return Message(
         number,

@@ -179,11 +179,13 @@ class Client:
             return self.line.wait(request, watch)
 
     def request(
-        self, make: Callable[[Requester], PendingRequest[T]], taken: Collection[int] = ()
+        self,
+        begin_request: Callable[[Requester], PendingRequest[T]],
+        accepted_statuses: Collection[int] = (),
     ) -> Reply[T]:
-        """Make a request and return its reply, which is OK or `taken`. Raises RobotError."""
-        reply = self.wait(self.begin_request(make))
-        if reply.status and reply.status not in taken:
+        """Return the reply to a request: OK, or one of `accepted_statuses`. Raises RobotError."""
+        reply = self.wait(self.begin_request(begin_request))
+        if reply.status and reply.status not in accepted_statuses:
             raise self.failure(reply)
         return reply
 
@@ -264,9 +266,9 @@ class Client:
         """Return the sentences on the board that answers instead of a robot."""
         from tiniscript.link.foreign import explain
 
-        found = stranger(self.line)
-        assert found is not None
-        return explain(found, self.language)
+        board = stranger(self.line)
+        assert board is not None
+        return explain(board, self.language)
 
     def failure(self, reply: Reply[object]) -> Exception:
         """Return the error for a reply that is not OK."""
@@ -279,7 +281,7 @@ class Client:
         text = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
         name = name_of(reply.status)
         kind = ProgramError if name == "TOO_LARGE" else RobotError
-        return kind(name, self.language, said=text)
+        return kind(name, self.language, sentence_text=text)
 
 
 class Saving:

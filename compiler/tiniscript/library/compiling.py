@@ -81,7 +81,7 @@ def analyze(text: str, kit: Kit, name: str = "") -> Compiled:
     diagnostics = [*parsed.diagnostics, *checked.diagnostics]
     if not any(diagnostic.is_mistake for diagnostic in diagnostics):
         diagnostics += lint(checked.program, kit, source, parsed.scan)
-        if kit.given:
+        if kit.given_words:
             from tiniscript.syntax.later_words import report_given_way
 
             diagnostics += report_given_way(parsed.scan.tokens, kit, source)

@@ -379,8 +379,8 @@ def connect(
 
 def _usual_port(language: Language) -> str:
     """Return the last used port, else that of the only virtual robot. Raises RobotError."""
-    if (there := opening.last_port()) is not None:
-        return there
+    if (last_port := opening.last_port()) is not None:
+        return last_port
     last = known_ports.remembered_ports().last
     running = directory.unclaimed_robots()
     if len(running) == 1:

@@ -65,12 +65,12 @@ def fits(image: Image, robot: Robot) -> bool:
 
 def lacks(needs: int, robot: Robot) -> bool:
     """Return whether the robot's firmware lacks something of `needs` in an image."""
-    has = CHIPS[robot.board.chip].has
+    capabilities = CHIPS[robot.board.chip].capabilities
     if robot.board.discs:  # on a Nano they have the place of the reader of text, and leave some
-        has |= TASKS
+        capabilities |= TASKS
     if not robot.kit.speed and not robot.kit.turn:
-        has &= ~GO
-    return bool(needs & ~has)
+        capabilities &= ~GO
+    return bool(needs & ~capabilities)
 
 
 def has_remote(robot: Robot) -> bool:

@@ -180,8 +180,8 @@ def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
     try:
         return robots.load(os.fspath(robot))
     except ProfileRefused as refused:
-        said = {"reasons": "\n".join(describe(refused, language))}
-        raise UsageError("profile_refused", language, said) from None
+        values = {"reasons": "\n".join(describe(refused, language))}
+        raise UsageError("profile_refused", language, values) from None
 
 
 def diagnostics_of(compiled: Compiled, language: Language) -> list[Message]:
@@ -223,16 +223,16 @@ def _program(
     text: str, robot: str | os.PathLike[str] | Robot | None, name: str, optimize: bool,
     language: Language,
 ) -> Program:  # fmt: skip
-    found, profile = _compile_for(text, robot, name, language, optimize=optimize)
-    diagnostics = tuple(diagnostics_of(found, language))
-    if not found.is_right:
-        texts = [as_text(message(diagnostic, found.source, language), found.source, language)
-                for diagnostic in found.diagnostics]  # fmt: skip
-        error = ProgramError("mistakes", language, said="\n".join(texts))
+    compiled, profile = _compile_for(text, robot, name, language, optimize=optimize)
+    diagnostics = tuple(diagnostics_of(compiled, language))
+    if not compiled.is_right:
+        texts = [as_text(message(diagnostic, compiled.source, language), compiled.source, language)
+                for diagnostic in compiled.diagnostics]  # fmt: skip
+        error = ProgramError("mistakes", language, sentence_text="\n".join(texts))
         error.diagnostics = diagnostics
         raise error
-    places = source_map.map_of_compiled(found)
-    return Program(text, found.image, image_of(found, profile), profile, places, diagnostics)
+    places = source_map.map_of_compiled(compiled)
+    return Program(text, compiled.image, image_of(compiled, profile), profile, places, diagnostics)
 
 
 def _data(text: str) -> bytes:

@@ -193,46 +193,55 @@ def _event(event: Event, kit: Kit) -> TraceEvent:
         is_yes_no = event.text.endswith(("TRUE", "FALSE"))
         values = {"value": value_of(numbers[0], is_yes_no)}
     elif event.what in ("READ", "SET"):
-        what, devices = {"READ": ("sensor", kit.readings), "SET": ("actuator", kit.actuators)}[
-            event.what
-        ]
+        device_kind, devices = {
+            "READ": ("sensor", kit.readings),
+            "SET": ("actuator", kit.actuators),
+        }[event.what]
         device = devices[numbers[0]]
-        values = {what: device.name, "value": value_of(numbers[1], device.is_yes_no)}
+        values = {device_kind: device.name, "value": value_of(numbers[1], device.is_yes_no)}
     return TraceEvent(event.time_ms, event.what, values, event.text)
 
 
-def _reading(device: Device, found: object, language: Language) -> int:
+def _reading(device: Device, given_value: object, language: Language) -> int:
     value: int | None = None
     if device.is_yes_no:
-        value = int(found) if found in (0, 1) and isinstance(found, int | float) else None
-    elif isinstance(found, int | float) and not isinstance(found, bool) and abs(found) < 1e9:
-        value = round(found * 1000)
+        value = (
+            int(given_value)
+            if given_value in (0, 1) and isinstance(given_value, int | float)
+            else None
+        )
+    elif (
+        isinstance(given_value, int | float)
+        and not isinstance(given_value, bool)
+        and abs(given_value) < 1e9
+    ):
+        value = round(given_value * 1000)
     if value is None or not device.low <= value <= device.high:
         low, high = device.text(device.low), device.text(device.high)
         key = "range_yes_no" if device.is_yes_no else "range"
         allowed = sentence(key, language, {"low": low, "high": high})
-        values = {"found": printable(repr(found), 60), "name": device.name, "range": allowed}
+        values = {"found": printable(repr(given_value), 60), "name": device.name, "range": allowed}
         raise UsageError("bad_reading", language, values)
     return value
 
 
-def checked_number(name: str, found: object, low: float, high: float, language: Language) -> float:
+def checked_number(name: str, number: object, low: float, high: float, language: Language) -> float:
     """Return an argument that must be a number in a range. Raises UsageError."""
-    if isinstance(found, int | float) and not isinstance(found, bool) and low <= found <= high:
-        return found
-    raise _bad_number(name, found, low, high, language)
+    if isinstance(number, int | float) and not isinstance(number, bool) and low <= number <= high:
+        return number
+    raise _bad_number(name, number, low, high, language)
 
 
-def check_whole_number(name: str, found: object, low: int, high: int, language: Language) -> None:
+def check_whole_number(name: str, number: object, low: int, high: int, language: Language) -> None:
     """Check an argument that must be a whole number in a range. Raises UsageError."""
-    if isinstance(found, float):
-        raise _bad_number(name, found, low, high, language)
-    checked_number(name, found, low, high, language)
+    if isinstance(number, float):
+        raise _bad_number(name, number, low, high, language)
+    checked_number(name, number, low, high, language)
 
 
 def _bad_number(
-    name: str, found: object, low: float, high: float, language: Language
+    name: str, number: object, low: float, high: float, language: Language
 ) -> UsageError:
     allowed = sentence("range", language, {"low": str(low), "high": str(high)})
-    values = {"name": name, "found": printable(repr(found), 60), "range": allowed}
+    values = {"name": name, "found": printable(repr(number), 60), "range": allowed}
     return UsageError("bad_number", language, values)

@@ -40,8 +40,8 @@ class Shows:
 
     def __init__(self, places: Map) -> None:
         self._places = places
-        found = {place[1:]: expression_of(places, place) for place in places.places}
-        named = {place: text for place, text in found.items() if text}
+        expression_by_place = {place[1:]: expression_of(places, place) for place in places.places}
+        named = {place: text for place, text in expression_by_place.items() if text}
         texts = Counter(named.values())
         lines = Counter((text, place[0]) for place, text in named.items())
         self._shows = {

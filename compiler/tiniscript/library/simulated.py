@@ -130,5 +130,5 @@ def _make_robot(profile: Robot, world: str, settings: Settings, language: Langua
         how = install_advice.command(install_advice.VIRTUAL)
         raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None
     except WorldRefused as refused:
-        said = {"reasons": "\n".join(describe(refused, language))}
-        raise UsageError("world_refused", language, said) from None
+        values = {"reasons": "\n".join(describe(refused, language))}
+        raise UsageError("world_refused", language, values) from None

@@ -55,15 +55,17 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
 
 def _value_problems(program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return each DEF that has a value other than a number, or values for several tasks."""
-    values, yes_no = [], yes_no_variables(program, kit)
+    problems, yes_no = [], yes_no_variables(program, kit)
     for procedure, tasks in zip(program.procedures, count_tasks_by_def(program), strict=True):
-        said = {"level": level.name, "name": procedure.name}
+        level_values = {"level": level.name, "name": procedure.name}
         place = Span(procedure.span.start, procedure.span.start + len("DEF"))
         for name in (program.variables[k] for k in procedure.values if yes_no[k]):
-            values.append(Diagnostic(codes.LEVEL_VALUES, place, {**said, "yes_no": name}))
+            problems.append(Diagnostic(codes.LEVEL_VALUES, place, {**level_values, "yes_no": name}))
         if procedure.values and tasks > 1:
-            values.append(Diagnostic(codes.LEVEL_VALUES, place, {**said, "count": str(tasks)}))
-    return values
+            problems.append(
+                Diagnostic(codes.LEVEL_VALUES, place, {**level_values, "count": str(tasks)})
+            )
+    return problems
 
 
 def _first_span_beyond(code: PlainCode, limit: int) -> Span:

@@ -43,14 +43,18 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
     is_asked = any(sign in amount for sign in "<>=")  # a part of it is no number
     if is_asked or not any(is_amount(*value.split()) for value in values):
         return {}
-    for k, (value, its) in enumerate(zip(values, word.arguments, strict=False)):
+    for k, (value, argument) in enumerate(zip(values, word.arguments, strict=False)):
         words = [word for word in plain(value).split() if word not in own]
         texts = [
             lexicon_meaning(word, "power")[0] for word in words if lexicon_meaning(word, "power")
         ]
         if texts or is_amount(*words) or k == place:
-            sample = texts[0] if texts and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
-            sample = _own_number(words, its.unit) or sample
+            sample = (
+                texts[0]
+                if texts and argument.unit == "%"
+                else _SAMPLES.get(argument.name, argument.sample)
+            )
+            sample = _own_number(words, argument.unit) or sample
             values[k] = f"{' ' * (k > 0)}{sample}"
     head = call[0][: len(call[0]) - len(call[2])]
     return {"amount": amount, "example": f"{head.lstrip()}{','.join(values)})"}
@@ -60,5 +64,7 @@ def _own_number(words: Sequence[str], unit: str) -> str:
     """Return the number that words for an amount say in its unit: `muy lento 5 segundos`."""
     units = {lexicon_meaning(word, "unit")[0] for word in words if lexicon_meaning(word, "unit")}
     numbers = [(lexicon_meaning(word, "number") or (word,))[0] for word in words]
-    matches = [it for it in numbers if it.replace(".", "", 1).isdecimal() and (units or it != "1")]
-    return matches[0] if len(matches) == 1 and units <= {unit} else ""
+    fitting_numbers = [
+        it for it in numbers if it.replace(".", "", 1).isdecimal() and (units or it != "1")
+    ]
+    return fitting_numbers[0] if len(fitting_numbers) == 1 and units <= {unit} else ""

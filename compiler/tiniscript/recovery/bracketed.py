@@ -41,13 +41,13 @@ def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> 
     inside = _INSIDE.match(text, at) if at >= 0 else None
     if inside is None or "\n" in text[diagnostic.span.start : at]:
         return diagnostic
-    what, word = inside[1].strip(), values.get("word", "").upper()
-    names = Names([lexemes(what)], kit)
-    is_asked = bool(_ASKED.search(what)) or any(map(names.is_yes_no, texts(lexemes(what))))
+    content, word = inside[1].strip(), values.get("word", "").upper()
+    names = Names([lexemes(content)], kit)
+    is_asked = bool(_ASKED.search(content)) or any(map(names.is_yes_no, texts(lexemes(content))))
     asks = _ASKS.get(word, "") if is_asked else ""
     if asks and is_offered:
-        return diagnostic._replace(values={**values, "fix": asks.format(what=what)})
-    return diagnostic if is_offered else diagnostic._replace(values={**values, "lost": what})
+        return diagnostic._replace(values={**values, "fix": asks.format(what=content)})
+    return diagnostic if is_offered else diagnostic._replace(values={**values, "lost": content})
 
 
 def answered(diagnostic: Diagnostic, text: str) -> Diagnostic:

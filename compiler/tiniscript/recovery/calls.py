@@ -166,7 +166,7 @@ def _unit_apart(call: _Call) -> Diagnostic | None:
         return None
     if not unit or len(values) != len(call.word.arguments) or not all(values):
         return None
-    first, second = (word for word, its in UNIT_OF.items() if its == unit)
+    first, second = (word for word, unit_of_word in UNIT_OF.items() if unit_of_word == unit)
     fix = call.with_values([f"{values[0]} {unit}", *values[1:]])
     return _call_diagnostic(
         call, codes.UNIT_PLACE, fix, True, found=unit, first=first, second=second
@@ -175,8 +175,8 @@ def _unit_apart(call: _Call) -> Diagnostic | None:
 
 def _thousands(call: _Call) -> Diagnostic | None:
     """`BEEP(1, 1,000)`: a comma parts thousands, where nothing that has decimals goes."""
-    wanted, found = call.word.arguments, _THOUSANDS.search(call.text)
-    if found is None or len(call.values) <= len(wanted):
+    wanted, number_match = call.word.arguments, _THOUSANDS.search(call.text)
+    if number_match is None or len(call.values) <= len(wanted):
         return None
     joined = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
     inside = joined.partition("(")[2].rpartition(")")[0]
@@ -188,7 +188,7 @@ def _thousands(call: _Call) -> Diagnostic | None:
     if len(values) != len(wanted) or is_of_time:
         return None
     fix = call.with_values(values)
-    return _call_diagnostic(call, codes.BAD_NUMBER, fix, True, found=found[0])
+    return _call_diagnostic(call, codes.BAD_NUMBER, fix, True, found=number_match[0])
 
 
 def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
@@ -197,14 +197,14 @@ def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
         return None
     values = [_PERCENT.sub("", value) for value in call.values]
     parted = [(values[-1], values[:-1]), (values[0], values[1:])]
-    found = [(_seconds(time), powers) for time, powers in parted if _are_powers(powers)]
-    seconds, powers = next((each for each in found if each[0]), ("", []))
+    candidates = [(_seconds(time), powers) for time, powers in parted if _are_powers(powers)]
+    seconds, powers = next((each for each in candidates if each[0]), ("", []))
     if not seconds:
         return None
     fix = f"{call.with_values(powers)};W({seconds})"
     fix += "" if text[call.span.end :].strip(" ;\t\r\n") else ";S"
-    said = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
-    return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **said)
+    gap_values = {"word": "M", "usage": call.word.usage, "wanted": "2", "found": "3", "number": ""}
+    return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **gap_values)
 
 
 def _seconds(value: str) -> str:
@@ -229,7 +229,7 @@ def own_example(text: str) -> str:
     """Return how an instruction with CM or DEG in another place is written with its own values."""
     if stored := _STORED.fullmatch(text):
         name, number, unit = stored[1], stored[2], stored[3].upper()
-        word = next(word for word, its in UNIT_OF.items() if its == unit)
+        word = next(word for word, unit_of_word in UNIT_OF.items() if unit_of_word == unit)
         return f"{name} = {number}; {word}({name} {unit}, {POWER.sample})"
     call = next(_calls(text, 0), None)
     unit = UNIT_OF.get(call.word.text, "") if call else ""

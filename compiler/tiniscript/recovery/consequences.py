@@ -19,19 +19,21 @@ _FOLLOW: dict[Code, tuple[Code, ...]] = {
     codes.BRACES: _OF_ENDS, codes.DOTS: _OF_ENDS,
     codes.NEVER_ENDS: (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP),
 }  # fmt: skip
-_OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
+_OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.TURN_WITHOUT_DIRECTION)  # whose units say nothing more
 _OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _UNTAUGHT = (codes.UNKNOWN_WORD, codes.UNTAUGHT)
 _MANY = 30  # of which it is looked at: each goes through its row
 
 
 def without_consequences(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
-    gone = {code for diagnostic in diagnostics for code in _FOLLOW.get(diagnostic.code, ())}
+    explained_codes = {
+        code for diagnostic in diagnostics for code in _FOLLOW.get(diagnostic.code, ())
+    }
     follow = {id(diagnostic) for rule in _RULES for diagnostic in rule(diagnostics, source)}
     return [
         diagnostic
         for diagnostic in diagnostics
-        if diagnostic.code not in gone and id(diagnostic) not in follow
+        if diagnostic.code not in explained_codes and id(diagnostic) not in follow
     ]
 
 
@@ -62,7 +64,7 @@ def _uses_of_a_reserved_word(
     reserved = [diagnostic for diagnostic in diagnostics if diagnostic.code is codes.RESERVED]
     words = {diagnostic.values["word"] for diagnostic in reserved}
     edits = [diagnostic.repair.edits[1:] for diagnostic in reserved if diagnostic.repair]
-    renamed = {edit.span for its in edits for edit in its}
+    renamed = {edit.span for edits_of_one in edits for edit in edits_of_one}
     starts = {span.start for span in renamed}
     for diagnostic in diagnostics:
         if starts and instruction_at(diagnostic.span, source)[0] in starts:

@@ -146,13 +146,17 @@ def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[D
 
     It is shown together with what is `lost`, and so is what was not sure before.
     """
-    sure = [it for it in diagnostics if it.repair and it.repair.is_sure and it.repair.edits]
-    lost = _losses_of_sure_repairs(sure, text, kit)
+    sure_diagnostics = [
+        it for it in diagnostics if it.repair and it.repair.is_sure and it.repair.edits
+    ]
+    lost = _losses_of_sure_repairs(sure_diagnostics, text, kit)
     shown = [it for it in diagnostics if id(it) not in lost and "lost" not in it.values
              and not (it.repair and it.repair.is_sure) and edits_of(it)]  # fmt: skip
-    gone = zip(shown, _losses(shown, text, kit), strict=True)
+    losses = zip(shown, _losses(shown, text, kit), strict=True)
     left_out = {
-        id(it): found for it, its in gone if (found := _unmentioned_losses(it, its.lost, text))
+        id(it): unmentioned
+        for it, loss in losses
+        if (unmentioned := _unmentioned_losses(it, loss.lost, text))
     }
     return [
         _with_losses(it, lost[id(it)].lost) if id(it) in lost
@@ -162,16 +166,19 @@ def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[D
 
 
 def _losses_of_sure_repairs(
-    sure: Sequence[Diagnostic], text: str, kit: Kit
+    sure_diagnostics: Sequence[Diagnostic], text: str, kit: Kit
 ) -> dict[int, Difference]:
     """Return what is lost by which sure repairs: by one alone, or by all of them together."""
-    edits = [it.repair.edits for it in sure if it.repair]
+    edits = [it.repair.edits for it in sure_diagnostics if it.repair]
     joint = [it for k in _layers(dict(enumerate(edits)))[0] for it in edits[k]]
     if not joint or not any(difference(text, apply_edits(text, joint), kit)):
         return {}
-    lost = {id(it): its for it, its in zip(sure, _losses(sure, text, kit), strict=True)}
+    lost = {
+        id(it): loss
+        for it, loss in zip(sure_diagnostics, _losses(sure_diagnostics, text, kit), strict=True)
+    }
     is_joint = not any(any(item) for item in lost.values())  # none alone: then all together do it
-    return {key: its for key, its in lost.items() if is_joint or any(its)}
+    return {key: loss for key, loss in lost.items() if is_joint or any(loss)}
 
 
 def keeps_all(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
@@ -186,7 +193,7 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
     what many lose together each loses what stands in its own instructions.
     """
     edits = [edits_of(it) or () for it in diagnostics]
-    changing = [k for k, its in enumerate(edits) if its]
+    changing = [k for k, edits_of_one in enumerate(edits) if edits_of_one]
     left = min(LOOKS, LOOKED_AT // (len(text) + 1))
     differences = [NOTHING] * len(edits)
     groups = deque([k] for k in changing)
@@ -212,13 +219,15 @@ def _layers(edits: Mapping[int, Sequence[Edit]]) -> list[list[int]]:
     """Return groups of changes that do not touch, by their keys, and at last those in no group."""
     layers: list[list[int]] = [[] for _ in range(LAYERS + 1)]
     spanses: list[list[Span]] = [[] for _ in range(LAYERS)]
-    for k, its in edits.items():
+    for k, edits_of_one in edits.items():
         free = (
-            at for at, spans in enumerate(spanses) if not any(_overlaps(it, spans) for it in its)
+            at
+            for at, spans in enumerate(spanses)
+            if not any(_overlaps(it, spans) for it in edits_of_one)
         )
         at = next(free, LAYERS)
         layers[at].append(k)
-        for edit in its if at < LAYERS else ():
+        for edit in edits_of_one if at < LAYERS else ():
             insort(spanses[at], edit.span)
     return [layer for layer in layers[:-1] if layer] + layers[-1:]
 
@@ -253,14 +262,14 @@ def _unmentioned_losses(diagnostic: Diagnostic, lost: Sequence[str], text: str) 
     """
     edits = edits_of(diagnostic) or []
     outcome = " ".join(edit.text for edit in edits).upper()
-    gone = {*_WRITTEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())}
-    kept = {*_WRITTEN.findall(outcome)}
-    is_cut = kept <= gone and diagnostic.code not in _NAMING
+    removed_words = {*_WRITTEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())}
+    kept_words = {*_WRITTEN.findall(outcome)}
+    is_cut = kept_words <= removed_words and diagnostic.code not in _NAMING
     result = []
     for item in lost:
         unit = _WITH_UNIT.fullmatch(item) if diagnostic.repair else None
         is_unit = unit is not None and unit[1].upper() not in outcome
-        if is_unit or (is_cut and item.upper() in gone - kept):
+        if is_unit or (is_cut and item.upper() in removed_words - kept_words):
             result.append(item)
     return result
 
@@ -281,9 +290,9 @@ def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[
             samples = [it for it in samples if it[1] == _NEAR]  # one each, in words or nearly so
         if samples and written is None:
             written = {it.value for it in _words_of_right(text, kit).amounts}
-        said = ", ".join(item for number, item in samples if number not in (written or ()))
-        gap = "samples" if ", " in said else "sample"
-        values = {**diagnostic.values, gap: said} if said else diagnostic.values
+        samples_text = ", ".join(item for number, item in samples if number not in (written or ()))
+        gap = "samples" if ", " in samples_text else "sample"
+        values = {**diagnostic.values, gap: samples_text} if samples_text else diagnostic.values
         result.append(diagnostic._replace(values=values))
     return result
 
@@ -301,15 +310,15 @@ def _count_numbers(diagnostic: Diagnostic, text: str) -> int:
 
 def _samples(fix: str) -> list[tuple[float, str]]:
     """Return the numbers of what is offered that may be examples, and each with its unit."""
-    found = [_NEAR] if _ASKS_NEAR.search(fix) else []
+    samples = [_NEAR] if _ASKS_NEAR.search(fix) else []
     for match in _CALL.finditer(fix):
         arguments = WORDS[match[1]].arguments if match[1] in _DRIVES else ()
-        found += [
+        samples += [
             f"{argument.sample} {argument.unit}"
             for argument, value in zip(arguments, match[2].split(","), strict=False)
             if value.strip() == argument.sample
         ]
-    return [(float(item.split()[0]), item) for item in dict.fromkeys(found)]
+    return [(float(item.split()[0]), item) for item in dict.fromkeys(samples)]
 
 
 def _with_losses(diagnostic: Diagnostic, lost: Sequence[str]) -> Diagnostic:
@@ -371,22 +380,26 @@ class _Said:
 
     def _joined(self, line: list[Lexeme]) -> list[Lexeme]:
         """Return a line in which words are one that the language, or the repair, has as one."""
-        found: list[Lexeme] = []
+        joined_lexemes: list[Lexeme] = []
         for token in line:
-            last = found[-1] if found else _END
-            before = found[-2] if last.text in ("-", "_", ".") and len(found) > 1 else last
+            last = joined_lexemes[-1] if joined_lexemes else _END
+            before = (
+                joined_lexemes[-2]
+                if last.text in ("-", "_", ".") and len(joined_lexemes) > 1
+                else last
+            )
             one = f"{before.text}_{token.text}"
             if before.kind is token.kind is WORD and one in self.others:
-                found[found.index(before, -2 if before is not last else -1) :] = [
+                joined_lexemes[joined_lexemes.index(before, -2 if before is not last else -1) :] = [
                     token._replace(text=one)
                 ]
             elif last.text == "ELSE" and token.text == "IF":
-                found[-1] = token._replace(text="ELSEIF")
+                joined_lexemes[-1] = token._replace(text="ELSEIF")
             else:
-                found.append(token)
-        while joined := one_word(found, self.names):
-            found = joined[0]
-        return found
+                joined_lexemes.append(token)
+        while joined := one_word(joined_lexemes, self.names):
+            joined_lexemes = joined[0]
+        return joined_lexemes
 
     # -- what each word is -----------------------------------------------------------------------
 
@@ -400,33 +413,33 @@ class _Said:
     def _possible_words(self, token: Lexeme) -> set[str]:
         """Return the words of the language that a word may say."""
         if token.text not in self._meanings:
-            self._meanings[token.text] = self._found_in(token)
+            self._meanings[token.text] = self._concepts_of(token)
         return self._meanings[token.text]
 
-    def _found_in(self, token: Lexeme) -> set[str]:
-        matches = {self._word(token), lexicon_concept(token.text) or ""}
-        matches |= {
+    def _concepts_of(self, token: Lexeme) -> set[str]:
+        concepts = {self._word(token), lexicon_concept(token.text) or ""}
+        concepts |= {
             meaning.concept for meaning in self.names.meanings(token.text) if meaning.cost <= NEAR
         }
-        return {"S" if item == "STOP" else item for item in matches}
+        return {"S" if item == "STOP" else item for item in concepts}
 
     def _read(self) -> None:
         slots = self._slots()
-        k, depth = 0, [False]  # whether each bracket is that of a call
+        k, open_brackets = 0, [False]  # whether each bracket is that of a call
         while k < len(self.tokens):
             token, before = self.tokens[k], self.tokens[k - 1] if k else _END
             if token.text == "(":
-                depth.append(bool(self._possible_words(before) & CALLED))
+                open_brackets.append(bool(self._possible_words(before) & CALLED))
             elif token.text == ")":
-                depth = depth[:-1] or [False]
+                open_brackets = open_brackets[:-1] or [False]
             elif token is _END:
-                depth = [False]
+                open_brackets = [False]
             if (value := self._number(token)) is not None:
                 is_said = bool(lexicon_meaning(before.text, "leaves", "by")) and before.kind is WORD
                 k = k + 1 if is_said or self._is_yes(k) else self._add_amount(k, value, slots[k])
                 continue
             if token.kind is WORD and not self._is_label(k):
-                self._take_word(k, len(depth) > 1)
+                self._take_word(k, len(open_brackets) > 1)
             k += 1
         self.words["ELSE"] += self._arms_in_brackets()
 
@@ -509,8 +522,8 @@ class _Said:
                 break
             value, k = value + more, at
         unit = slot if self.is_right else ""
-        if said := self._unit_after(k):
-            unit, scale = said
+        if unit_and_scale := self._unit_after(k):
+            unit, scale = unit_and_scale
             value, k = value * scale / 1000, k + 1
             text += f"{after.space or ''}{after.source or after.text}"
         signed = -value if is_minus else value
@@ -599,11 +612,11 @@ class _Said:
 
     def _units_of_names(self) -> dict[str, str]:
         """Return the units that variables have by their use; where they are two, with a `/`."""
-        found: dict[str, dict[str, None]] = {}
+        units_by_name: dict[str, dict[str, None]] = {}
         for token, unit in zip(self.tokens, self._slots(), strict=True):
             if unit and token.text in self.names.variables:
-                found.setdefault(token.text, {})[unit] = None
-        return {name: "/".join(units) for name, units in found.items()}
+                units_by_name.setdefault(token.text, {})[unit] = None
+        return {name: "/".join(units) for name, units in units_by_name.items()}
 
     # -- branches --------------------------------------------------------------------------------
 
@@ -702,10 +715,10 @@ def _amounts(before: _Said, after: _Said) -> Iterator[str]:
             read = parts
             left.take([value])
             lost.take(parts)
-    gone, kept = lost.all(), left.all()
+    lost_amounts, new_amounts = lost.all(), left.all()
     for is_near in (True, False):  # first what stays in its line: another line's 50 is no 50 %
-        gone, kept = _apart(gone, kept, is_near)
-    yield from (amount.written for amount in gone)
+        lost_amounts, new_amounts = _apart(lost_amounts, new_amounts, is_near)
+    yield from (amount.written for amount in lost_amounts)
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
     units |= {after.units.get(token.text, "") for token in after.tokens}
     loose = Counter(after.loose)
@@ -743,22 +756,25 @@ def _apart(
         key = _thousandths(amount.value), amount.line * is_near
         places.setdefault(key, {}).setdefault(amount.unit, deque()).append(k)
     lost: list[Amount] = []
-    taken: set[int] = set()
+    matched_positions: set[int] = set()
     for amount in before:
         scale = LAP if amount.unit == "turns" else 1
         keys = {(_thousandths(amount.value * by), amount.line * is_near) for by in (1, scale)}
         fitting = [
-            its
+            positions
             for key in keys
-            for its in places.get(key, {}).values()
-            if its and _is_same(amount, after[its[0]])
+            for positions in places.get(key, {}).values()
+            if positions and _is_same(amount, after[positions[0]])
         ]
         if fitting:
-            own = min(fitting, key=lambda its: (after[its[0]].unit != amount.unit, its[0]))
-            taken.add(own.popleft())
+            own = min(
+                fitting,
+                key=lambda positions: (after[positions[0]].unit != amount.unit, positions[0]),
+            )
+            matched_positions.add(own.popleft())
         else:
             lost.append(amount)
-    return lost, [amount for k, amount in enumerate(after) if k not in taken]
+    return lost, [amount for k, amount in enumerate(after) if k not in matched_positions]
 
 
 def _thousandths(value: float) -> int:
@@ -828,10 +844,12 @@ def _questions(before: _Said, after: _Said) -> Iterator[str]:
         yield "ELSE"
 
 
-def _senses(said: _Said) -> Counter[str]:
+def _senses(words_said: _Said) -> Counter[str]:
     senses: Counter[str] = Counter()
     in_call = [False]
-    for one, sign, other in zip(said.tokens, said.tokens[1:], said.tokens[2:], strict=False):
+    for one, sign, other in zip(
+        words_said.tokens, words_said.tokens[1:], words_said.tokens[2:], strict=False
+    ):
         if sign.text == "(":
             in_call.append(one.text in CALLED)
         elif sign.text == ")":

@@ -43,14 +43,14 @@ def counters(source: Source) -> list[Diagnostic]:
     """Return what is told of headers with a counter that is used, and of the ends that name it."""
     diagnostics: list[Diagnostic] = []
     rows = [lexemes(without_note(line)[0]) for line in source.text.split("\n")]
-    matches = [[*_headers(row)] for row in rows]
-    names = {item.name for row in matches for item in row}
+    headers_by_row = [[*_headers(row)] for row in rows]
+    names = {item.name for row in headers_by_row for item in row}
     if not names:
         return []
     words = Counter(token.text for row in rows for token in row)
     ends = Counter(b.text for row in rows for a, b in pairwise(row) if _is_end(a, b, b.text))
     start = 0
-    for row, own, line in zip(rows, matches, source.text.split("\n"), strict=True):
+    for row, own, line in zip(rows, headers_by_row, source.text.split("\n"), strict=True):
         spans = _counter_spans(row, start)
         for item in own:
             in_header = [it.text for it in row[item.start : item.end]].count(item.name)
@@ -106,8 +106,8 @@ def _is_end(end: Lexeme, name: Lexeme, counter: str) -> bool:
 def _headers(row: Sequence[Lexeme]) -> Iterator[_Counter]:
     for k in range(len(row)):
         is_begun = k == 0 or row[k - 1].text in _BEGINS
-        if is_begun and (found := _header(row, k)):
-            yield found
+        if is_begun and (counter := _header(row, k)):
+            yield counter
 
 
 def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:

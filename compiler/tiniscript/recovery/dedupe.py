@@ -54,7 +54,7 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
                 values.get(name, "").upper() for name in (values if names is None else names)
             )
         groups.setdefault((code, key), []).append(diagnostic)
-    return codes.in_order([_merge_diagnostics(same, source) for same in groups.values()])
+    return codes.in_order([_merge_diagnostics(group, source) for group in groups.values()])
 
 
 def _unquotes(diagnostic: Diagnostic, source: Source) -> bool:
@@ -70,39 +70,39 @@ def _unquoted(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnos
     rows: dict[int, list[Diagnostic]] = {}
     for diagnostic in diagnostics:
         rows.setdefault(source.position(diagnostic.span.start)[0], []).append(diagnostic)
-    told = []
-    for row, same in rows.items():
-        repairs = [diagnostic.repair for diagnostic in same if diagnostic.repair]
+    result = []
+    for row, group in rows.items():
+        repairs = [diagnostic.repair for diagnostic in group if diagnostic.repair]
         edits = sorted(edit for repair in repairs for edit in repair.edits)
-        if len(same) > 1 and any(diagnostic.code is codes.QUOTE for diagnostic in same):
+        if len(group) > 1 and any(diagnostic.code is codes.QUOTE for diagnostic in group):
             line = source.line_span(row)
             shift = [Edit(Span(a - line.start, b - line.start), it) for (a, b), it in edits]
             fix = apply_edits(source[line], shift).strip("\r\n \t")
             repair = Repair(tuple(edits), all(repair.is_sure for repair in repairs))
             span = Span(edits[0].span.start, edits[-1].span.end)
-            same = [Diagnostic(codes.QUOTE, span, {"fix": fix}, span, repair)]
-        told += same
-    return told
+            group = [Diagnostic(codes.QUOTE, span, {"fix": fix}, span, repair)]
+        result += group
+    return result
 
 
-def _merge_diagnostics(same: Sequence[Diagnostic], source: Source) -> Diagnostic:
-    first = same[0]
-    if len(same) == 1 or first.code not in (*_WITH_LINES, codes.MISSING_OPEN):
+def _merge_diagnostics(group: Sequence[Diagnostic], source: Source) -> Diagnostic:
+    first = group[0]
+    if len(group) == 1 or first.code not in (*_WITH_LINES, codes.MISSING_OPEN):
         return first
     if first.code is codes.MISSING_OPEN:
-        words = ", ".join(dict.fromkeys(diagnostic.values["word"] for diagnostic in same))
+        words = ", ".join(dict.fromkeys(diagnostic.values["word"] for diagnostic in group))
         calls = (
             diagnostic.values.get("fix") or diagnostic.values["example"]
-            for diagnostic in same[:MANY]
+            for diagnostic in group[:MANY]
         )
         values = {**first.values, "words": words, "fix": "", "example": "; ".join(calls)}
         return first._replace(values=values, place=None, repair=None)
-    here, *lines = (str(source.position(diagnostic.span.start)[0]) for diagnostic in same)
+    here, *lines = (str(source.position(diagnostic.span.start)[0]) for diagnostic in group)
     lines = [line for line in dict.fromkeys(lines) if line != here]
     gaps = {"line": "".join(lines[:1]), "lines": ", ".join(lines) if len(lines) > 1 else "",
-            "times": "" if lines else str(len(same))}  # fmt: skip
+            "times": "" if lines else str(len(group))}  # fmt: skip
     edits = tuple(
-        edit for diagnostic in same if diagnostic.repair for edit in diagnostic.repair.edits
+        edit for diagnostic in group if diagnostic.repair for edit in diagnostic.repair.edits
     )
-    repair = first.repair and Repair(edits, all(it.repair and it.repair.is_sure for it in same))
+    repair = first.repair and Repair(edits, all(it.repair and it.repair.is_sure for it in group))
     return first._replace(values={**first.values, **gaps}, repair=repair)

@@ -70,8 +70,10 @@ class Slipped(NamedTuple):
     tones: str = ""
 
     def values(self, code: Code) -> dict[str, str]:
-        said = {name: str(its) for name, its in self._asdict().items() if name != "slip" and its}
-        return slips.values_of(self.slip, code) | said
+        own_values = {
+            name: str(value) for name, value in self._asdict().items() if name != "slip" and value
+        }
+        return slips.values_of(self.slip, code) | own_values
 
 
 @dataclass
@@ -156,7 +158,7 @@ class _Block:
 
     word: str
     first: int
-    told: Explanation | None = None
+    explanation: Explanation | None = None
     inside: list[str] = field(default_factory=list)
 
 
@@ -170,24 +172,24 @@ class _Explainer:
         self.out: list[Explanation] = []
         self.open: list[_Block] = []
 
-    def complete(self, told: Explanation) -> None:
-        if told.code is not codes.NEVER_ENDS:
-            is_shown = self.candidate.is_whole and told.last > (told.first, 1)
-            told.whole = self.whole(told.first, told.last) if is_shown else ""
-        start, end = self.words(told.edits[0].span)
+    def complete(self, explanation: Explanation) -> None:
+        if explanation.code is not codes.NEVER_ENDS:
+            is_shown = self.candidate.is_whole and explanation.last > (explanation.first, 1)
+            explanation.whole = self.whole(explanation.first, explanation.last) if is_shown else ""
+        start, end = self.words(explanation.edits[0].span)
         while start < end and self.program[start] in "\r\n":
             start += 1
-        told.span = Span(start, end)
-        told.is_sure = self.is_sure(told)
+        explanation.span = Span(start, end)
+        explanation.is_sure = self.is_sure(explanation)
 
-    def is_sure(self, told: Explanation) -> bool:
+    def is_sure(self, explanation: Explanation) -> bool:
         """Whether nothing that an explanation changes is a guess."""
-        places = (place for edit in told.edits for place in edit.span)
+        places = (place for edit in explanation.edits for place in edit.span)
         lines = {self.program.count("\n", 0, place) for place in places}
         touched = [
             change for change in self.changes if lines & {*range(change.first, change.last + 1)}
         ]
-        touched += [self.changes[k] for k in (told.first, *told.opened)]
+        touched += [self.changes[k] for k in (explanation.first, *explanation.opened)]
         text = " ".join(f"{item.text} {self.lines[item.first]}" for item in touched)
         has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & OF_BLOCKS)
         is_block_sure = self.candidate.has_sure_blocks or not has_blocks
@@ -206,8 +208,8 @@ class _Explainer:
 
     def whole(self, first: int, last: tuple[int, int]) -> str:
         """Return what changes become, as one line, nothing where that is long."""
-        *others, text = (change.text for change in self.changes[first : last[0] + 1])
-        return in_one_line("\n".join((*others, *text.split("\n")[: last[1]])))
+        *earlier_lines, text = (change.text for change in self.changes[first : last[0] + 1])
+        return in_one_line("\n".join((*earlier_lines, *text.split("\n")[: last[1]])))
 
     def tell(self, k: int, change: search.Change) -> None:
         old = "\n".join(self.lines[change.first : change.last + 1]).rstrip("\r")
@@ -237,7 +239,7 @@ class _Explainer:
                 message.about = about._replace(word=ENDED.get(right, ""), line=line, fix=right)
             for block in self.open:
                 if block.first == k or is_brace:
-                    block.told = block.told or message
+                    block.explanation = block.explanation or message
         line_end = "\r\n" if "\r" in self.program else "\n"
         for count, end in enumerate(ends, 2):
             self.end((k, count), change, end.strip(), line_end + end)
@@ -260,7 +262,7 @@ class _Explainer:
             return []
         if _is_closed(before) and not all(map(_is_closed, was)):
             return []  # a separator is in brackets
-        matches = []
+        changes = []
         first, end = self.starts[self.changes[k].first], 0
         for n, (part, meant) in enumerate(zip(was, now, strict=True)):
             text, new = slips.written(part), slips.written(meant)
@@ -271,12 +273,12 @@ class _Explainer:
                 edit = trimmed(place.start, text, new)
                 if edit.span.start == place.end:
                     edit = Edit(place, new)  # an end that is missing comes behind all of it
-                matches.append(Change(place, edit, steps.get(n, []), part, meant))
+                changes.append(Change(place, edit, steps.get(n, []), part, meant))
                 if not steps.get(n) and text.isascii():
                     return []
-        has_all = all(it.after for it in matches)
+        has_all = all(it.after for it in changes)
         is_alone = not self.candidate.is_whole and has_all  # others are not read
-        return matches if len(matches) > 1 or (len(was) > 1 and is_alone) else []
+        return changes if len(changes) > 1 or (len(was) > 1 and is_alone) else []
 
     def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
         """Open and close blocks; return the first one that began in an earlier change."""
@@ -292,15 +294,15 @@ class _Explainer:
                 block = next(ended, self.open[-1])  # ends may be crossed
                 self.open.remove(block)
                 closed = closed or (block if block.first < k else None)
-                if block.told and block.told.last > (block.first, 1):
-                    block.told.last = max(block.told.last, (k, 1))
+                if block.explanation and block.explanation.last > (block.first, 1):
+                    block.explanation.last = max(block.explanation.last, (k, 1))
         return closed
 
     def added(
         self, block: _Block | None, edit: Edit, last: tuple[int, int], after: Sequence[Lexeme]
     ) -> Explanation | None:
         """Make an edit part of what is told of the beginning of its block, None where too long."""
-        explanation = block.told if block else None
+        explanation = block.explanation if block else None
         if block is None or explanation is None or explanation.code not in _SHOW_WHOLE:
             return None
         first = min(explanation.first, block.first)
@@ -339,8 +341,8 @@ class _Explainer:
             is_tone = all(lexicon_meaning(plain(word), "note") for word in words)
             return Slipped(slip, **{"tones" if is_tone else "digits": ", ".join(words)})
         if code in _DEDUPED:  # LIGHT_L and LIGHT_R
-            same = (it for it in self.changes[k].steps if it.code is code)
-            pairs = ((texts(it.before), texts(it.after)) for it in same)
+            steps = (it for it in self.changes[k].steps if it.code is code)
+            pairs = ((texts(it.before), texts(it.after)) for it in steps)
             names = [item for was, now in pairs for item in now if item not in was]
             if slips.right_of(slip) in names:
                 return Slipped(slip, right=", ".join(dict.fromkeys(names)))

@@ -35,7 +35,7 @@ def given_back(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
     calls: dict[str, list[Span]] = {}
     for name, k in _values(tokens, names):
         calls.setdefault(name, []).append(_call(tokens, k))
-    told: list[Diagnostic] = []
+    diagnostics: list[Diagnostic] = []
     edits: list[Edit] = []
     returned: set[str] = set()
     result = _RESULT if _RESULT not in names_in(text) else next(numbered_names(text, _RESULT))
@@ -45,15 +45,15 @@ def given_back(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
         values |= {"call": text[slice(*used[0])]} if used else {}
         edits.append(Edit(Span(word.start, value.start), f"{result} = "))
         if name not in returned:
-            told.append(Diagnostic(codes.NO_VALUE, word.span, values))
+            diagnostics.append(Diagnostic(codes.NO_VALUE, word.span, values))
         returned.add(name)
     for name, spans in calls.items():
         if name not in returned:
             place = Span(spans[0].start, spans[0].start + len(name))
             values = {"word": name, "called": name, "call": text[slice(*spans[0])]}
-            told.append(Diagnostic(codes.NO_VALUE, place, values))
+            diagnostics.append(Diagnostic(codes.NO_VALUE, place, values))
         edits += [Edit(span, result if name in returned else _filler(text, span)) for span in spans]
-    return told, edits
+    return diagnostics, edits
 
 
 def _values(tokens: Sequence[Token], names: set[str]) -> Iterator[tuple[str, int]]:

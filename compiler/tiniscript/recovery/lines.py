@@ -81,8 +81,8 @@ class Reading(NamedTuple):
         is_new_line: bool = False,
     ) -> Reading:  # fmt: skip
         steps = (*self.steps, Step(code, self.tokens, tokens))
-        sure, new = self.is_sure and is_sure, self.is_new_line or is_new_line
-        return Reading(self.cost + cost, tokens, steps, sure, new)
+        is_still_sure, has_new_line = self.is_sure and is_sure, self.is_new_line or is_new_line
+        return Reading(self.cost + cost, tokens, steps, is_still_sure, has_new_line)
 
     @property
     def text(self) -> tuple[str, ...]:
@@ -180,14 +180,16 @@ class _Search:
         readings = self.search(first, QUICK_STATES if is_quick else STATES, self.rewritten)
         has_words = any(token.kind in (WORD, NUMBER) for token in tokens)
         if not is_quick and not readings and has_words and len(tokens) < LONGEST_WITH_SLIPS:
-            found = self.search(first, SLIP_STATES, self.with_slips)
-            found = [
+            readings_found = self.search(first, SLIP_STATES, self.with_slips)
+            readings_found = [
                 reading
-                for reading in found
-                if reading.items and reading.cost < found[0].cost + SLIP_MARGIN
+                for reading in readings_found
+                if reading.items and reading.cost < readings_found[0].cost + SLIP_MARGIN
             ]
-            is_alone = len({reading.said for reading in found}) == 1
-            readings = [reading._replace(is_sure=reading.is_sure and is_alone) for reading in found]
+            is_alone = len({reading.said for reading in readings_found}) == 1
+            readings = [
+                reading._replace(is_sure=reading.is_sure and is_alone) for reading in readings_found
+            ]
         return readings
 
     def search(self, first: Reading, states: int, successors: _Successors) -> list[Reading]:

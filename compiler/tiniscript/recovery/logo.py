@@ -46,8 +46,10 @@ def turtle(source: Source, kit: Kit) -> list[Diagnostic]:
         while pieces:
             ends = range(min(len(pieces), _MOST), 0, -1)
             tried = ((end, [token for piece in pieces[:end] for token in piece]) for end in ends)
-            found = ((end, _diagnostic(tokens, source, names)) for end, tokens in tried)
-            end, diagnostic = next((it for it in found if it[1]), (1, None))
+            ends_and_diagnostics = (
+                (end, _diagnostic(tokens, source, names)) for end, tokens in tried
+            )
+            end, diagnostic = next((it for it in ends_and_diagnostics if it[1]), (1, None))
             diagnostics += [diagnostic] if diagnostic else []
             pieces = pieces[end:]
         start += len(line) + 1
@@ -163,8 +165,8 @@ class _Reader:
     def _meant(self, word: str) -> str:
         if word in WORDS:
             return word
-        said = lexicon_meaning(word, "turtle")
-        return said[0] if said and not self.names.is_name(word) else self.names.meant(word)
+        meanings = lexicon_meaning(word, "turtle")
+        return meanings[0] if meanings and not self.names.is_name(word) else self.names.meant(word)
 
     def _move(self, word: str, number: str) -> str:
         unit = UNIT_OF.get(word, "")

@@ -85,7 +85,7 @@ def lexemes(line: str) -> list[Lexeme]:
 
 @lru_cache(REMEMBERED)
 def _lexemes(line: str) -> tuple[Lexeme, ...]:
-    found, end = [], 0
+    result, end = [], 0
     for match in _TOKEN.finditer(line):
         text, kind = match[0], NUMBER if match[1] else WORD if match[2] else ODD
         if kind is WORD:
@@ -97,9 +97,9 @@ def _lexemes(line: str) -> tuple[Lexeme, ...]:
             kind = text = "-" if text in DASHES else text
         elif lexicon_concept(text[0]):
             kind, text = WORD, text[0]  # an arrow says a command
-        found.append(Lexeme(kind, text, match[0], line[end : match.start()]))
+        result.append(Lexeme(kind, text, match[0], line[end : match.start()]))
         end = match.end()
-    return tuple(found)
+    return tuple(result)
 
 
 def number_text(number: float) -> str:
@@ -239,12 +239,14 @@ class _OfLine(NamedTuple):
     rows: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets after its own
     pairs: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
-    begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
+    block_starts: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
     called: set[str]  # words that are an instruction alone
     compared: set[str]  # words beside a sign that compares them with a number
-    counted: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
-    left: int  # headers that lack an end
-    given: set[tuple[str, str]]  # units of what is no time, and the numbers that calls give: % 50
+    counted_starts: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
+    open_headers: int  # headers that lack an end
+    units_given: set[
+        tuple[str, str]
+    ]  # units of what is no time, and the numbers that calls give: % 50
 
 
 @lru_cache(REMEMBERED)
@@ -273,9 +275,9 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
                 if bare := _bare_values(line[at:]):
                     of_line.pairs.add((after.text, *bare))
                 end = closed(line, at)
-                given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
-                if all(item.isidentifier() and item not in WORDS for item in given):
-                    of_line.parameters[after.text] = given
+                names_given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
+                if all(item.isidentifier() and item not in WORDS for item in names_given):
+                    of_line.parameters[after.text] = names_given
     if len(head) > 2 and "DEF" in (head[0].text, lexicon_concept(head[0].text)):
         row, names = _name_in_words(head[1:], ";"), of_line.defs
     else:
@@ -366,22 +368,26 @@ class Names:
         of_lines = [_names_of(tuple(line)) for line in lines]
         self.in_brackets = {name for line in of_lines for name in line.in_brackets}
         self.rows = {row for line in of_lines for row in line.rows}
-        self.parameters = {k: its for line in of_lines for k, its in line.parameters.items()}
+        self.parameters = {
+            k: parameters_of_def
+            for line in of_lines
+            for k, parameters_of_def in line.parameters.items()
+        }
         for pair in {pair for line in of_lines for pair in line.pairs}:
             if self.in_brackets.issuperset(pair[1:]):  # `DEF LADO X`, and `F(X, 50)` below
                 self.parameters[pair[0]] = pair[1:]
                 self.rows.discard(pair)
-        self.begun = {word: block for line in of_lines for word, block in line.begun.items()}
-        if sum(line.left for line in of_lines) < 0:
-            self.begun |= {word: "LOOP" for line in of_lines for word in line.counted}
+        self.begun = {word: block for line in of_lines for word, block in line.block_starts.items()}
+        if sum(line.open_headers for line in of_lines) < 0:
+            self.begun |= {word: "LOOP" for line in of_lines for word in line.counted_starts}
         self.variables = {name for line in of_lines for name in line.variables}
         self.variables.update(chain.from_iterable(self.parameters.values()))
         self.defs = {name for line in of_lines for name in line.defs} - {
             row[0] for row in self.rows
         }
-        given = {pair for line in of_lines for pair in line.given}
-        units = [unit for unit, _ in given]
-        self.usual = {unit: text for unit, text in given if units.count(unit) == 1}
+        units_and_numbers = {pair for line in of_lines for pair in line.units_given}
+        units = [unit for unit, _ in units_and_numbers]
+        self.usual = {unit: text for unit, text in units_and_numbers if units.count(unit) == 1}
         self.called = frozenset(self.defs & {word for line in of_lines for word in line.called})
         counts = {name: len(self.parameters.get(name, ())) for name in self.defs}
         alone = {name for name, count in counts.items() if not count}
@@ -391,7 +397,7 @@ class Names:
         # What nobody knows, and is compared, is no reason not to read what is around it.
         compared = {name for line in of_lines for name in line.compared if name not in WORDS}
         meant = {name: self.meant(name, NEAR) for name in compared - values}
-        self.strange = {name for name, its in meant.items() if not its or its in CALLED}
+        self.strange = {name for name, concept in meant.items() if not concept or concept in CALLED}
         self.read_as = self.known._replace(values=frozenset(values | self.strange))
         words = (frozenset(item) for item in (self.defs, self.in_brackets, self.rows))
         self._content = (
@@ -426,8 +432,8 @@ class Names:
         end, _, block = word.partition("_")
         if lexicon_meaning(end, "end") and block in (*WORDS, *self.defs):
             return (Meaning(SOME_END, KNOWN),)
-        if said := self.sided(word) or self._lamp(word):
-            return (Meaning(said, KNOWN),)
+        if concept := self.sided(word) or self._lamp(word):
+            return (Meaning(concept, KNOWN),)
         result = meanings(word)
         return tuple(
             meaning for meaning in result if meaning.concept in WORDS or self.has(meaning.concept)
@@ -449,8 +455,8 @@ class Names:
 
     def on_side(self, side: str) -> str:
         """Return the one sensor of the robot on L or R, "" for none or several."""
-        found = [name for name in self.sensors if name.endswith(f"_{side}")]
-        return found[0] if len(found) == 1 and side in ("L", "R") else ""
+        sensors = [name for name in self.sensors if name.endswith(f"_{side}")]
+        return sensors[0] if len(sensors) == 1 and side in ("L", "R") else ""
 
     def meant(self, word: str, most: int = MISSPELT) -> str:
         """Return the word of the language that a word means, "" for none or a less likely one."""
@@ -533,7 +539,7 @@ class Names:
 
 def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
     """Return what a line says of orders that begin blocks, and how many headers lack an end."""
-    found: dict[str, str] = {}
+    block_of_word: dict[str, str] = {}
     counted: list[str] = []
     left = 0
     for k, (one, other) in enumerate(pairwise([made(";"), *line])):
@@ -541,13 +547,13 @@ def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], 
         block = ENDED.get(lexicon_concept("_".join(pair)) or "", "")
         word = _END.sub("", "_".join(pair), count=1)
         if block and lexicon_concept(word) in DONE:
-            found[word] = block
+            block_of_word[word] = block
         is_called = k + 1 < len(line) and line[k + 1].text == "("
         if is_called and lexicon_meaning(other.text, "count") and lexicon_concept(other.text):
             counted.append(other.text)
         left += (lexicon_concept(other.text) or other.text) in BLOCK_ENDS
         left -= bool(lexicon_meaning(other.text, "end") or other.text in ENDED)
-    return found, counted, left
+    return block_of_word, counted, left
 
 
 def joined(row: Iterable[str]) -> str:

@@ -53,11 +53,14 @@ def meant_in(
     told_of = [(each, _diagnostic(each, meant, diagnostics)) for each in message]
     is_part = is_sure or not meant.is_whole  # what is read of a part gives up nothing
     if is_part and difference(text, meant.text, recovery.kit).lost:
-        kept = [] if is_sure else keeps_all([own for _, own in told_of], source.text, recovery.kit)
-        told_of = [it for it, is_kept in zip(told_of, kept, strict=False) if is_kept]
-    others = [each for other in recovery.others for each in explained(sentence, other)]
+        is_kept_of = (
+            [] if is_sure else keeps_all([own for _, own in told_of], source.text, recovery.kit)
+        )
+        told_of = [it for it, is_kept in zip(told_of, is_kept_of, strict=False) if is_kept]
+    other_explanations = [each for other in recovery.others for each in explained(sentence, other)]
     return [
-        _with_rival(_with_carried_unit(own, source.text), each, others) for each, own in told_of
+        _with_rival(_with_carried_unit(own, source.text), each, other_explanations)
+        for each, own in told_of
     ]
 
 
@@ -87,10 +90,10 @@ def _with_carried_unit(diagnostic: Diagnostic, text: str) -> Diagnostic:
 
 
 def _with_rival(
-    diagnostic: Diagnostic, explanation: Explanation, others: Sequence[Explanation]
+    diagnostic: Diagnostic, explanation: Explanation, other_explanations: Sequence[Explanation]
 ) -> Diagnostic:
     """Return what is told with its `rival`, which costs about the same, where there is one."""
-    fixes = (item.fix for item in others if item.place == explanation.place)
+    fixes = (item.fix for item in other_explanations if item.place == explanation.place)
     other = next((fix for fix in fixes if fix and fix != explanation.fix), "")
     if not other:
         return diagnostic
@@ -141,8 +144,10 @@ def _in_words(explanation: Explanation) -> tuple[Code, dict[str, str]]:
         has_bracket = "(" in slips.before_it(slip) + slips.found_in(slip)
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
     values = explanation.values_as(code)
-    found, suggestion = values.get("found", "").upper(), values.get("right", "")
-    is_near = nearest(found, [suggestion]) or (suggestion in WAYS and is_slip(found, suggestion))
+    found_word, suggestion = values.get("found", "").upper(), values.get("right", "")
+    is_near = nearest(found_word, [suggestion]) or (
+        suggestion in WAYS and is_slip(found_word, suggestion)
+    )
     if code is codes.OTHER_LANGUAGE and is_near:
         code = codes.UNKNOWN_WORD
         values |= {"found": values["found"].upper(), "near": suggestion}
@@ -180,7 +185,7 @@ def _moved_lines_diagnostic(
 def _unit_word(unit: str) -> str:
     """Return the word for a unit behind the first value of a move, "" where none is."""
     text = lexicon_meaning(plain(unit), "unit")
-    return next((way for way, its in WAYS.items() if text and its.unit == text[0]), "")
+    return next((way for way, way_unit in WAYS.items() if text and way_unit.unit == text[0]), "")
 
 
 def _move_pattern(name: str, way: str) -> re.Pattern[str]:

@@ -76,14 +76,14 @@ def switched(source: Source) -> list[Diagnostic]:
             whole = Span(calls[k].span.start, calls[end - (not is_ended)].span.end)
             fix = ";".join(moves)
             word, name = calls[k].meant, calls[k].name
-            said = {"found": name, "right": word, "takes": WORDS[word].usage, "fix": fix}
+            values = {"found": name, "right": word, "takes": WORDS[word].usage, "fix": fix}
             code = codes.OTHER_LANGUAGE
             if plain(name) == word:
-                said = {"word": word, "wanted": "2", "found": "1", "fix": fix}
-                said["usage"] = WORDS[word].usage
+                values = {"word": word, "wanted": "2", "found": "1", "fix": fix}
+                values["usage"] = WORDS[word].usage
                 code = codes.ARGUMENT_COUNT
             repair = Repair((Edit(whole, fix),), False)
-            result.append(Diagnostic(code, whole, said, whole, repair))
+            result.append(Diagnostic(code, whole, values, whole, repair))
         k = max(k + 1, end)
     return result
 
@@ -124,10 +124,10 @@ def _switches(text: str) -> Iterator[_Switch]:
 
 def one_by_one(source: Source) -> list[tuple[Diagnostic, Edit]]:
     """Return what is told of motors that are set one by one, and how the rest is read."""
-    text, found = source.text, [*_motors(source.text)]
+    text, motor_orders = source.text, [*_motors(source.text)]
     result: list[tuple[Diagnostic, Edit]] = []
     passed: set[Span] = set()
-    for one, other in zip_longest(found, found[1:]):
+    for one, other in zip_longest(motor_orders, motor_orders[1:]):
         if one.span in passed:
             continue
         is_pair = other and one.side != other.side
@@ -136,10 +136,12 @@ def one_by_one(source: Source) -> list[tuple[Diagnostic, Edit]]:
             fix = f"M({powers['left']}, {powers['right']})"
             whole = Span(one.span.start, other.span.end)
             edit = Edit(whole, fix)
-            said = {"found": one.name, "right": "M", "takes": WORDS["M"].usage, "fix": fix}
+            call_values = {"found": one.name, "right": "M", "takes": WORDS["M"].usage, "fix": fix}
             repair = Repair((edit,), False)
             passed.add(other.span)
-            result.append((Diagnostic(codes.OTHER_LANGUAGE, whole, said, whole, repair), edit))
+            result.append(
+                (Diagnostic(codes.OTHER_LANGUAGE, whole, call_values, whole, repair), edit)
+            )
         else:
             values = {"found": one.name, **foreign_word_hints("MOTOR")}
             name = Span(one.span.start, one.span.start + len(one.name))
@@ -172,5 +174,5 @@ def _side_of(name: str) -> str:
 
 
 def _side(part: str) -> str:
-    said = (side for side in _SIDES.values() if lexicon_meaning(part, side))
-    return next(said, _SIDES.get(lexicon_concept(part) or part, ""))
+    sides_meant = (side for side in _SIDES.values() if lexicon_meaning(part, side))
+    return next(sides_meant, _SIDES.get(lexicon_concept(part) or part, ""))

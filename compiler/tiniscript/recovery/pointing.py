@@ -46,8 +46,8 @@ def _nearest(named: str, span: Span, source: Source) -> Span | None:
     words = r"\s*".join(map(re.escape, _unaccented(named).split()))
     head = r"(?<!\w)" if named[0].isdigit() else r"(?<![^\W\d])" * named[0].isalpha()  # V of 2V
     tail = r"(?!\w)" * named[-1].isalnum()
-    matches = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
-    places = (Span(begin + match.start(), begin + match.end()) for match in matches)
+    word_matches = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
+    places = (Span(begin + match.start(), begin + match.end()) for match in word_matches)
     return min(places, key=lambda it: _distance(it, span), default=None)
 
 

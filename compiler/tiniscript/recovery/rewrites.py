@@ -89,25 +89,25 @@ def cells(table: str) -> Iterator[list[str]]:
 
 @cache
 def of_tokens() -> tuple[Row, ...]:
-    matches = []
+    token_rows = []
     for pattern, becomes, cost, code, how, example in cells(rows.TOKENS):
         parts = tuple(_expanded(becomes, rows.PARTS).split())
         is_offered = "offered" in how
         may_lose = is_offered or bool(_OF_NUMBERS.search(f"{pattern} {becomes}"))
         row = Row(compiled(pattern, rows.PARTS), parts, float(cost), CODES[code], "first" in how,
                   is_offered, may_lose, _texts(example))  # fmt: skip
-        matches.append(row)
-    return tuple(matches)
+        token_rows.append(row)
+    return tuple(token_rows)
 
 
 @cache
-def _places(is_first: bool) -> Places:
+def _index_of(is_first: bool) -> Places:
     return places({k: row.pattern for k, row in enumerate(of_tokens()) if row.is_first is is_first})
 
 
 def tried(line: Encoded, is_first: bool) -> Iterator[Row]:
     """Give the rows that may match a line, in the order of the table."""
-    return (of_tokens()[k] for k in line.tried(_places(is_first)))
+    return (of_tokens()[k] for k in line.tried(_index_of(is_first)))
 
 
 @cache

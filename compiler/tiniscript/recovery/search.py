@@ -144,9 +144,9 @@ class Recovery:
             self.read_line(line)
             yield line.reading.items is not None and line.reading.is_sure
         rows_of = ([lexemes(text.body), text.reading.tokens] for text in self.lines)
-        told, names = Names([*chain(*rows_of)], self.kit), self.names
-        if new := (told.variables | told.defs) - names.variables - names.defs:
-            self.names = told
+        new_names, names = Names([*chain(*rows_of)], self.kit), self.names
+        if new := (new_names.variables | new_names.defs) - names.variables - names.defs:
+            self.names = new_names
             for line in self.lines:
                 if line.reading.items is None and new & {*texts(lexemes(line.body))}:
                     self.read_line(line)
@@ -275,13 +275,13 @@ class Recovery:
         """Return programs that may have been meant as well: each costs about the same."""
         if not (self.whole and self.whole.is_whole) or self.whole.is_applied:
             return ()
-        found = {self.whole.text: self.whole}
+        candidates = {self.whole.text: self.whole}
         for cost, k, rival in self.rivals()[:ALTERNATIVES]:
             readings = [rival if it is self.lines[k] else it.reading for it in self.lines]
             other = self.candidate(readings, True) if cost < MARGIN else None
             if other and other.is_whole:
-                found.setdefault(other.text, other)
-        return [*found.values()][1:]
+                candidates.setdefault(other.text, other)
+        return [*candidates.values()][1:]
 
     def candidate(self, readings: list[Reading], has_blocks: bool) -> Candidate | None:
         """Return the program of some readings, None where it is no better than the text."""
@@ -305,12 +305,12 @@ class Recovery:
 
     def rivals(self) -> list[tuple[float, int, Reading]]:
         """Return readings that are not the cheapest ones: how much more they cost, and the line."""
-        matches = [
+        costlier_readings = [
             (rival.cost - text.reading.cost, k, rival)
             for k, text in enumerate(self.lines)
             for rival in text.rivals
         ]
-        return sorted(matches, key=lambda it: it[0])
+        return sorted(costlier_readings, key=lambda it: it[0])
 
     def choices(self) -> Iterator[tuple[list[Reading], bool]]:
         """Give what each line may be read as; at last without the blocks of a program."""
@@ -318,16 +318,23 @@ class Recovery:
         yield cheapest, True
         for _, k, rival in self.rivals()[:ALTERNATIVES]:
             yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
-        sure = [reading if reading.is_sure else _UNREAD for reading in cheapest]
+        sure_readings = [reading if reading.is_sure else _UNREAD for reading in cheapest]
         unread = (
-            one for one, reading in zip(self.lines, sure, strict=True) if reading.items is None
+            one
+            for one, reading in zip(self.lines, sure_readings, strict=True)
+            if reading.items is None
         )
         if not any(map(self.may_be_of_block, unread)):  # they are instructions in their blocks
-            yield sure, True
-        yield sure, False
-        has_blocks = [any(it.kind != "do" for it in reading.items or ()) for reading in sure]
-        alone = [_UNREAD if has else reading for reading, has in zip(sure, has_blocks, strict=True)]
-        if alone != sure:
+            yield sure_readings, True
+        yield sure_readings, False
+        has_blocks = [
+            any(it.kind != "do" for it in reading.items or ()) for reading in sure_readings
+        ]
+        alone = [
+            _UNREAD if has_block else reading
+            for reading, has_block in zip(sure_readings, has_blocks, strict=True)
+        ]
+        if alone != sure_readings:
             yield alone, False
 
     def may_be_of_block(self, line: _Text) -> bool:

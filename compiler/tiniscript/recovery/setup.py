@@ -79,9 +79,9 @@ def setup(text: str) -> Diagnostic | None:
         close = start + match.end() + inside.end()
         edits.append(Edit(Span(close, close + 1), ""))
         fix += text[span.end : close]
-    said = {"found": head_meant, "letter" if sign.isalpha() else "sign": sign, "fix": fix}
+    values = {"found": head_meant, "letter" if sign.isalpha() else "sign": sign, "fix": fix}
     is_sure = not any(item.isdecimal() for item in head + sign)
-    return Diagnostic(codes.SETUP_NEEDS_BAR, span, said, None, Repair(tuple(edits), is_sure))
+    return Diagnostic(codes.SETUP_NEEDS_BAR, span, values, None, Repair(tuple(edits), is_sure))
 
 
 def _framed(source: Source) -> Diagnostic | None:
@@ -137,11 +137,11 @@ def _spoken(source: Source, kit: Kit) -> Diagnostic | None:
         begun = "".join((it.space or "") + (it.source or "") for it in words[:count]).strip()
         values = {"button": "SB|"} if head == "SB" else {"begun": begun}
         words = words[count:]
-    said = orders(words, names) if head else []
-    if not said or (head == "SB" and said[0].word in ("S", "STOP")):
+    orders_said = orders(words, names) if head else []
+    if not orders_said or (head == "SB" and orders_said[0].word in ("S", "STOP")):
         return None
-    fix = f"{head}|{written(said)}"
-    sample = made_up(said)
+    fix = f"{head}|{written(orders_said)}"
+    sample = made_up(orders_said)
     values |= {"whole": fix, "example": sample} if sample else {"fix": fix}
     place = Span(row.start(), row.start() + len(body))
     start = place.start + body.index(begun)
@@ -158,11 +158,11 @@ def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
     if names.meant(words[0].text) == "START":
         return "SI", 1
     first = words[:_LONGEST_START]
-    said = [k for k, it in enumerate(first) if lexicon_concept(it.text) == "BUTTON"]
+    button_positions = [k for k, it in enumerate(first) if lexicon_concept(it.text) == "BUTTON"]
     pressed = [k for k, it in enumerate(first) if lexicon_meaning(it.text, "pressed")]
-    if not said or not pressed or "BUTTON" in names.sensors:
+    if not button_positions or not pressed or "BUTTON" in names.sensors:
         return "", 0
-    end = max(said[0], pressed[0]) + 1
+    end = max(button_positions[0], pressed[0]) + 1
     does = {names.meant(it.text) for it in first[:end]} & {*CALLED, "UNTIL", "S", "STOP"}
     return ("SB", end) if does in (set(), {"W"}, {"W", "UNTIL"}) else ("", 0)
 

@@ -31,12 +31,12 @@ def shares(source: Source, kit: Kit) -> tuple[list[Diagnostic], list[Edit]]:
     """
     bodies = [without_note(line)[0] for line in source.text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
-    found: list[tuple[Diagnostic, Edit]] = []
+    findings: list[tuple[Diagnostic, Edit]] = []
     start = 0
     for body, line in zip(bodies, source.text.split("\n"), strict=True):
-        found += _shares_of(body, start, names)
+        findings += _shares_of(body, start, names)
         start += len(line) + 1
-    return [each for each, _ in found], [edit for _, edit in found]
+    return [each for each, _ in findings], [edit for _, edit in findings]
 
 
 def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic, Edit]]:
@@ -85,6 +85,6 @@ def _compared(tokens: Sequence[Lexeme], k: int) -> int:
 
 def _sensor(word: str, names: Names) -> Device | None:
     """Return the sensor that a word names, or one of those that it may mean."""
-    found = [word, names.meant(word, NEAR)]
-    found += sensors_of(word, names) if lexicon_meaning(word, "stem", "ahead") else []
-    return next((names.asked[name] for name in found if name in names.asked), None)
+    candidates = [word, names.meant(word, NEAR)]
+    candidates += sensors_of(word, names) if lexicon_meaning(word, "stem", "ahead") else []
+    return next((names.asked[name] for name in candidates if name in names.asked), None)

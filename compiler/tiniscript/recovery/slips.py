@@ -112,19 +112,19 @@ def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
             [it._replace(text="WHEN") if it.text == "IF" else it for it in line]
             for line in (old, new)
         )
-    told, fix = without_setup(change.before), without_setup(change.after)
+    old_lexemes, new_lexemes = without_setup(change.before), without_setup(change.after)
     is_begun = setup_of(change.after) and not setup_of(change.before)
     if is_begun and code in (codes.OTHER_SIGN, codes.QUOTE):
-        fix = instructions(change.after)  # the bar was a word, or in quotation marks, too
-    head, tail = alike([*map(texts, told)], [*map(texts, fix)])
+        new_lexemes = instructions(change.after)  # the bar was a word, or in quotation marks, too
+    head, tail = alike([*map(texts, old_lexemes)], [*map(texts, new_lexemes)])
     was, now = (
         [lexeme for part in parts[head : len(parts) - tail] for lexeme in part]
-        for parts in (told, fix)
+        for parts in (old_lexemes, new_lexemes)
     )
     start, found, right = first_difference(old, new)
     has_end = bool(head) and any(lexeme.text in ENDED for lexeme in now)
-    parts = fix[0 if has_end else head : len(fix) - tail]
-    until = len(fix[head]) if len(told) < len(fix) else None
+    parts = new_lexemes[0 if has_end else head : len(new_lexemes) - tail]
+    until = len(new_lexemes[head]) if len(old_lexemes) < len(new_lexemes) else None
     slip = Slip(code, old, new, start, found, right, was, now, change.after, parts, until)
     return _EXACTLY[code](slip) if code in _EXACTLY else slip
 
@@ -419,10 +419,12 @@ def _letter(slip: Slip) -> str:
 
 def _usage_if_longer(slip: Slip) -> str:
     """Return the usage, where what is offered has more numbers than were written."""
-    given, needed = (sum(lexeme.kind is NUMBER for lexeme in it) for it in (slip.was, slip.now))
+    number_count, needed_count = (
+        sum(lexeme.kind is NUMBER for lexeme in it) for it in (slip.was, slip.now)
+    )
     word = WORDS.get(right_of(slip))  # `avanza 2 s 3 veces`: F
     usage = word.usage if word and word.arguments else _usage(slip)
-    return usage if needed > given else ""
+    return usage if needed_count > number_count else ""
 
 
 _VALUES: dict[str, Callable[[Slip], str]] = {

@@ -177,11 +177,11 @@ class _Reader:
             "100",
         ):
             unit, k = "%", k + 2
-        elif its := lexicon_meaning(
+        elif unit_meaning := lexicon_meaning(
             self.text(of := k + bool(lexicon_meaning(self.text(k), "of"))), "unit"
         ):
             k = of  # `un cuarto de vuelta`
-            unit, thousandths = its[0], float(its[1])
+            unit, thousandths = unit_meaning[0], float(unit_meaning[1])
             is_stop = self.words[k].source == "S" and bool(self.words[k].space)
             if is_stop and self.values and k + 1 == len(self.words):
                 return None  # `R 1 50 S`: an order of its own
@@ -330,10 +330,10 @@ class _Reader:
             return None  # of which motor?
         texts: list[str] = []
         samples: list[str] = []
-        for value, its in zip(slots, word.arguments, strict=True):
-            own = value.text if value else self._own_value(its)
-            samples += [] if own else [f"{its.sample} {its.unit}"]
-            texts.append(own or its.sample)
+        for value, argument in zip(slots, word.arguments, strict=True):
+            own = value.text if value else self._own_value(argument)
+            samples += [] if own else [f"{argument.sample} {argument.unit}"]
+            texts.append(own or argument.sample)
         call = f"{word.text}({','.join(texts)})".replace(",", f" {self.way},", 1)
         tokens = [made(lexeme.text) for lexeme in lexemes(call)]
         return Filled(tokens, self.cost, self.is_sure, self.times, tuple(samples))
@@ -392,7 +392,11 @@ class _Reader:
                     return None
                 slots[0], order[k], self.way = value, 0, way
             elif unit is not None:
-                fits = (i for i, its in enumerate(arguments) if unit in (its.unit, its.name))
+                fits = (
+                    i
+                    for i, expected in enumerate(arguments)
+                    if unit in (expected.unit, expected.name)
+                )
                 place = next((i for i in fits if slots[i] is None), None)
                 if place is None:
                     return None

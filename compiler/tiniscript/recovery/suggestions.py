@@ -101,14 +101,14 @@ class Suggestion(NamedTuple):
 
 @cache
 def rows() -> tuple[Row, ...]:
-    matches = []
+    compiled_rows = []
     for pattern, code, values, example in rewrites.cells(suggestion_rows.SUGGESTIONS):
         named = dict(item.split("=", 1) for item in values.split("; ") if item)
         wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
         compiled = rewrites.compiled(pattern, suggestion_rows.PARTS)
         number, *how = code.split()
-        matches.append(Row(compiled, CODES.get(number), how, named, (wrong, right)))
-    return tuple(matches)
+        compiled_rows.append(Row(compiled, CODES.get(number), how, named, (wrong, right)))
+    return tuple(compiled_rows)
 
 
 @cache
@@ -125,17 +125,21 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
     start = depth = 0
     left = MOST
     for body, line in zip(bodies, text.split("\n"), strict=True):
-        told: list[Suggestion] = []
+        suggestions_of_line: list[Suggestion] = []
         words = lexemes(body)
         is_right = lines.is_right(words, names)
         if "~" not in body and not is_right:
             for part in islice(_parts(body, start, Around(text, names, depth, above)), left):
                 left -= 1
                 each = _suggestion_for(part)
-                if each and not (told and overlap([told[-1].passed], [each.passed])):
-                    told.append(each)
-        suggestions += told
-        if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
+                if each and not (
+                    suggestions_of_line and overlap([suggestions_of_line[-1].passed], [each.passed])
+                ):
+                    suggestions_of_line.append(each)
+        suggestions += suggestions_of_line
+        if body.strip() and not any(
+            each.diagnostic.code is codes.SAME_AGAIN for each in suggestions_of_line
+        ):
             bare = _COUNTED.sub("", body)  # `2. S`
             is_right = is_right or (bare != body and lines.is_right(lexemes(bare), names))
             above.append(_as_orders(bare.partition("|")[2] or bare, is_right))
@@ -165,8 +169,8 @@ def _parts(body: str, start: int, around: Around) -> Iterator[_Words]:
         while 0 < len(tokens) <= lines.LONGEST:
             size = whole(tokens, names)
             rest = tokens[size:]
-            if not size and (found := _spoken_call(tokens, names)):
-                yield _Words(around, at, tokens, found[0], before, found[1])
+            if not size and (spoken_call := _spoken_call(tokens, names)):
+                yield _Words(around, at, tokens, spoken_call[0], before, spoken_call[1])
                 break
             if not size or not rest:
                 yield _Words(around, at, tokens, 0, before)
@@ -216,9 +220,9 @@ class _Words(Trailing):
 
     def __init__(
         self, around: Around, start: int, tokens: Sequence[Lexeme], size: int,
-        before: Sequence[str | None], said: str = "",
+        before: Sequence[str | None], spoken: str = "",
     ) -> None:  # fmt: skip
-        super().__init__(around, start, tokens, size, before, said)
+        super().__init__(around, start, tokens, size, before, spoken)
         self.gaps = _GAPS
 
     def values(self) -> dict[str, str]:

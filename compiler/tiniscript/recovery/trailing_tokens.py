@@ -89,11 +89,11 @@ class Trailing:
 
     def __init__(
         self, around: Around, start: int, tokens: Sequence[Lexeme], size: int,
-        before: Sequence[str | None], said: str = "",
+        before: Sequence[str | None], spoken: str = "",
     ) -> None:  # fmt: skip
         text, self.names, depth, above = around
-        self.is_said = bool(said)
-        self.tokens = lexemes(said) if said else tokens[:size]
+        self.is_said = bool(spoken)
+        self.tokens = lexemes(spoken) if spoken else tokens[:size]
         self.row = tokens[size:]
         self.before, self.is_more = [*above, *before], bool(before)
         self.is_later = self.before[-1:] not in ([], [None])
@@ -105,7 +105,7 @@ class Trailing:
         called = Span(spans[0].start, spans[size - 1].end if size else spans[0].start)
         self.place = Span(called.start, ends[-1])
         self.behind = Span(spans[size].start, ends[-1])
-        self.call = said or text[slice(*called)]
+        self.call = spoken or text[slice(*called)]
         self.words = text[slice(*self.behind)]
         self.spans = [called, *spans[size:]]
         self.text = text

@@ -84,7 +84,7 @@ _MANY_BELOW = 6  # instructions that an example takes into a block
 _ENDS = re.compile(rf"\b{words_of('end')}")
 _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
 _TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
-_WORD = re.compile(r"\w")
+_WORD_CHARACTER = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
 _CALL = re.compile(r"([^\W\d]\w*)\s*\((?=\W{0,40}\w).*\)", re.DOTALL)
 _LONG_HEAD = 100  # characters of a DEF before the name of a value
@@ -115,19 +115,23 @@ def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> l
         "LOOP"
     ]
     diagnostics = text.with_name(diagnostics)
-    told: list[Diagnostic] = []
+    diagnostics_told: list[Diagnostic] = []
     for item in diagnostics[:_MANY]:
-        told.append((_usage_diagnostic(Usage(text, item)) if item.repair is None else None) or item)
-    parts = [it for it in told if it.values.get("part")]
-    if parts and any(item.code is codes.TASK_NOT_TOP for item in told):  # rather an IF
+        diagnostics_told.append(
+            (_usage_diagnostic(Usage(text, item)) if item.repair is None else None) or item
+        )
+    parts = [it for it in diagnostics_told if it.values.get("part")]
+    if parts and any(item.code is codes.TASK_NOT_TOP for item in diagnostics_told):  # rather an IF
         part = {"part": parts[0].values["part"]}
-        told = [it._replace(values={**it.values, **part}) for it in told if it not in parts]
-    if any("usage" in item.values for item in told if item.code is codes.OUT_OF_RANGE):
-        told += text.turned()
+        diagnostics_told = [
+            it._replace(values={**it.values, **part}) for it in diagnostics_told if it not in parts
+        ]
+    if any("usage" in item.values for item in diagnostics_told if item.code is codes.OUT_OF_RANGE):
+        diagnostics_told += text.turned()
     return [
         item
-        for item in (*told, *diagnostics[_MANY:])
-        if not (item.code in _OF_NAMES and text.is_in_wrong_def(item, told))
+        for item in (*diagnostics_told, *diagnostics[_MANY:])
+        if not (item.code in _OF_NAMES and text.is_in_wrong_def(item, diagnostics_told))
     ]
 
 
@@ -143,9 +147,9 @@ class _Text:
         """Whether any block has an end."""
         return _ENDS.search(plain(self.source.text)) is not None
 
-    def is_in_wrong_def(self, diagnostic: Diagnostic, told: Sequence[Diagnostic]) -> bool:
+    def is_in_wrong_def(self, diagnostic: Diagnostic, diagnostics: Sequence[Diagnostic]) -> bool:
         """Whether a name is in the body of a DEF that names no values in its brackets."""
-        starts = (it.span.end for it in told if it.code is codes.PARAMETER_NEEDS_NAME)
+        starts = (it.span.end for it in diagnostics if it.code is codes.PARAMETER_NEEDS_NAME)
         start = max((it for it in starts if it <= diagnostic.span.start), default=-1)
         return start >= 0 and not _DEF_END.search(self.source.text, start, diagnostic.span.start)
 
@@ -332,8 +336,10 @@ class Usage:
         numbers = [token.text for token in self.row if token.kind is NUMBER]
         if len(numbers) == 1 and "(" not in self.signs and (own := usage_with(word, numbers[0])):
             return own
-        if word == "SHOW" and (given := [it for it in self.words if it in self.names.variables]):
-            return f"{word}({given[0]})"
+        if word == "SHOW" and (
+            variables_used := [it for it in self.words if it in self.names.variables]
+        ):
+            return f"{word}({variables_used[0]})"
         is_ended = word in BLOCK_ENDS and self.around.is_ended
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
@@ -372,7 +378,9 @@ class Usage:
         """The words of no program that mean an order, and which."""
         meant = {word: self.names.meant(word) for word in self.words if word not in WORDS}
         return {
-            it: its for it, its in meant.items() if its in WORDS and WORDS[its].role.is_instruction
+            it: order_word
+            for it, order_word in meant.items()
+            if order_word in WORDS and WORDS[order_word].role.is_instruction
         }
 
     @property
@@ -421,8 +429,10 @@ class Usage:
         piece = plain(self.source[self.piece])
         match = _OWN.fullmatch(piece)
         name, is_call, number = match.groups() if match else ("", "", "")
-        given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
-        if not name or number or len({*given}) > 1:  # seconds, or how often: who writes it knows
+        numbers_given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
+        if (
+            not name or number or len({*numbers_given}) > 1
+        ):  # seconds, or how often: who writes it knows
             call = _CALL.fullmatch(piece)
             is_other = call is None or lexicon_meaning(call[1], *_NO_CALLS)
             is_often = bool(number and self.around.lacks_loop)
@@ -514,10 +524,10 @@ class Usage:
         if not of or any(word.arguments[k].unit != POWER.unit for k in of):
             return {}
         number = as_text(POWER.high) if end == "MAX" else str(_SLOW)
-        given = ", ".join(number if k in of else value for k, value in enumerate(values))
+        values_text = ", ".join(number if k in of else value for k, value in enumerate(values))
         low = as_text(word.arguments[of[0]].low)
-        said = {"low": low, "high": as_text(word.arguments[of[0]].high)}
-        return said | {"greatest" if end == "MAX" else "slow": f"{word.text}({given})"}
+        values_said = {"low": low, "high": as_text(word.arguments[of[0]].high)}
+        return values_said | {"greatest" if end == "MAX" else "slow": f"{word.text}({values_text})"}
 
     def reading(self, word: str) -> str:
         """The sensor on the side of an L or R that stands for a value, and is no name."""
@@ -561,7 +571,11 @@ class Usage:
         rows = self.text.splitlines()
         k = self.source.position(self.found.span.start)[0] - 1
         behind = without_note(self.behind_it[: len(rows[k])])[0]
-        rest = [item.strip() for item in behind.split("\n")[0].split(";") if _WORD.search(item)]
+        rest = [
+            item.strip()
+            for item in behind.split("\n")[0].split(";")
+            if _WORD_CHARACTER.search(item)
+        ]
         below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
             begun = self.source[Span(self.found.span.start, self.piece.end)]
@@ -700,9 +714,9 @@ def _is_over(token: Lexeme) -> bool:
 def _row(text: str) -> list[str]:
     """Return the instructions of a text, nothing where they are many, or a block is among them."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
-    matches = [item.strip() for row in rows for item in row if item.strip()]
-    is_long = len(matches) > _MANY_BELOW or any(map(_IS_BLOCK.match, matches))
-    return [] if is_long else matches
+    instructions = [item.strip() for row in rows for item in row if item.strip()]
+    is_long = len(instructions) > _MANY_BELOW or any(map(_IS_BLOCK.match, instructions))
+    return [] if is_long else instructions
 
 
 def _before_blocks(text: str, name: str) -> list[str]:
@@ -762,7 +776,12 @@ def _spoken_orders(gaps: Gaps, is_sided: bool) -> str:
 def _other_orders(gaps: Gaps) -> set[str]:
     """Orders beside a turn, which it alone would lose."""
     text = _usage_at(gaps).ordered.items()
-    return {its for word, its in text if not lexicon_meaning(word, "right")} - {"L", "R", "B", "S"}
+    return {order for word, order in text if not lexicon_meaning(word, "right")} - {
+        "L",
+        "R",
+        "B",
+        "S",
+    }
 
 
 def _forever_word(gaps: Gaps) -> str:
@@ -780,10 +799,10 @@ def _foreign_word(gaps: Gaps) -> str:
 
 def _concept(gaps: Gaps) -> str:
     """The word of the language that it means."""
-    found, word = _usage_at(gaps), _foreign_word(gaps)
-    concept = found.names.meant(word)
+    usage, word = _usage_at(gaps), _foreign_word(gaps)
+    concept = usage.names.meant(word)
     is_order = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
-    is_among = concept == "S" and {*found.ordered.values()} != {"S"}  # `ve para adelante`
+    is_among = concept == "S" and {*usage.ordered.values()} != {"S"}  # `ve para adelante`
     return concept if is_order and concept != word and not is_among else ""
 
 
@@ -1092,9 +1111,9 @@ def _lamp_set(gaps: Gaps) -> str:
 
 def _leading_filler(gaps: Gaps) -> str:
     """A word that says nothing, or the button, and begins an instruction."""
-    found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
-    is_said = lexicon_meaning(right, "filler") or found.is_button(right)
-    return right if found.is_first and is_said else ""
+    usage, right = _usage_at(gaps), _usage_at(gaps).letters[0]
+    is_said = lexicon_meaning(right, "filler") or usage.is_button(right)
+    return right if usage.is_first and is_said else ""
 
 
 def _may_be(argument: Argument, number: float) -> bool:
@@ -1112,13 +1131,16 @@ def _taking(gaps: Gaps) -> list[str]:
     return [
         f"{word.text}({', '.join(values)})"
         for word in known
-        if all(_may_be(its, float(it)) for its, it in zip(word.arguments, values, strict=True))
+        if all(
+            _may_be(argument, float(it))
+            for argument, it in zip(word.arguments, values, strict=True)
+        )
     ]
 
 
 def _in_capitals(gaps: Gaps) -> str:
-    found, right = _usage_at(gaps), _usage_at(gaps).letters[0]
-    return right if found.source[found.found.span].isupper() else right.capitalize()
+    usage, right = _usage_at(gaps), _usage_at(gaps).letters[0]
+    return right if usage.source[usage.found.span].isupper() else right.capitalize()
 
 
 def _amount_place(usage: Usage) -> Span:

@@ -75,8 +75,8 @@ def sensors_of(word: str, names: Names) -> list[str]:
 
 
 def _mentioned_words(texts: Sequence[str], names: Names) -> set[str]:
-    said = [text for text in texts if not names.is_name(text)]
-    return {kind for kind in _KINDS for text in said if lexicon_meaning(text, kind)}
+    other_texts = [text for text in texts if not names.is_name(text)]
+    return {kind for kind in _KINDS for text in other_texts if lexicon_meaning(text, kind)}
 
 
 def _joining_word(texts: Sequence[str], names: Names) -> str:
@@ -140,14 +140,16 @@ def _in_centimetres(number: str, unit: Sequence[str]) -> str:
     return f"{float(number) * int(unit[1]) / ONE:g}" if unit else number
 
 
-def _subjects(own: Sequence[str], texts: Sequence[str], said: set[str], names: Names) -> list[str]:
+def _subjects(
+    own: Sequence[str], texts: Sequence[str], kinds_said: set[str], names: Names
+) -> list[str]:
     """Return the sensors that are asked, or the variable."""
     named = [text for text in own if text in names.asked]
     named += [meant for text in texts if (meant := names.meant(text, NEAR)) in names.asked]
     result = named[:1] or list(own[:1])
-    if not result and "light" in said and "ahead" not in said:
+    if not result and "light" in kinds_said and "ahead" not in kinds_said:
         result = _lights(names)[:2]
-        turned = [f"LIGHT_{way[0].upper()}" for way in ("left", "right") if way in said]
+        turned = [f"LIGHT_{way[0].upper()}" for way in ("left", "right") if way in kinds_said]
         result = [name for name in turned if name in result and len(turned) == 1] or result
     return result or [*(name for name in names.asked if name == "DISTANCE"), *names.asked, "X"][:1]
 
@@ -156,9 +158,9 @@ def _lights(names: Names) -> list[str]:
     return sorted(name for name in names.asked if name.partition("_")[0] in ("LIGHT", "LINE"))
 
 
-def _sign(name: str, said: set[str]) -> str:
-    is_below = "little" in said or (name == "DISTANCE" and "much" not in said)
-    return "<" if is_below != bool(said & {"no", "without", "none"}) else ">"
+def _sign(name: str, kinds_said: set[str]) -> str:
+    is_below = "little" in kinds_said or (name == "DISTANCE" and "much" not in kinds_said)
+    return "<" if is_below != bool(kinds_said & {"no", "without", "none"}) else ">"
 
 
 def _example(device: Device | None, name: str) -> int:

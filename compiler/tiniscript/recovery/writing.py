@@ -95,16 +95,18 @@ def with_signs(line: str) -> str:
     text = plain(line)
     if len(text) != len(line):
         return line
-    found = [*_SPOKEN.finditer(text)]
-    said = [_meaning(match[0], "sign") for match in found]
-    is_bare = "bracket" in said
-    said = _with_closed(said)
-    is_begun = said[:1] == ["bar"] and text[: found[0].start()].strip() in ("SI", "SB")
-    names = " ".join(said).split()
+    sign_matches = [*_SPOKEN.finditer(text)]
+    sign_names = [_meaning(match[0], "sign") for match in sign_matches]
+    is_bare = "bracket" in sign_names
+    sign_names = _with_closed(sign_names)
+    is_begun = sign_names[:1] == ["bar"] and text[: sign_matches[0].start()].strip() in ("SI", "SB")
+    names = " ".join(sign_names).split()
     opened, closed = names.count("open"), names.count("close")
     if not closed <= opened <= closed + is_bare or not (opened or is_begun):
         return line
-    for match, names in zip(found[::-1], [name.split() for name in said[::-1]], strict=True):
+    for match, names in zip(
+        sign_matches[::-1], [name.split() for name in sign_names[::-1]], strict=True
+    ):
         before, after = line[: match.start()].rstrip(), line[match.end() :].lstrip()
         sign = "".join(SPOKEN[name] for name in names)
         line = f"{before}{sign}{' ' * (sign[-1] in ',;' and bool(after))}{after}"
@@ -134,16 +136,16 @@ def spoken_signs(text: str) -> list[str]:
     return [*dict.fromkeys(body[slice(*it.span())].lower() for it in _SPOKEN.finditer(plain(body)))]
 
 
-def _with_closed(said: Sequence[str]) -> list[str]:
+def _with_closed(sign_names: Sequence[str]) -> list[str]:
     """Return signs in which a bracket that nobody says opens or closes does so in turn.
 
     One that is open at the end of its instruction is closed there.
     """
     result: list[str] = []
     is_open = False
-    for name in said:
+    for name in sign_names:
         name = ("close" if is_open else "open") if name == "bracket" else name
-        is_left = is_open and name == "semicolon" and "bracket" in said
+        is_left = is_open and name == "semicolon" and "bracket" in sign_names
         result.append("close semicolon" if is_left else name)
         is_open = name == "open" or (is_open and name not in ("close", "semicolon"))
     return result

@@ -81,16 +81,16 @@ def text_of(path: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
     return decode_profile(result, path, refused)
 
 
-def decode_profile(found: bytes, name: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
+def decode_profile(data: bytes, name: str, refused: type[ProfileRefused] = ProfileRefused) -> str:
     """Return the text of a file's bytes, as `text_of` does. Raises `refused`."""
     from tiniscript.robots.refusals import printable_value
 
     values = {"file": printable_value(name)}
-    if len(found) > FILE_BYTES:
+    if len(data) > FILE_BYTES:
         limit = f"{FILE_BYTES // 1024} KB"
         raise refused(("file_too_large", {**values, "limit": limit}))
     try:
-        return found.decode("utf-8-sig")
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        line = found.count(b"\n", 0, error.start) + 1
+        line = data.count(b"\n", 0, error.start) + 1
         raise refused(("file_not_utf8", {**values, "line": str(line)})) from None

@@ -238,7 +238,7 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
         table.has(AT_STOP)  # counted as known: one complaint is enough
         table.complain("at_stop_of_no_servo", AT_STOP)
     settings = {setting.key: _read_setting(table, setting) for setting in driver.settings}
-    taken = {}
+    pin_of_key = {}
     for wanted in driver.pins:
         key, need, is_optional, fixed, _ = wanted
         if fixed is not None:
@@ -249,9 +249,9 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
             need = "pull_up" if has_pull_up else need
             pin = pins.take(table, key, need, is_optional, is_motor=used_by == "motors")
         if pin is not None:
-            taken[key] = pin
+            pin_of_key[key] = pin
     table.finish()
-    return Wiring(name, taken, settings)
+    return Wiring(name, pin_of_key, settings)
 
 
 def _read_setting(table: Table, setting: Setting) -> int:

@@ -41,7 +41,7 @@ class Chip(NamedTuple):
     counting: frozenset[int] = frozenset()  # count the edges of a disc, by interrupts of their own
     pwm_timers: int = 0
     pin_volts: int = 5 * ONE  # in thousandths: what its pins give, and the most that they take
-    has: int = 0  # what its firmware has of `needs` in an image
+    capabilities: int = 0  # what its firmware has of `needs` in an image
 
     def can(self, pin: int, need: str) -> bool:
         """Return whether `pin` has the ability `need`, one of NEEDS."""
@@ -98,7 +98,7 @@ _ESP32C3 = _pins(range(11))
 _TASKS, _WAYS = 1, 2
 
 
-def _avr(name: str, digital: range, analog: range, program_bytes: int, has: int) -> Chip:
+def _avr(name: str, digital: range, analog: range, program_bytes: int, capabilities: int) -> Chip:
     """Return a chip of which `ports` has the pins. Timer 0 keeps the time and also does PWM."""
     avr = AVRS[name]
     return Chip(
@@ -113,7 +113,7 @@ def _avr(name: str, digital: range, analog: range, program_bytes: int, has: int)
         servo_timer=1,
         tone_timer=2,
         counting=frozenset(avr.external),
-        has=has,
+        capabilities=capabilities,
     )
 
 
@@ -138,7 +138,7 @@ CHIPS = {
             counting=_ESP32 | _pins(34, 35, 36, 39),
             pwm_timers=8,
             pin_volts=3_300,
-            has=_TASKS | _WAYS,
+            capabilities=_TASKS | _WAYS,
         ),
         Chip(
             "esp32c3",
@@ -152,7 +152,7 @@ CHIPS = {
             reset_pin=9,
             pwm_timers=3,
             pin_volts=3_300,
-            has=_TASKS | _WAYS,
+            capabilities=_TASKS | _WAYS,
         ),
     )
 }

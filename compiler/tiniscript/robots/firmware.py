@@ -195,12 +195,12 @@ class Header(Part):
 
 def _hashes(kit: Kit) -> tuple[list[str], list[str], list[str]]:
     """Return those of the sensors, of the remote control, and of the actuators."""
-    matches = [f"0x{each:04x}," for each in kit.hashes]
+    hash_texts = [f"0x{each:04x}," for each in kit.hashes]
     first, last = len(kit.sensors), len(kit.readings)
-    actuators = matches[last:]
+    actuators = hash_texts[last:]
     if not first and not actuators:
         actuators = ["0x0000,"]  # C++ has no empty array
-    return matches[:first], matches[first:last], actuators
+    return hash_texts[:first], hash_texts[first:last], actuators
 
 
 def _bytes(data: bytes) -> list[str]:

@@ -95,8 +95,8 @@ class Way:
         across_cm = max(
             max(values) - min(values) for values in list(zip(*self.corners, strict=True))[:2]
         )
-        kept = self.corners[:1]
+        corners_kept = self.corners[:1]
         for corner in self.corners[1:-1]:
-            if math.dist(corner[:2], kept[-1][:2]) > across_cm / 500:
-                kept.append(corner)
-        self.corners = [*kept, self.corners[-1]][-most:]
+            if math.dist(corner[:2], corners_kept[-1][:2]) > across_cm / 500:
+                corners_kept.append(corner)
+        self.corners = [*corners_kept, self.corners[-1]][-most:]

@@ -42,14 +42,14 @@ def read(text: str, name: str, chip: str | None = None) -> Robot:
 
 
 def _read_kit(table: Table) -> Kit:
-    taken: set[str] = set()
+    names_taken: set[str] = set()
 
     def speed(key: str, most: int) -> int:
         return table.number(key, 1, most) if table.has(key) else 0
 
     kit = Kit(
-        _read_devices(table, "sensors", taken),
-        _read_devices(table, "actuators", taken),
+        _read_devices(table, "sensors", names_taken),
+        _read_devices(table, "actuators", names_taken),
         speed("speed", FASTEST_CM_S),
         speed("turn", FASTEST_TURN),
     )
@@ -57,15 +57,15 @@ def _read_kit(table: Table) -> Kit:
     return kit
 
 
-def _read_devices(table: Table, key: str, taken: set[str]) -> tuple[Device, ...]:
+def _read_devices(table: Table, key: str, names_taken: set[str]) -> tuple[Device, ...]:
     tables = table.tables(key)
     if len(tables) > MOST_DEVICES:
         table.complain("too_many", key, found=str(len(tables)), most=str(MOST_DEVICES))
-    return tuple(_read_device(table, key == "actuators", taken) for table in tables)
+    return tuple(_read_device(table, key == "actuators", names_taken) for table in tables)
 
 
-def _read_device(table: Table, is_actuator: bool, taken: set[str]) -> Device:
-    name = _read_name(table, taken)
+def _read_device(table: Table, is_actuator: bool, names_taken: set[str]) -> Device:
+    name = _read_name(table, names_taken)
     kind = table.choice("kind", (NUMBER, YES_NO), "unknown_kind")
     unit, low, high = "", 0, 1
     if kind == YES_NO:
@@ -81,7 +81,7 @@ def _read_device(table: Table, is_actuator: bool, taken: set[str]) -> Device:
     return Device(name, kind, unit, low, high)
 
 
-def _read_name(table: Table, taken: set[str]) -> str:
+def _read_name(table: Table, names_taken: set[str]) -> str:
     text = table.text("name", 'name = "DISTANCE"')
     if text is None:
         return ""
@@ -94,9 +94,9 @@ def _read_name(table: Table, taken: set[str]) -> str:
         )
     elif name in WORDS:
         table.complain("name_is_word", "name", found=name)
-    elif name in taken:
+    elif name in names_taken:
         table.complain("name_twice", "name", found=name)
-    taken.add(name)
+    names_taken.add(name)
     return name
 
 

@@ -141,7 +141,7 @@ class _Checker(Scope):
 
     def assign(self, node: ast.Assign, output: list[Statement]) -> None:
         name = self.names.get(node.name)
-        if name is not None and name.what in ("sensor", "actuator"):
+        if name is not None and name.kind in ("sensor", "actuator"):
             self.wrong.report_device_set(node, name)
             return
         if node.name in self.def_names:
@@ -227,9 +227,9 @@ class _Checker(Scope):
     ) -> None:
         """Make what the instructions make that a word stands for, with these values."""
         names = [argument.name.upper() for argument in word.arguments]
-        given = dict(zip(names, arguments, strict=True))
+        argument_of = dict(zip(names, arguments, strict=True))
         for instruction in parse(Source(word.stands_for)).program.body:
-            _NODE_CHECKS[type(instruction)](self, _relocate(instruction, span, given), output)
+            _NODE_CHECKS[type(instruction)](self, _relocate(instruction, span, argument_of), output)
 
     def way(self, node: ast.Command, unit: ast.Part) -> None:
         """Check the unit of a move, and whether the robot's speed is known."""
@@ -284,10 +284,10 @@ class _Checker(Scope):
         name = self.names.get(node.word)
         if name is None:
             self.wrong.report_unknown(node, self.inside)
-        elif node.arguments is not None and name.what not in _KINDS_WITH_VALUES:
+        elif node.arguments is not None and name.kind not in _KINDS_WITH_VALUES:
             self.wrong.report_not_callable(node)
         else:
-            _BY_NAME_KIND[name.what](self, node, name.number, output)
+            _BY_NAME_KIND[name.kind](self, node, name.number, output)
 
     def reading(self, node: ast.Command, number: int, output: list[Statement]) -> None:
         output.append(ir.Read(number, node.span))
@@ -426,7 +426,7 @@ class _Checker(Scope):
     def def_(self, node: ast.Def, output: list[Statement]) -> None:
         known = self.names.get(node.name)
         if known is not None:
-            code = codes.DEF_TWICE if known.what == "def" else codes.NAME_TAKEN
+            code = codes.DEF_TWICE if known.kind == "def" else codes.NAME_TAKEN
             other = self.wrong.free_name(node.name, self.procedures)
             self.report(code, node.name_span, name=node.name, other=other)
         if len(self.procedures) == DEFS:
@@ -461,7 +461,7 @@ class _Checker(Scope):
                 self.names[each.name] = Name("variable", parameters[-1])
             if is_free:
                 continue
-            if known is not None and known.what == "variable" and known.number in parameters:
+            if known is not None and known.kind == "variable" and known.number in parameters:
                 self.report(codes.PARAMETER_TWICE, each.span, name=each.name)
             else:
                 other = self.wrong.free_name(each.name, self.procedures)
@@ -513,16 +513,16 @@ class _Checker(Scope):
         ) = outside
 
 
-def _relocate(node: Any, span: Span, given: Mapping[str, ast.Argument]) -> Any:
+def _relocate(node: Any, span: Span, argument_of: Mapping[str, ast.Argument]) -> Any:
     """Return a part of a tree at another place, with what was given for the names in it."""
     if isinstance(node, Span):
         return span
     if isinstance(node, ast.Part):
         return node._replace(start=span.start, end=span.end)
-    if isinstance(node, ast.Argument) and node.expression[0].value in given:
-        return given[str(node.expression[0].value)]
+    if isinstance(node, ast.Argument) and node.expression[0].value in argument_of:
+        return argument_of[str(node.expression[0].value)]
     if isinstance(node, tuple):
-        parts = [_relocate(part, span, given) for part in node]
+        parts = [_relocate(part, span, argument_of) for part in node]
         return type(node)(*parts) if hasattr(node, "_fields") else tuple(parts)
     return node
 

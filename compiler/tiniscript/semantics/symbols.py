@@ -24,7 +24,7 @@ MOST_SUGGESTIONS = 100  # mistakes after which a suggestion helps nobody
 class Name(NamedTuple):
     """What a name stands for: a sensor, an actuator, a variable or a DEF, by its number."""
 
-    what: str
+    kind: str
     number: int
 
 
@@ -63,19 +63,19 @@ class Scope:
 
     def report_used(self, name: str, used: Span, suggestion: str) -> None:
         """Say that `name` is used before it has a value, and how it gets one first."""
-        said = self._line_to_move_up(name, used)
+        hints = self._line_to_move_up(name, used)
         body = self.parsed.body
         around = next((item for item in body if item.span.end > used.start), body[0])
         row = self.source.position(around.span.start)[0]
-        if said["line"] and row < self.source.position(used.start)[0]:
-            said = {**said, "row": str(row)}  # inside a block it would be done again and again
-        begin = (around if said["line"] else body[0]).span.start
-        value = said["first"] or said["before"] or f"{name} = {said['zero']}"
+        if hints["line"] and row < self.source.position(used.start)[0]:
+            hints = {**hints, "row": str(row)}  # inside a block it would be done again and again
+        begin = (around if hints["line"] else body[0]).span.start
+        value = hints["first"] or hints["before"] or f"{name} = {hints['zero']}"
         between = "\n" if "\n" in self.source.text else "; "
         edits = [Edit(Span(begin, begin), value + between)]
-        if said["line"]:
-            edits.append(Edit(self.source.line_span(int(said["line"])), ""))
-        values = {"name": name, "near": suggestion, **said}
+        if hints["line"]:
+            edits.append(Edit(self.source.line_span(int(hints["line"])), ""))
+        values = {"name": name, "near": suggestion, **hints}
         repair = Repair(tuple(edits), False)
         self.diagnostics.append(Diagnostic(codes.USED_BEFORE_SET, used, values, None, repair))
 

@@ -52,18 +52,18 @@ def _report_lamp(scope: Scope, node: ast.Command) -> bool:
     that is meant.
     """
     word, arguments = node.word, node.arguments or ()
-    given = [scope.source[argument.span].upper() for argument in arguments]
-    answers = [yes_no_of(each) or _TRUTH_BY_VALUE.get(each, "") for each in given]
+    value_texts = [scope.source[argument.span].upper() for argument in arguments]
+    answers = [yes_no_of(each) or _TRUTH_BY_VALUE.get(each, "") for each in value_texts]
     is_light = (
         lexicon_meaning(word, "stem")[:1] == ("LIGHT",) and len(answers) == 1 and bool(answers[0])
     )
     if word == _LAMP_NAME or not (lexicon_concept(word) == _LAMP_NAME or is_light):
         return False
-    said = {"lamp": word}
+    values = {"lamp": word}
     if any(device.name == _LAMP_NAME and device.is_yes_no for device in scope.kit.actuators):
         answer = answers[0] if len(answers) == 1 and answers[0] else "TRUE"
-        said |= {"switch": _LAMP_NAME, "fix": f"{_LAMP_NAME}({answer})"}
-    scope.report(codes.SWITCH_WHAT, node.word_span, node.span, **said)
+        values |= {"switch": _LAMP_NAME, "fix": f"{_LAMP_NAME}({answer})"}
+    scope.report(codes.SWITCH_WHAT, node.word_span, node.span, **values)
     return True
 
 
@@ -94,10 +94,10 @@ def _initial(word: str, text: str) -> list[str]:
     `A(2, 70)` is F beside `D(1, 50)`, which only in Spanish and Portuguese is a command: forward is
     `adelante` there. Beside an F of its own it is none.
     """
-    said = lexicon_meaning(word, "initial")
-    calls = {match.upper() for match in _LETTER.findall(text)} if said else set()
+    commands = lexicon_meaning(word, "initial")
+    calls = {match.upper() for match in _LETTER.findall(text)} if commands else set()
     is_other = any(expand_short(other) for other in calls - {word} if other not in WORDS)
-    return [*said] if is_other and not calls.intersection(said) else []
+    return [*commands] if is_other and not calls.intersection(commands) else []
 
 
 def report_placeholders(scope: Scope, node: ast.Command, word: Word, count: int) -> None:
@@ -129,8 +129,8 @@ def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
     """
     if part in names or len(scope.diagnostics) >= MOST_SUGGESTIONS:
         return ""
-    matches = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
-    return matches[0] if len(matches) == 1 else ""
+    whole_names = [name for name in names if part in name.split("_") or _is_shortened(part, name)]
+    return whole_names[0] if len(whole_names) == 1 else ""
 
 
 def _is_shortened(one: str, other: str) -> bool:

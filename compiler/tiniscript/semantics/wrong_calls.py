@@ -102,7 +102,7 @@ class WrongCalls:
         lines = [self.scope.source.position(begin[k].start)[0] for k in excess.tasks]
         values = {
             "count": str(len(lines)),
-            excess.what: str(excess.total),
+            excess.resource: str(excess.total),
             "limit": str(excess.limit),
         }
         if len({*lines}) > 1:
@@ -116,7 +116,7 @@ class WrongCalls:
         start = _start_of_until(source, node, until)
         call = source[Span(node.span.start, start)].rstrip()
         own = self.scope.names.get(node.word)
-        role = word.role.name if word else own.what if own else "def"
+        role = word.role.name if word else own.kind if own else "def"
         text = _ENDED_MOVE.get(role, "F(5, 60) UNTIL({c})")
         example = text.format(call=call, c=source[until.span])
         place = Span(start, node.span.end)
@@ -124,12 +124,12 @@ class WrongCalls:
 
     def report_break_outside(self, node: ast.Break) -> None:
         """BREAK as the last of a branch of an IF: the other branch has what it leaves out."""
-        found = rewrite_without_break(self.scope.source, self.scope.parsed, node)
-        if found is None:
+        left_out = rewrite_without_break(self.scope.source, self.scope.parsed, node)
+        if left_out is None:
             self.scope.report(codes.BREAK_OUTSIDE, node.span)
             return
-        values = {"fix": found.shown}
-        repair = Repair(found.edits, False)
+        values = {"fix": left_out.shown}
+        repair = Repair(left_out.edits, False)
         self.scope.diagnostics.append(
             Diagnostic(codes.BREAK_OUTSIDE, node.span, values, None, repair)
         )
@@ -138,8 +138,8 @@ class WrongCalls:
         """FOREVER at `span` in a move without UNTIL."""
         source = self.scope.source
         fix = f"{source[node.span]} UNTIL({next_condition(source, node.span)})"
-        said = {"fix": fix, **find_move_end(source, self.scope.parsed, node)}
-        self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, None, word=word.text, **said)
+        values = {"fix": fix, **find_move_end(source, self.scope.parsed, node)}
+        self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, None, word=word.text, **values)
 
     def report_count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
         source = self.scope.source
@@ -169,24 +169,24 @@ class WrongCalls:
         start = node.span.start
         before, after = Span(start, unit.start), Span(unit.end, node.span.end)
         fix = f"{self.scope.source[before]}{right}{self.scope.source[after]}"
-        said = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
+        values = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
         called = "R" if right == "CM" else "F"
-        said["other"] = called + self.scope.source[node.span][len(node.word) :]
+        values["other"] = called + self.scope.source[node.span][len(node.word) :]
         is_early = len(self.scope.diagnostics) < MOST_SUGGESTIONS
         pairs = _MOVE_WITH_UNIT.finditer(self.scope.source.text) if is_early else ()
         others = [pair for pair in pairs if UNIT_OF[pair[1].upper()] != pair[3].upper()]
         for one, other in (others, others[::-1]) if len(others) == 2 else ():
             if one.start() == start and one[2] != other[2] and one[3].upper() != other[3].upper():
                 rest = self.scope.source[Span(unit.end, node.span.end)]
-                said["swapped"] = f"{node.word}({other[2]} {right}{rest}"
-                said["line"] = str(self.scope.source.position(other.start())[0])
-        self.scope.report(codes.UNIT_PAIR, place, node.span, word=node.word, fix=fix, **said)
+                values["swapped"] = f"{node.word}({other[2]} {right}{rest}"
+                values["line"] = str(self.scope.source.position(other.start())[0])
+        self.scope.report(codes.UNIT_PAIR, place, node.span, word=node.word, fix=fix, **values)
 
-    def report_values(self, node: ast.Command, word: Word, said: int) -> None:
-        """Say more of values that have had diagnostics since there were `said`."""
+    def report_values(self, node: ast.Command, word: Word, diagnostic_count: int) -> None:
+        """Say more of values that have had diagnostics since there were `diagnostic_count`."""
         if VALUE in word.arguments:
-            report_words_shown(self.scope, said)
-        report_placeholders(self.scope, node, word, said)
+            report_words_shown(self.scope, diagnostic_count)
+        report_placeholders(self.scope, node, word, diagnostic_count)
 
     def report_out_of_range(
         self, span: Span, number: int, spec: Argument, word: str,
@@ -212,11 +212,11 @@ class WrongCalls:
     def report_device_set(self, node: ast.Assign, device: Name) -> None:
         """`DISTANCE = 20`, `LED = TRUE`: a number for a distance may be where to stop."""
         value = "5" if node.value is None else self.scope.source[node.value.span]
-        said = {"name": node.name, "value": value}
-        if device.what == "actuator":
+        values = {"name": node.name, "value": value}
+        if device.kind == "actuator":
             is_yes_no = self.scope.kit.actuators[device.number].is_yes_no
-            said["value"] = (is_yes_no and yes_no_of(value.upper())) or value
-            self.scope.report(codes.ACTUATOR_SET, node.name_span, None, **said)
+            values["value"] = (is_yes_no and yes_no_of(value.upper())) or value
+            self.scope.report(codes.ACTUATOR_SET, node.name_span, None, **values)
             return
         sensor = self.scope.kit.readings[device.number]
         if _NUMBER.fullmatch(value) and (travel := self._travel(node, sensor, value)):
@@ -224,8 +224,8 @@ class WrongCalls:
             return
         if value.isdecimal() and looks_ahead(sensor):
             until = f"UNTIL({node.name} < {value})"
-            said |= {"until": until, "example": f"F(5, 60) {until}"}
-        self.scope.report(codes.SENSOR_SET, node.name_span, None, **said)
+            values |= {"until": until, "example": f"F(5, 60) {until}"}
+        self.scope.report(codes.SENSOR_SET, node.name_span, None, **values)
 
     def _travel(self, node: ast.Assign, sensor: Device, value: str) -> Diagnostic | None:
         """`DISTANCE = 90;F(DISTANCE, 80)`: so many centimetres are driven, F(90 CM, 80).
@@ -242,22 +242,22 @@ class WrongCalls:
         unit, factor = _WAY_BY_UNIT.get(sensor.unit.lower(), ("", Fraction()))
         if not uses or not unit:
             return None
-        said = {"name": node.name, "value": value, "used": uses[0][0]}
+        values = {"name": node.name, "value": value, "used": uses[0][0]}
         words = {use[1].upper() for use in uses}
         other = min((word for word in words if UNIT_OF[word] != unit), default="")
         if other or not self._has_way(unit):
-            said |= {"word": other or min(words), "unit": unit}
+            values |= {"word": other or min(words), "unit": unit}
             if other and self._has_way(UNIT_OF[other]):
                 use = next(use for use in uses if use[1].upper() == other)
-                said |= {"used": use[0], "other": _with_first(use, f"{value} {UNIT_OF[other]}")}
-            return Diagnostic(codes.SENSOR_SET, node.name_span, said)
+                values |= {"used": use[0], "other": _with_first(use, f"{value} {UNIT_OF[other]}")}
+            return Diagnostic(codes.SENSOR_SET, node.name_span, values)
         way = f"{as_text(int(Fraction(value) * factor * 1000))} {unit}"
         if len({use[0] for use in uses}) > 1:
-            said["ways"] = "; ".join(dict.fromkeys(_with_first(use, way) for use in uses))
+            values["ways"] = "; ".join(dict.fromkeys(_with_first(use, way) for use in uses))
         edits = [Edit(_with_separator(self.scope.source, node.span), "")]
         edits += [Edit(Span(*use.span(2)), way) for use in uses]
-        said["way"] = _with_first(uses[0], way)
-        return Diagnostic(codes.SENSOR_SET, node.name_span, said, None, Repair((*edits,), False))
+        values["way"] = _with_first(uses[0], way)
+        return Diagnostic(codes.SENSOR_SET, node.name_span, values, None, Repair((*edits,), False))
 
     def _has_way(self, unit: str) -> bool:
         return bool(self.scope.kit.speed if unit == "CM" else self.scope.kit.turn)
@@ -266,17 +266,17 @@ class WrongCalls:
         """Report `SIDE(size=20)`, which names a value of the DEF; return whether it does."""
         texts = [self.scope.source[argument.span] for argument in node.arguments or ()]
         named = [_NAMED_VALUE.fullmatch(text) for text in texts]
-        given = {it[1].upper(): it[2] for it in named if it}
+        value_of = {it[1].upper(): it[2] for it in named if it}
         rest = [text for text, it in zip(texts, named, strict=True) if it is None]
-        free = [name for name in names if name not in given]
+        free = [name for name in names if name not in value_of]
         if (
-            not given
-            or not given.keys() <= {*names} - {*self.scope.names}
+            not value_of
+            or not value_of.keys() <= {*names} - {*self.scope.names}
             or len(free) != len(rest)
         ):
             return False
-        given |= dict(zip(free, rest, strict=True))
-        fix = f"{node.word}({', '.join(given[name] for name in names)})"
+        value_of |= dict(zip(free, rest, strict=True))
+        fix = f"{node.word}({', '.join(value_of[name] for name in names)})"
         self.scope.report(codes.NAMED_ARGUMENT, node.span, None, word=node.word, fix=fix)
         return True
 
@@ -296,12 +296,12 @@ class WrongCalls:
         """Return `DANCE_2`, or with the first number of which the text has no name yet."""
         if name not in self._free:
             self._free[name] = (numbered_names(self.scope.source.text, name), [])
-        others, found = self._free[name]
+        candidates, free_names = self._free[name]
         k = max(
             0, sum(procedure.name == name for procedure in procedures) - 1
         )  # these got one already
-        found += islice(others, max(0, k + 1 - len(found)))
-        return found[k]
+        free_names += islice(candidates, max(0, k + 1 - len(free_names)))
+        return free_names[k]
 
 
 def _with_first(use: re.Match[str], value: str) -> str:

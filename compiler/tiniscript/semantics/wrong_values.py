@@ -55,7 +55,7 @@ class WrongValues:
                 scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
             return
         names = scope.names.items() if len(scope.diagnostics) < MOST_SUGGESTIONS else ()
-        known = [each for each, meaning in names if meaning.what in ("sensor", "variable")]
+        known = [each for each, meaning in names if meaning.kind in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
         known += ["FOREVER"] if is_forever else []
         suggestion = "".join(lexicon_meaning(name, "number")) or scope.nearest_word(name, known)
@@ -70,34 +70,35 @@ class WrongValues:
             "".join(lexicon_meaning(base, "stem")) or base
         ) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
-        which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
-        sensors = [each for each, meaning in names if meaning.what == "sensor"]
+        pair_hints = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
+        sensors = [each for each, meaning in names if meaning.kind == "sensor"]
         if name == target or name in scope.set_somewhere:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name
                    for diagnostic in scope.diagnostics[-MOST_SUGGESTIONS:]):  # fmt: skip
                 return  # said once
             scope.report_used(name, span, suggestion)
         else:
-            suggestion = "" if which or is_variable else suggestion
+            suggestion = "" if pair_hints or is_variable else suggestion
             only = next((sensor for sensor in sensors if name.startswith(sensor + "_")), "")
             aside = only if is_aside(name.rpartition("_")[2]) else ""
             alike = suggestion if suggestion and suggestion.rstrip(_DIGITS) == base else ""
             suggestion = "" if aside or alike else only or suggestion
-            said = {"alike": alike} if alike and not which else {}
-            is_said = not (suggestion or said or which or only or is_variable)
+            hints = {"alike": alike} if alike and not pair_hints else {}
+            is_said = not (suggestion or hints or pair_hints or only or is_variable)
             if is_said and self._is_compared(span) and (seen := self._on_side(meant)):
                 suggestion = seen
             elif is_said and meant in OPPOSITE_MOVES:
-                said = {"way": meant, "call": WORDS[meant].example}
+                hints = {"way": meant, "call": WORDS[meant].example}
             elif is_said and lexicon_meaning(name + "4", "note") and _TONE_BEFORE.search(before):
-                said = {"pitch": lexicon_meaning(name + "4", "note")[0]}
-            elif not which and not is_variable and lexicon_meaning(name, "unsensed"):
-                its_own = ", ".join(sensor.name for sensor in scope.kit.sensors)
-                said, suggestion = {"unsensed": name, "sensors": its_own}, ""
+                hints = {"pitch": lexicon_meaning(name + "4", "note")[0]}
+            elif not pair_hints and not is_variable and lexicon_meaning(name, "unsensed"):
+                sensor_names = ", ".join(sensor.name for sensor in scope.kit.sensors)
+                hints, suggestion = {"unsensed": name, "sensors": sensor_names}, ""
             elif is_said and lexicon_meaning(name, "colour"):
-                said = {"colour": name}
+                hints = {"colour": name}
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=suggestion,
-                         value=value_of(name), only=only, aside=aside, **said, **which)  # fmt: skip
+                         value=value_of(name), only=only, aside=aside, **hints,
+                         **pair_hints)  # fmt: skip
 
     def _is_compared(self, span: Span) -> bool:
         """Whether a name stands beside `<` or `>`."""
@@ -107,8 +108,8 @@ class WrongValues:
 
     def _on_side(self, way: str) -> str:
         """Return the one sensor of the robot on L or R, which measures, "" for none."""
-        found = [it.name for it in self.scope.kit.sensors if it.name.endswith(f"_{way}")]
-        return found[0] if len(found) == 1 and way in OPPOSITE_MOVES else ""
+        sensors = [it.name for it in self.scope.kit.sensors if it.name.endswith(f"_{way}")]
+        return sensors[0] if len(sensors) == 1 and way in OPPOSITE_MOVES else ""
 
     def _amount(self, span: Span, name: str) -> dict[str, str]:
         """Return how the call around `poco` is written, or around the `lento` beside it."""
@@ -143,8 +144,8 @@ class WrongValues:
         span = Span(operand.start, operand.end)
         by = "-" if op == "NEG" else SIGN_OF.get(op, op)
         own = value_of_def(self.scope, span)
-        found = self.scope.source[span]
-        self.scope.report(codes.WANTS_NUMBER, span, None, by=by, found=found, **own)
+        operand_text = self.scope.source[span]
+        self.scope.report(codes.WANTS_NUMBER, span, None, by=by, found=operand_text, **own)
 
     def report_not_yes_no(self, by: str, operand: Operand, other: Operand | None) -> None:
         """`other` is the other side of an AND or OR.
@@ -171,7 +172,7 @@ class WrongValues:
         word = self.scope.source[span].upper()
         name = self.scope.names.get(word)
         if name is not None:
-            example = f"{word} < 10" if name.what == "sensor" else f"{word} > 0"
+            example = f"{word} < 10" if name.kind == "sensor" else f"{word} > 0"
             return {"example": example, **value_of_def(self.scope, span)}
         meant = {"0": "FALSE", "1": "TRUE"}.get(word)
         if meant or not word.isdecimal():

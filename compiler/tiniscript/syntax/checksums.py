@@ -34,6 +34,6 @@ def without_checksums(text: str) -> tuple[str, list[Diagnostic]]:
     for match in _CHECKED_LINE.finditer(text):
         if checksum_of(match[1]) != int(match[2], 16):
             span = Span(match.end(1), match.end())
-            found = {"found": f"~{match[2]}"}
-            wrong.append(Diagnostic(codes.CHECKSUM_WRONG, span, found))
+            values = {"found": f"~{match[2]}"}
+            wrong.append(Diagnostic(codes.CHECKSUM_WRONG, span, values))
     return _CHECKED_LINE.sub(rf"\1{' ' * 9}", text), wrong

@@ -24,8 +24,8 @@ def kit_for_text(text: str, kit: Kit) -> Kit:
 def kit_for_tokens(tokens: Sequence[Token], kit: Kit) -> Kit:
     """Return the kit as a program with these tokens has it."""
     later = {reading.name for reading in kit.readings}.difference(kit.names)
-    given = later.intersection(own_words(tokens))
-    return kit._replace(given=frozenset(given)) if given else kit
+    given_words = later.intersection(own_words(tokens))
+    return kit._replace(given_words=frozenset(given_words)) if given_words else kit
 
 
 def report_given_way(tokens: Sequence[Token], kit: Kit, source: Source) -> list[Diagnostic]:
@@ -37,7 +37,7 @@ def report_given_way(tokens: Sequence[Token], kit: Kit, source: Source) -> list[
             "other": next(numbered_names(source.text, name)),
         })
         for name, token in own_words(tokens).items()
-        if name in kit.given
+        if name in kit.given_words
     ]  # fmt: skip
 
 

@@ -235,7 +235,7 @@ class Parser:
             span = Span(word.start, name.end)
             self.blocks.begin("DEF", span, name=name, parameters=parameters)
 
-    def parameters(self, of: Token, found: list[Parameter]) -> None:
+    def parameters(self, of: Token, result: list[Parameter]) -> None:
         """Read the `(NAME, NAME)` of a DEF; what was read stays, even if the rest is wrong."""
         cursor = self.cursor
         bracket = cursor.i
@@ -253,7 +253,7 @@ class Parser:
             cursor.take_inner(WORD)
             if name.text in WORDS:
                 self.reporter.report(codes.RESERVED, name.span, word=name.text)
-            found.append(Parameter(name.text, name.span))
+            result.append(Parameter(name.text, name.span))
             odd = self.expressions.after_name()
             more = more or odd
             if not cursor.take_inner(",") and (odd is None or odd.kind is not WORD):
@@ -261,7 +261,7 @@ class Parser:
         if not cursor.take_inner(")"):
             self.expressions.report_missing_close(bracket)
         if more is not None:
-            self.expressions.report_not_only_names(bracket, more, [each.name for each in found])
+            self.expressions.report_not_only_names(bracket, more, [each.name for each in result])
 
     def task(self, word: Token) -> None:
         cursor = self.cursor

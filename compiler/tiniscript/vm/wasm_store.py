@@ -40,13 +40,16 @@ class Instance:
         self._store = Store(_engine())
         self._store.set_limits(memory_size=MOST_BYTES, instances=1, memories=1, tables=1)
         module = _module(path)
-        given = [Func(self._store, FuncType([], []), imports[import_type.name or ""])
-                 for import_type in module.imports]  # fmt: skip
-        exports = wasmtime.Instance(self._store, module, given).exports(self._store)
-        found = {export.name: exports[export.name] for export in module.exports}
-        self.functions = {name: _bound_function(self._store, func)
-                          for name, func in found.items() if isinstance(func, Func)}  # fmt: skip
-        memory = found["memory"]
+        functions = [Func(self._store, FuncType([], []), imports[import_type.name or ""])
+                     for import_type in module.imports]  # fmt: skip
+        exports = wasmtime.Instance(self._store, module, functions).exports(self._store)
+        module_exports = {export.name: exports[export.name] for export in module.exports}
+        self.functions = {
+            name: _bound_function(self._store, func)
+            for name, func in module_exports.items()
+            if isinstance(func, Func)
+        }
+        memory = module_exports["memory"]
         assert isinstance(memory, Memory)
         self._memory = memory
         base = addressof(memory.data_ptr(self._store).contents)

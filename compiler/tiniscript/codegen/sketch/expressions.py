@@ -94,14 +94,14 @@ class Expressions:
 
     def _binary(self, op: str, left: _Operand, right: _Operand) -> _Operand:
         is_random = left.is_random or right.is_random or op == "RANDOM"
-        first = kept = ""
+        first = assignment = ""
         if left.is_random and right.is_random and op not in ("AND", "OR"):
             first = self.keep()
-            kept, left = f"{first} = {left.text}, ", _Operand(first, _PRIMARY)
+            assignment, left = f"{first} = {left.text}, ", _Operand(first, _PRIMARY)
         if op in FUNCTIONS:
             operand = _Operand(f"{self.use(FUNCTIONS[op])}({left.text}, {right.text})", _PRIMARY)
             if first:
-                operand = _Operand(f"({kept}{operand.text})", _PRIMARY)
+                operand = _Operand(f"({assignment}{operand.text})", _PRIMARY)
             return operand._replace(is_random=is_random)
         sign, binds = SIGNS[op], _PRECEDENCE[op]
         if op in ARITHMETIC_OPS or op in COMPARISON_OPS:
@@ -117,7 +117,7 @@ class Expressions:
             low, high = (6 if left.binds == _PRECEDENCE["AND"] else binds), 6
         made_text = f"{_bracket(left, low)} {sign} {_bracket(right, high)}"
         if first:
-            return _Operand(f"({kept}{made_text})", _PRIMARY, is_random=True)
+            return _Operand(f"({assignment}{made_text})", _PRIMARY, is_random=True)
         return _Operand(made_text, binds, is_random=is_random)
 
     def _as_number(self, operand: _Operand) -> _Operand:

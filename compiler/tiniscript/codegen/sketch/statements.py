@@ -71,12 +71,17 @@ class Statements:
         self.set_actuators: set[int] = set()
         self.depth = 1
         self.loops = 0
-        self.given: frozenset[int] = frozenset()  # the variables that calls set: arguments
+        self.variables_set_by_calls: frozenset[int] = (
+            frozenset()
+        )  # the variables that calls set: arguments
 
     def body(self, body: ir.Body) -> None:
         arguments: list[ir.Expression] = []
         for statement in body:
-            if isinstance(statement, ir.Assign) and statement.variable in self.given:
+            if (
+                isinstance(statement, ir.Assign)
+                and statement.variable in self.variables_set_by_calls
+            ):
                 arguments.append(statement.value)
             elif isinstance(statement, ir.Call):
                 self.call_def(statement, arguments)
@@ -86,15 +91,17 @@ class Statements:
 
     # -- lines
 
-    def line(self, code: str, beside: str = "") -> None:
+    def line(self, code: str, comment: str = "") -> None:
         indent = "  " * self.depth
         plain = f"{indent}{code}"
-        if beside:
-            padded = f"{plain:<{COMMENT_COLUMN - 2}}  // {beside}"
+        if comment:
+            padded = f"{plain:<{COMMENT_COLUMN - 2}}  // {comment}"
             if len(padded) <= MOST_COLUMNS:
                 plain = padded
             else:
-                self.lines.append(f"{indent}// {_truncate(beside, MOST_COLUMNS - len(indent) - 3)}")
+                self.lines.append(
+                    f"{indent}// {_truncate(comment, MOST_COLUMNS - len(indent) - 3)}"
+                )
         self.lines.append(plain)
 
     def instruction_text(self, start: int) -> str:
@@ -178,8 +185,8 @@ class Statements:
         self.read_sensors.add(sensor)
         return f"{self.names.reads[sensor]}();"
 
-    def call(self, key: str, said: str, values: Sequence[str]) -> None:
-        self.line(f"{self.use(key)}({', '.join(values)});", said)
+    def call(self, key: str, comment: str, values: Sequence[str]) -> None:
+        self.line(f"{self.use(key)}({', '.join(values)});", comment)
 
     # -- arguments
 
@@ -206,15 +213,15 @@ class Statements:
 
     # -- moves and what is shown
 
-    def move(self, move: ir.Move, said: str) -> None:
+    def move(self, move: ir.Move, comment: str) -> None:
         if move.until is not None:
-            self.until(move, move.until, said)
+            self.until(move, move.until, comment)
             return
         assert move.time is not None
         if move.power is None:
-            self.call("wait", said, self.drive(move))
+            self.call("wait", comment, self.drive(move))
         else:
-            self.call(_MOVE_FUNCTIONS[move.direction], said, self.drive(move))
+            self.call(_MOVE_FUNCTIONS[move.direction], comment, self.drive(move))
 
     def drive(self, move: ir.Move) -> list[str]:
         if move.unit:
@@ -225,17 +232,17 @@ class Statements:
         texts = self.arguments(*parts)
         return texts if move.time is not None else [self.use("FOREVER"), *texts]
 
-    def set(self, statement: ir.Set, said: str) -> None:
+    def set(self, statement: ir.Set, comment: str) -> None:
         self.set_actuators.add(statement.actuator)
         device = self.kit.actuators[statement.actuator]
         if device.is_yes_no:
             value = self.write.text(statement.value)
         else:
             (value,) = self.arguments((statement.value, (device.low // ONE, device.high // ONE)))
-        self.line(f"{self.names.sets[statement.actuator]}({value});", said)
+        self.line(f"{self.names.sets[statement.actuator]}({value});", comment)
 
-    def until(self, move: ir.Move, until: ir.Until, said: str) -> None:
-        self.call(_START_FUNCTIONS.get(move.direction, "start_wait"), said, self.drive(move))
+    def until(self, move: ir.Move, until: ir.Until, comment: str) -> None:
+        self.call(_START_FUNCTIONS.get(move.direction, "start_wait"), comment, self.drive(move))
         self.line(f"while ({self.use('move_lasts')}()) {{")
         self.depth += 1
         condition = self.condition(until.reads, until.condition)
@@ -252,17 +259,17 @@ class Statements:
             self.line(self.reading(sensor))
         return self.write.text(condition)
 
-    def show(self, show: ir.Show, said: str) -> None:
+    def show(self, show: ir.Show, comment: str) -> None:
         fixed = constant(show.value)
         self.use("Serial")
         if show.is_yes_no:
-            self.line(f"{self.use('show_yes_no')}({self.write.text(show.value)});", said)
+            self.line(f"{self.use('show_yes_no')}({self.write.text(show.value)});", comment)
         elif fixed is not None:
-            self.line(f'Serial.println("{as_text(fixed)}");', said)
+            self.line(f'Serial.println("{as_text(fixed)}");', comment)
         elif self.write.is_exact:
-            self.line(f"{self.use('show_number')}({self.write.text(show.value)});", said)
+            self.line(f"{self.use('show_number')}({self.write.text(show.value)});", comment)
         else:
-            self.line(f"Serial.println({self.write.text(show.value)});", said)
+            self.line(f"Serial.println({self.write.text(show.value)});", comment)
 
     # -- blocks
 
@@ -305,28 +312,28 @@ class Statements:
         self.remarks(start)
         self.depth -= arm > 0
 
-    def loop(self, loop: ir.Loop, said: str) -> None:
+    def loop(self, loop: ir.Loop, comment: str) -> None:
         if loop.times is None:
-            self.line("while (true) {", said)
+            self.line("while (true) {", comment)
         else:
             name = counter(self.loops)
             fixed = constant(loop.times)
             if fixed is None:
                 times = f"{self.use('whole')}({self.write.text(loop.times)})"
-                self.line(f"for (long {name} = {times}; {name} > 0; {name}--) {{", said)
+                self.line(f"for (long {name} = {times}; {name} > 0; {name}--) {{", comment)
             else:
                 count = whole(fixed)
                 kind = "int" if abs(count) <= _LARGEST_INT else "long"
-                self.line(f"for ({kind} {name} = 0; {name} < {count}; {name}++) {{", said)
+                self.line(f"for ({kind} {name} = 0; {name} < {count}; {name}++) {{", comment)
         self.block(loop.body, is_loop=True)
         self.line("}")
 
-    def while_(self, loop: ir.While, said: str) -> None:
+    def while_(self, loop: ir.While, comment: str) -> None:
         inline = len(loop.reads) == 1 and reads_once(loop.condition, loop.reads[0])
         if inline or not loop.reads:
-            self.line(f"while ({self.condition(loop.reads, loop.condition)}) {{", said)
+            self.line(f"while ({self.condition(loop.reads, loop.condition)}) {{", comment)
         else:
-            self.line("while (true) {", said)
+            self.line("while (true) {", comment)
             self.depth += 1
             condition = self.condition(loop.reads, loop.condition)
             self.line(f"if (!({condition})) break;")

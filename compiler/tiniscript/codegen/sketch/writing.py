@@ -159,7 +159,7 @@ class _Sketch:
         if isinstance(last, ir.Loop) and last.times is None and not ir.breaks_out(last.body):
             body, loop = body[:-1], last.body
         procedures = [self.procedure(rows, procedure) for procedure in program.procedures]
-        rows.given = self.arguments
+        rows.variables_set_by_calls = self.arguments
         rows.body(body)
         if isinstance(last, ir.Loop) and loop:
             start = last.span.start
@@ -194,7 +194,9 @@ class _Sketch:
         rows.depth = 1
         name = self.named.procedures[self.program.procedures.index(procedure)]
         head, rows.lines = rows.lines, []
-        rows.given = self.arguments - {*procedure.values}  # those of this DEF it sets itself
+        rows.variables_set_by_calls = self.arguments - {
+            *procedure.values
+        }  # those of this DEF it sets itself
         read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
         for k in procedure.values:
             if k not in read:  # or a compiler warns
@@ -376,21 +378,21 @@ class _Sketch:
         if self.plan.servo_pins:
             pieces.append(helpers.shared_servo_code(self.plan.servo_pins))
         if self.write.kept:
-            kept = ", ".join(f"first{k + 1}" for k in range(self.write.kept))
-            pieces.append(f"// {self.text_of_key('shared_first')}\n$N {kept};")
+            shared_names = ", ".join(f"first{k + 1}" for k in range(self.write.kept))
+            pieces.append(f"// {self.text_of_key('shared_first')}\n$N {shared_names};")
         return "\n".join(pieces) + "\n" if pieces else ""
 
     def prototypes(self, codes: Iterable[str]) -> str:
-        matches = [
+        declarations = [
             f"{line[: line.index('{')].rstrip()};"
             for code in codes
             for line in code.splitlines()
             if re.match(r"(?!ISR|struct)[\w$]+( [\w$]+)* [\w$]+[^\w$ (]*\(.*\) \{", line)
         ]
-        if not matches:
+        if not declarations:
             return ""
         last = helpers.FOREVER[self.is_exact] if "FOREVER" in self.needed else ""
-        lines = [f"// {self.text_of_key('prototypes')}", *matches, *([last] if last else [])]
+        lines = [f"// {self.text_of_key('prototypes')}", *declarations, *([last] if last else [])]
         return "\n".join(lines) + "\n"
 
     def note(self, key: str) -> str:

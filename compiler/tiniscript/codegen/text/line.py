@@ -29,10 +29,10 @@ def spell_out(tokens: Iterable[Token]) -> Iterator[Token]:
             yield token
             continue
         values = _values(rest) if word.arguments else []
-        given = dict(zip([part.name.upper() for part in word.arguments], values, strict=True))
+        value_of = dict(zip([part.name.upper() for part in word.arguments], values, strict=True))
         expansion = []
         for part in scan(word.stands_for).tokens[:-1]:
-            expansion += given.get(part.text, [part._replace(start=token.start, end=token.end)])
+            expansion += value_of.get(part.text, [part._replace(start=token.start, end=token.end)])
         yield from spell_out(expansion)
 
 

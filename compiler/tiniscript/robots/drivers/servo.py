@@ -57,8 +57,8 @@ class Servo(ActuatorDriver):
         first, last = wiring.settings["low_us"], wiring.settings["high_us"]
         if wiring.settings[AT_STOP] != HOLD:
             plan.off.append(f"$servo_pulse({number}, 0, 0);")
-        what = f"$servo_pulse({number}, {plan.part_of(device, first, last)}, 0);"
-        return f"void {function}(long value) {{\n  {what}\n}}"
+        call = f"$servo_pulse({number}, {plan.part_of(device, first, last)}, 0);"
+        return f"void {function}(long value) {{\n  {call}\n}}"
 
 
 DRIVER = Servo()

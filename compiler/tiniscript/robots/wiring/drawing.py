@@ -140,9 +140,9 @@ def _marks(outlines: Iterable[tuple[bool, str]], style: str = "") -> list[str]:
     """Return the marks of pins or terminals: those that are used, and those that stay free."""
     result = sorted(outlines, reverse=True)
     return [
-        f'<path d="{"".join(each for _, each in same)}" '
+        f'<path d="{"".join(each for _, each in group)}" '
         f'fill="{"#ffffff" if is_used else "#cccccc"}" stroke="{LINE}"{style}/>'
-        for is_used, same in groupby(result, key=lambda each: each[0])
+        for is_used, group in groupby(result, key=lambda each: each[0])
     ]
 
 

@@ -117,12 +117,12 @@ class _Page:
         ]
 
     def _shopping_list(self) -> list[str]:
-        found: dict[str, list[Part]] = {}
+        parts_by_need: dict[str, list[Part]] = {}
         for part in self.plan.parts:
             if part.shape.need:
-                found.setdefault(part.shape.need, []).append(part)
+                parts_by_need.setdefault(part.shape.need, []).append(part)
         needs = [self.say("need_board", board=self.board)]
-        for key, parts in found.items():
+        for key, parts in parts_by_need.items():
             need = f"{len(parts)} × {self.say(key)}"
             if any(part.is_device for part in parts):
                 need = self.say("for_part", need=need, parts=", ".join(p.title for p in parts))

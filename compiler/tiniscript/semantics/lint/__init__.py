@@ -14,7 +14,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.semantics.lint import conditions, known, moves, numbers, tasks, useless
-from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.lint.look import Around, LintContext
 from tiniscript.syntax.lexer import Scan
 
 # Where a warning is looked for, if not at statements of a type.
@@ -23,7 +23,8 @@ PROGRAM, TASKS, BODY, STATEMENT = "program", "tasks", "body", "statement"
 
 class Row(NamedTuple):
     """What reports these codes. Asked once for the PROGRAM, or for its TASKS if there are any: of
-    the `Look`; for each BODY and each STATEMENT, or each of a type: of it and what is around it."""
+    the `LintContext`; for each BODY and each STATEMENT, or each of a type: of it and what is
+    around it."""
 
     codes: tuple[Code, ...]
     at: str | type
@@ -86,7 +87,7 @@ _ROWS: dict[str | type, list[Row]] = {
 
 def lint(program: ir.Program, kit: Kit, source: Source, scanned: Scan) -> list[Diagnostic]:
     """Return the warnings for a program that has no mistakes, of this text and these tokens."""
-    look = Look(program, kit, source, scanned)
+    look = LintContext(program, kit, source, scanned)
     for procedure in program.procedures:
         _look_at(procedure.body, Around(is_repeated=True), look)
     for task in program.tasks:
@@ -96,10 +97,10 @@ def lint(program: ir.Program, kit: Kit, source: Source, scanned: Scan) -> list[D
     _look_at(program.body, Around(is_last=True), look)
     for row in (*_ROWS[PROGRAM], *(_ROWS[TASKS] if program.tasks else ())):
         row.find(look)
-    return look.found
+    return look.diagnostics
 
 
-def _look_at(body: ir.Body, around: Around, look: Look) -> None:
+def _look_at(body: ir.Body, around: Around, look: LintContext) -> None:
     for row in _ROWS[BODY]:
         row.find(body, around, look)
     for statement in body:

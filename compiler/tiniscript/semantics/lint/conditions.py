@@ -24,7 +24,7 @@ from tiniscript.semantics.comparisons import (
     is_between,
     looks_ahead,
 )
-from tiniscript.semantics.lint.look import STANDING_STATEMENTS, Around, Look
+from tiniscript.semantics.lint.look import STANDING_STATEMENTS, Around, LintContext
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import BINARY, OPPOSITES, SIGN_OF
 
@@ -45,27 +45,27 @@ def _is_endless(loop: ir.Loop | ir.While) -> bool:
     return not isinstance(loop, ir.Loop) or loop.times is None
 
 
-def check_until(move: ir.Move, around: Around, look: Look) -> None:
+def check_until(move: ir.Move, around: Around, look: LintContext) -> None:
     if move.until is not None and not look.program.tasks:
         _Conditions(look).check_until(move, move.until.condition, around)
 
 
-def check_while(loop: ir.While, around: Around, look: Look) -> None:
+def check_while(loop: ir.While, around: Around, look: LintContext) -> None:
     if not look.program.tasks:
         _Conditions(look).check_while(loop, around)
 
 
-def check_if(statement: ir.If, around: Around, look: Look) -> None:
+def check_if(statement: ir.If, around: Around, look: LintContext) -> None:
     if not look.program.tasks:
         _Conditions(look).check_if(statement, around.outermost)
 
 
-def check_show(show: ir.Show, around: Around, look: Look) -> None:
+def check_show(show: ir.Show, around: Around, look: LintContext) -> None:
     if around.outermost is not None and not look.program.tasks:
         _Conditions(look).report_frozen_show(show, around.outermost)
 
 
-def report_asked_once(look: Look) -> None:
+def report_asked_once(look: LintContext) -> None:
     """A program that reads no remote control loads nothing for it."""
     remote = {*range(len(look.kit.sensors), len(look.kit.readings))}
     if remote & ir.referenced_numbers("SENSOR", look.statements):
@@ -75,7 +75,7 @@ def report_asked_once(look: Look) -> None:
 
 
 class _Conditions:
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: LintContext) -> None:
         self._look = look
         self._program = look.program
         self._kit = look.kit
@@ -261,9 +261,11 @@ class _Conditions:
             is_before and is_only_shown and others == [term] and show in _round_statements(loop)
         ):
             return False
-        name, said = self._program.variables[variable], self._source[sets[0].span]
-        if not any(diagnostic.values.get("thrown") == name for diagnostic in self._look.found):
-            within = f"{said};{self._source[show.span]}"
+        name, assignment = self._program.variables[variable], self._source[sets[0].span]
+        if not any(
+            diagnostic.values.get("thrown") == name for diagnostic in self._look.diagnostics
+        ):
+            within = f"{assignment};{self._source[show.span]}"
             self._look.report(codes.FROZEN_WHILE, show.span, thrown=name, within=within)
         return True
 

@@ -14,7 +14,7 @@ from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import TIME, Comparison, comparison, is_between
-from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.lint.look import Around, LintContext
 from tiniscript.semantics.optimizer import known_value
 
 _LESS = ("LT", "LE")
@@ -26,7 +26,7 @@ _THROW = ("NUMBER", "NUMBER", "RANDOM")
 # -- the clock ------------------------------------------------------------------------------------
 
 
-def report_past_clock(look: Look) -> None:
+def report_past_clock(look: LintContext) -> None:
     """`WHILE(TIME < 10) … END_WHILE`, then `WHILE(TIME < 5)`: the clock does not begin again.
 
     Says nothing of a program with tasks: nobody knows what is first.
@@ -53,7 +53,7 @@ def _lasts(statement: ir.Statement) -> int:
     return max(0, known_value(time) or 0)
 
 
-def _report_over(loop: ir.While, asked: Comparison, past: int, look: Look) -> None:
+def _report_over(loop: ir.While, asked: Comparison, past: int, look: LintContext) -> None:
     later = asked._replace(number=past + asked.number)
     values = {"already": as_text(past), "answer": "answer_no"}
     if later.number <= HIGHEST:
@@ -68,15 +68,15 @@ def _is_over(asked: Comparison, past: int) -> bool:
 # -- MIN and MAX ----------------------------------------------------------------------------------
 
 
-def report_narrowed(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
+def report_narrowed(statement: ir.Statement | ir.Task, around: Around, look: LintContext) -> None:
     """`MAX(80, MIN(20, DISTANCE))` is 80 at each distance."""
     found_in = (each for value in ir.expressions(statement) for each in _nested(value))
     for outer, inner, numbers in found_in:
         limit, other = numbers
         if outer != inner and (other < limit if outer == "MAX" else other > limit):
-            found = f"{outer}({as_text(limit)}, {inner}({as_text(other)}, …))"
+            nesting = f"{outer}({as_text(limit)}, {inner}({as_text(other)}, …))"
             narrow = f"{outer}({as_text(other)}, {inner}({as_text(limit)}, …))"
-            values = {"found": found, "number": as_text(limit), "narrow": narrow}
+            values = {"found": nesting, "number": as_text(limit), "narrow": narrow}
             look.report(codes.KNOWN_ANSWER, statement.span, **values)
 
 
@@ -102,7 +102,7 @@ def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
 # -- ELSE -----------------------------------------------------------------------------------------
 
 
-def report_no_room(statement: ir.If, around: Around, look: Look) -> None:
+def report_no_room(statement: ir.If, around: Around, look: LintContext) -> None:
     """`IF(D > 50) … ELSEIF(D < 50) … ELSE`: D is hardly ever 50."""
     for one, other in pairwise(statement.arms) if statement.has_else else ():
         first, second = one.condition, other.condition
@@ -115,15 +115,15 @@ def report_no_room(statement: ir.If, around: Around, look: Look) -> None:
                 look.report(codes.EXACT, other.span, **values)
 
 
-def _is_fine(value: ir.Expression, number: int, look: Look) -> bool:
+def _is_fine(value: ir.Expression, number: int, look: LintContext) -> bool:
     """Whether a value comes from a sensor that has very many."""
     for op, at in value:
         if op == "SENSOR" and is_between(look.kit.readings[at], max(number, 1)):
             return True
         if op == "VARIABLE":
-            its = look.variables.set_to.get(at, ())
+            values_set = look.variables.set_to.get(at, ())
             if any(term.op == "SENSOR" and is_between(look.kit.readings[term.value], 1)
-                   for each in its for term in each):  # fmt: skip
+                   for each in values_set for term in each):  # fmt: skip
                 return True
     return False
 
@@ -131,7 +131,7 @@ def _is_fine(value: ir.Expression, number: int, look: Look) -> bool:
 # -- RANDOM ---------------------------------------------------------------------------------------
 
 
-def report_thrown_arms(statement: ir.If, around: Around, look: Look) -> None:
+def report_thrown_arms(statement: ir.If, around: Around, look: LintContext) -> None:
     """`IF(RANDOM(1, 3) = 1) … ELSEIF(RANDOM(1, 3) = 2)`: it may be that none is TRUE."""
     for one, other in pairwise(statement.arms):
         thrown = _thrown(one.condition)
@@ -140,7 +140,7 @@ def report_thrown_arms(statement: ir.If, around: Around, look: Look) -> None:
             return
 
 
-def report_thrown_again(body: ir.Body, around: Around, look: Look) -> None:
+def report_thrown_again(body: ir.Body, around: Around, look: LintContext) -> None:
     """`SHOW(RANDOM(1, 6))`, then `LOOP(RANDOM(1, 6))`: no number is shown that counts."""
     for one, other in pairwise(body):
         thrown = one.value if isinstance(one, ir.Show) and len(one.value) == len(_THROW) else ()
@@ -148,7 +148,7 @@ def report_thrown_again(body: ir.Body, around: Around, look: Look) -> None:
             _report_throw(thrown, look.head(other.span), look)
 
 
-def _report_throw(thrown: ir.Expression, span: Span, look: Look) -> None:
+def _report_throw(thrown: ir.Expression, span: Span, look: LintContext) -> None:
     low, high = (as_text(term.value) for term in thrown[:2])
     look.report(codes.NEW_THROW, span, random=f"RANDOM({low}, {high})")
 

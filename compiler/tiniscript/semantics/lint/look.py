@@ -26,7 +26,7 @@ class Around(NamedTuple):
     outermost: ir.Loop | ir.While | None = None  # of the loops around it
 
 
-class Look:
+class LintContext:
     """A program before it is optimised, its text and tokens; `found` are its warnings so far."""
 
     def __init__(self, program: ir.Program, kit: Kit, source: Source, scanned: Scan) -> None:
@@ -34,10 +34,10 @@ class Look:
         self.kit = kit
         self.source = source
         self.scan = scanned
-        self.found: list[Diagnostic] = []
+        self.diagnostics: list[Diagnostic] = []
 
     def report(self, code: Code, span: Span, **values: str) -> None:
-        self.found.append(Diagnostic(code, span, values))
+        self.diagnostics.append(Diagnostic(code, span, values))
 
     @cached_property
     def statements(self) -> list[ir.Statement | ir.Task]:

@@ -12,7 +12,7 @@ from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import asks_if_near, can_come_true, is_distance, looks_ahead
-from tiniscript.semantics.lint.look import STANDING_STATEMENTS, Around, Look
+from tiniscript.semantics.lint.look import STANDING_STATEMENTS, Around, LintContext
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
@@ -25,13 +25,13 @@ _LIKELY_TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
 _LIKELY_POWERS = range(20_000, 100_001)  # and a power
 
 
-def report_late_conditions(body: ir.Body, around: Around, look: Look) -> None:
+def report_late_conditions(body: ir.Body, around: Around, look: LintContext) -> None:
     """Look at the statements of a body, not at those within them."""
     _LateConditions(look).look_at(body, around.loop, around.is_repeated)
 
 
 class _LateConditions:
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: LintContext) -> None:
         self._look = look
         self._kit = look.kit
         self._source = look.source
@@ -154,34 +154,34 @@ class _LateConditions:
 
     def _idle(self, stop: ir.Stop, move: ir.Move, place: str, branch: ir.If) -> dict[str, str]:
         """Return the words for an S before or after a move, with a repair where one is sure."""
-        found, written = self._source[stop.span], self._source[move.span]
+        stop_text, move_text = self._source[stop.span], self._source[move.span]
         condition = branch.arms[0].condition
         comes = can_come_true(condition, move.direction, self._kit)
         if move.direction == "B" and self._distance_in(condition) is not None:
             comes = False  # what is behind the robot is not seen
         asked = self._look.condition(branch.arms[0].span, "IF") if comes else ""
-        values = {"found": found, "move": "", "next": "", place: written}
-        values["fix"] = f"{written} UNTIL({asked})" if asked else ""
+        values = {"found": stop_text, "move": "", "next": "", place: move_text}
+        values["fix"] = f"{move_text} UNTIL({asked})" if asked else ""
         if not comes:
-            values["needless" if place == "move" else "behind"] = written
+            values["needless" if place == "move" else "behind"] = move_text
         return values
 
     def _replacement_values(self, body: ir.Body, move: ir.Move, branch: ir.If) -> dict[str, str]:
         """Return what the move with its UNTIL takes the place of: all of it, or the move alone."""
         first, last = sorted((move.span, branch.span))
-        begin, there, end = (
+        begin, rest, end = (
             str(self._source.position(at)[0])
             for at in (first.start, branch.span.start, last.end - 1)
         )
         between = [item for item in body if first.end <= item.span.start < last.start]
         of = self._source[move.span]
         if len(branch.arms[0].body) > 1:
-            return {"of": of, "rest": there}
+            return {"of": of, "rest": rest}
         text = self._source.text
         beside = text[: first.start].rpartition("\n")[2] + text[last.end :].partition("\n")[0]
         is_alone = begin == end or not beside.partition("//")[0].strip()
         if any(not isinstance(item, ir.Read) for item in between) or not is_alone:
-            return {"of": of, "out": there}
+            return {"of": of, "out": rest}
         if begin == end:
             return {"all": self._source[Span(first.start, last.end)]}
         return {"first": begin, "last": end}
@@ -234,7 +234,7 @@ def _is_talk(statement: ir.Statement) -> bool:
     return is_wait or isinstance(statement, (ir.Read, ir.Show, ir.Beep))
 
 
-def report_unseen_motors(body: ir.Body, around: Around, look: Look) -> None:
+def report_unseen_motors(body: ir.Body, around: Around, look: LintContext) -> None:
     """Warn of each M of a body that the robot does not do for a while."""
     source = look.source
     for k, motors in enumerate(body):

@@ -16,7 +16,7 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import TIME, comparisons_in
 from tiniscript.semantics.ir import Beep, Expression, Move
-from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.lint.look import Around, LintContext
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import fold, known_value, sure_fault
 from tiniscript.semantics.ways import way_ms
@@ -47,7 +47,7 @@ _TOKENS_TO_SECOND_VALUE = 4  # tokens after its word, up to the second value
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
-def report_will_fault(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
+def report_will_fault(statement: ir.Statement | ir.Task, around: Around, look: LintContext) -> None:
     for expression in ir.expressions(statement):
         fault = sure_fault(fold(expression))
         if fault:
@@ -55,7 +55,7 @@ def report_will_fault(statement: ir.Statement | ir.Task, around: Around, look: L
             return
 
 
-def check_clock(statement: ir.Statement | ir.Task, around: Around, look: Look) -> None:
+def check_clock(statement: ir.Statement | ir.Task, around: Around, look: LintContext) -> None:
     """`TIME < 10000`: the clock counts seconds."""
     for expression in ir.expressions(statement):
         for device, op, number in comparisons_in(expression, look.kit):
@@ -65,14 +65,14 @@ def check_clock(statement: ir.Statement | ir.Task, around: Around, look: Look) -
                 look.report(codes.LONG_TIME, _clock_span(statement, limit, look), **values)
 
 
-def _clock_span(statement: ir.Statement | ir.Task, limit: str, look: Look) -> Span:
+def _clock_span(statement: ir.Statement | ir.Task, limit: str, look: LintContext) -> Span:
     """Return the place of a comparison of the clock as it is written, or else its statement."""
     pattern = rf"(?i)\bTIME\b[ \t]*[<>=]+[ \t]*{limit}\b|\b{limit}[ \t]*[<>=]+[ \t]*TIME\b"
-    found = re.compile(pattern).search(look.source.text, *statement.span)
-    return Span(*found.span()) if found else statement.span
+    clock_match = re.compile(pattern).search(look.source.text, *statement.span)
+    return Span(*clock_match.span()) if clock_match else statement.span
 
 
-def check_times(loop: ir.Loop, around: Around, look: Look) -> None:
+def check_times(loop: ir.Loop, around: Around, look: LintContext) -> None:
     """`LOOP(0)`, `LOOP(-1)`, which other languages take for one without an end; `LOOP(4.5)`."""
     times = known_value(loop.times)
     head = Span(loop.span.start, loop.span.start + len("LOOP"))
@@ -82,12 +82,12 @@ def check_times(loop: ir.Loop, around: Around, look: Look) -> None:
         look.report(codes.ROUNDED_TIMES, head, times=as_text(times), right=str(whole(times)))
 
 
-def check_move(move: Move, around: Around, look: Look) -> None:
-    found = _check_way(move, look.kit) if move.unit else _check_time(move, look)
-    look.found += found or _check_named_time(move, look)
+def check_move(move: Move, around: Around, look: LintContext) -> None:
+    diagnostics = _check_way(move, look.kit) if move.unit else _check_time(move, look)
+    look.diagnostics += diagnostics or _check_named_time(move, look)
 
 
-def _check_named_time(move: Move, look: Look) -> list[Diagnostic]:
+def _check_named_time(move: Move, look: LintContext) -> list[Diagnostic]:
     """`DEF SIDE(SIZE); F(SIZE, 60)`, called with 30: the values of its calls are looked at."""
     time = move.time or ()
     if move.unit or move.until is not None or [term.op for term in time] != ["VARIABLE"]:
@@ -99,11 +99,11 @@ def _check_named_time(move: Move, look: Look) -> list[Diagnostic]:
     if not values or None in values or is_time(look.program.variables[variable]):
         return []
     longest, text = max(value or 0 for value in values), look.source[move.span]
-    found = _warn_of_long_time(move, longest, known_value(move.power), look.kit, text)
-    return [it._replace(values={**it.values, "fix": ""}) for it in found]
+    diagnostics = _warn_of_long_time(move, longest, known_value(move.power), look.kit, text)
+    return [it._replace(values={**it.values, "fix": ""}) for it in diagnostics]
 
 
-def _check_time(move: Move, look: Look) -> list[Diagnostic]:
+def _check_time(move: Move, look: LintContext) -> list[Diagnostic]:
     """Return the warnings about the numbers of a move or a wait by its time.
 
     It is one thing at most, and for `R(03, 2)` what is said of its power, too. With UNTIL a long
@@ -237,10 +237,10 @@ def _is_milliseconds(time: int) -> bool:
     return is_whole and (time % (500 * SECOND) == 0 or time % (30 * SECOND) != 0)
 
 
-def check_beep(beep: Beep, around: Around, look: Look) -> None:
+def check_beep(beep: Beep, around: Around, look: LintContext) -> None:
     """Warn of a sound that lasts longer than anybody can bear."""
     time, hertz = known_value(beep.time), known_value(beep.hertz)
-    look.found += _warn_of_cut_value(beep.hertz, HERTZ, beep.span, "BEEP")
+    look.diagnostics += _warn_of_cut_value(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:
         look.report(codes.ZERO_TIME_MOVE, beep.span, word="BEEP")
     if time is None or hertz is None or time < LONG_BEEP:
@@ -259,7 +259,7 @@ def check_beep(beep: Beep, around: Around, look: Look) -> None:
     look.report(codes.LONG_TIME, beep.span, time=as_text(time), **gaps)
 
 
-def report_swapped_rounds(look: Look) -> None:
+def report_swapped_rounds(look: LintContext) -> None:
     """`ROUND(1, DISTANCE)`: a whole number is rounded, to as many decimals as something else."""
     tokens = [token for token in look.scan.tokens if token.kind is not NEWLINE]
     for k, token in enumerate(tokens[:-_TOKENS_TO_SECOND_VALUE]):
@@ -280,7 +280,7 @@ def report_swapped_rounds(look: Look) -> None:
             look.report(codes.SWAPPED, span, number=number.text, value=value, fix=fix)
 
 
-def report_swapped_names(move: Move, around: Around, look: Look) -> None:
+def report_swapped_names(move: Move, around: Around, look: LintContext) -> None:
     """`F(SPEED, TIME_S)`: variables that are set once, in the wrong order by name and number."""
     if move.until is not None or move.time is None or move.power is None or move.unit:
         return
@@ -317,6 +317,6 @@ def _warn_of_cut_value(
     value = known_value(expression)
     if value is None or argument.low <= value <= argument.high:
         return []
-    taken = as_text(argument.low if value < argument.low else argument.high)
-    values = {"word": word, "value": as_text(value), "unit": argument.unit, "taken": taken}
+    limit = as_text(argument.low if value < argument.low else argument.high)
+    values = {"word": word, "value": as_text(value), "unit": argument.unit, "taken": limit}
     return [Diagnostic(codes.CUT_VALUE, span, values)]

@@ -14,13 +14,13 @@ from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.semantics import ir
-from tiniscript.semantics.lint.look import Look
+from tiniscript.semantics.lint.look import LintContext
 
 _LASTING_STATEMENTS = (ir.Move, ir.Beep, ir.Loop, ir.While, ir.Call)
 _VISIBLE_STATEMENTS = (ir.Move, ir.Beep, ir.Motors)
 
 
-def report_asked_once(look: Look, remote: AbstractSet[int]) -> None:
+def report_asked_once(look: LintContext, remote: AbstractSet[int]) -> None:
     """Report the first of these readings: what is repeated around it has the others in it, too."""
     program = look.program
     for body in (program.body, *(task.body for task in program.tasks if task.look is None)):
@@ -28,7 +28,7 @@ def report_asked_once(look: Look, remote: AbstractSet[int]) -> None:
         for statement in _statements_done_once(body):
             read = next((item for item in _read(statement) if item[0] in remote), None)
             if read is not None:
-                look.found.append(_diagnostic(*read, statement, body, is_early, look))
+                look.diagnostics.append(_diagnostic(*read, statement, body, is_early, look))
                 return
             done = ir.walk_with_calls((statement,), program.procedures)
             if not isinstance(statement, ir.If) and remote & ir.referenced_numbers("SENSOR", done):
@@ -57,7 +57,12 @@ def _read(statement: ir.Statement) -> Iterator[tuple[int, Span]]:
 
 
 def _diagnostic(
-    sensor: int, span: Span, statement: ir.Statement, body: ir.Body, is_early: bool, look: Look
+    sensor: int,
+    span: Span,
+    statement: ir.Statement,
+    body: ir.Body,
+    is_early: bool,
+    look: LintContext,
 ) -> Diagnostic:
     name = look.kit.readings[sensor].name
     values = {"early" if is_early else "name": name}
@@ -69,7 +74,7 @@ def _diagnostic(
     return Diagnostic(codes.ASKED_ONCE, named, values, None, _loop_repair(span, body, look))
 
 
-def _loop_repair(span: Span, body: ir.Body, look: Look) -> Repair | None:
+def _loop_repair(span: Span, body: ir.Body, look: LintContext) -> Repair | None:
     """Put a loop around what is read once and all that follows, where the rest takes time."""
     rest = [each for each in body if each.span.end > span.start]
     if not any(

@@ -14,7 +14,7 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.semantics import ir
-from tiniscript.semantics.lint.look import Look
+from tiniscript.semantics.lint.look import LintContext
 from tiniscript.semantics.optimizer import known_value
 
 _WHEN_HEADER = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
@@ -22,7 +22,7 @@ _MANY = 6  # instructions that a suggestion shows
 _INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call)
 
 
-def report_kept_motors(look: Look) -> None:
+def report_kept_motors(look: LintContext) -> None:
     """Warn of each task that waits for a higher TASK, or never drives again."""
     program = look.program
     motors = _Motors(program)
@@ -44,7 +44,7 @@ def report_kept_motors(look: Look) -> None:
     _take_turns([task.body for task in tasks], look)
 
 
-def _take_turns(tasks: list[ir.Body], look: Look) -> None:
+def _take_turns(tasks: list[ir.Body], look: LintContext) -> None:
     """`TASK;F(4, 60);END_TASK;TASK;R(4, 60);END_TASK`: they take turns, and make no curve."""
     begin = [body[0] for body in (*tasks, look.program.body) if body and _is_move(body[0])]
     if len(begin) < 2 or not tasks[0] or begin[0] is not tasks[0][0]:
@@ -104,7 +104,7 @@ class _Motors:
         return is_wanted and once if takes_time else None
 
 
-def report_brief_tasks(look: Look) -> None:
+def report_brief_tasks(look: LintContext) -> None:
     """Warn of a TASK that is done once, and of a WHEN whose S lasts no longer than its answer."""
     program = look.program
     lower = [program.body, *(task.body for task in program.tasks if task.look is None)]
@@ -116,7 +116,7 @@ def report_brief_tasks(look: Look) -> None:
         done = [*ir.walk_with_calls(task.body, program.procedures)]
         if task.look is None:
             if task.body and _is_pause(task.body[-1]) and not any(map(_repeats, done)):
-                look.found.append(_single_run_diagnostic(task, look.source))
+                look.diagnostics.append(_single_run_diagnostic(task, look.source))
         elif driving and known_value(task.look.condition) is None:
             is_brief = all(isinstance(item, _INSTANT_STATEMENTS) for item in done)
             if is_brief and any(isinstance(item, ir.Stop) for item in done):
@@ -144,7 +144,7 @@ def _single_run_diagnostic(task: ir.Task, source: Source) -> Diagnostic:
     return Diagnostic(codes.TASK_DONE_ONCE, task.word, {}, None, Repair(edits, False))
 
 
-def report_lone_task(look: Look) -> None:
+def report_lone_task(look: LintContext) -> None:
     """`TASK;F(5, 50);BEEP(5, 440);END_TASK` alone: in it one comes after the other."""
     program = look.program
     is_idle = all(isinstance(each, (ir.Read, ir.Assign)) for each in program.body)
@@ -162,10 +162,10 @@ def report_lone_task(look: Look) -> None:
     repair = None if "//" in text or not isinstance(beside[1], ir.Move) else Repair((edit,), False)
     values = {"fix": ";".join(parts)} if repair else {}
     place = task.span if repair else None
-    look.found.append(Diagnostic(codes.LONE_TASK, task.word, values, place, repair))
+    look.diagnostics.append(Diagnostic(codes.LONE_TASK, task.word, values, place, repair))
 
 
-def _report_resumed_move(task: ir.Task, driving: ir.Statement, look: Look) -> None:
+def _report_resumed_move(task: ir.Task, driving: ir.Statement, look: LintContext) -> None:
     head = re.match(_WHEN_HEADER, look.source[task.span])
     values = {"line": str(look.source.position(driving.span.start)[0])}
     if head is not None:

@@ -14,7 +14,7 @@ from tiniscript.base.source import Source, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
-from tiniscript.semantics.lint.look import Around, Look
+from tiniscript.semantics.lint.look import Around, LintContext
 from tiniscript.semantics.named_values import use_of
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.cursor import INSTRUCTION_ENDS
@@ -39,7 +39,7 @@ MOST_NOTE_CHARACTERS = 200  # characters of a note that is looked at
 # -- what is never done ----------------------------------------------------------------------
 
 
-def report_never_reached(body: ir.Body, around: Around, look: Look) -> None:
+def report_never_reached(body: ir.Body, around: Around, look: LintContext) -> None:
     """What stands after a loop without an end, or after BREAK."""
     for before, after in pairwise(body):
         if not ir.falls_through((before,)):
@@ -54,7 +54,7 @@ def report_never_reached(body: ir.Body, around: Around, look: Look) -> None:
             return
 
 
-def report_instructions_in_notes(look: Look) -> None:
+def report_instructions_in_notes(look: LintContext) -> None:
     """`F(2, 80)//R(1, 60)`: instructions that stand in a note.
 
     Only a note that is a row of calls with numbers, or that has such a call after a `;`, is taken
@@ -86,7 +86,7 @@ def report_instructions_in_notes(look: Look) -> None:
             look.report(codes.IN_A_NOTE, note.span, found=text, rest=rest)
 
 
-def _report_all_notes(notes: Sequence[Token], look: Look) -> None:
+def _report_all_notes(notes: Sequence[Token], look: LintContext) -> None:
     """`// I go F(1, 80); W(2)`, where the program is nothing but notes."""
     for note in notes:
         rest = "; ".join(re.findall(_CALL, note.text, re.IGNORECASE))
@@ -101,10 +101,10 @@ def swallowed_instructions(note: str) -> list[str]:
     None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
     """
     first, *others = (part.strip() for part in re.split(r";|//", note.removeprefix("//")))
-    matches = [it for it in others if re.fullmatch(rf"{_CALL_IN_IT}|{_HEADER_OR_END[4:]}", it)]
-    is_row = all(item in matches or not set("()") & set(item) for item in (first, *others))
-    is_row = is_row and any(re.fullmatch(_CALL, it, re.IGNORECASE) for it in matches)
-    return matches if is_row and first else []
+    instructions = [it for it in others if re.fullmatch(rf"{_CALL_IN_IT}|{_HEADER_OR_END[4:]}", it)]
+    is_row = all(item in instructions or not set("()") & set(item) for item in (first, *others))
+    is_row = is_row and any(re.fullmatch(_CALL, it, re.IGNORECASE) for it in instructions)
+    return instructions if is_row and first else []
 
 
 def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
@@ -125,7 +125,7 @@ def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
 # -- blocks ----------------------------------------------------------------------------------
 
 
-def report_busy_loop(loop: ir.Loop | ir.While, around: Around, look: Look) -> None:
+def report_busy_loop(loop: ir.Loop | ir.While, around: Around, look: LintContext) -> None:
     """`WHILE(TRUE);X = DISTANCE;END_WHILE`: it never ends, and nothing in it takes time."""
     procedures = look.program.procedures
     if (
@@ -149,7 +149,7 @@ def _is_forever(loop: ir.Loop | ir.While) -> bool:
     return known_value(loop.condition) == 1
 
 
-def report_empty_blocks(body: ir.Body, around: Around, look: Look) -> None:
+def report_empty_blocks(body: ir.Body, around: Around, look: LintContext) -> None:
     """`LOOP(4)`, `END_LOOP`, and the moves below: beside what was probably meant to be in it.
 
     Nothing is said of an endless LOOP or a WHILE, which wait, nor of a block with a note inside or
@@ -197,7 +197,7 @@ def _leading_instructions(statements: Sequence[ir.Statement], source: Source) ->
 # -- what nobody uses ------------------------------------------------------------------------
 
 
-def report_unused_variables(look: Look) -> None:
+def report_unused_variables(look: LintContext) -> None:
     program = look.program
     used = ir.referenced_numbers("VARIABLE", look.statements)
     owners = {k: procedure for procedure in program.procedures for k in procedure.values}
@@ -212,7 +212,7 @@ def report_unused_variables(look: Look) -> None:
             look.report(codes.UNUSED_VARIABLE, statement.span, **values)
 
 
-def report_unused_readings(look: Look) -> None:
+def report_unused_readings(look: LintContext) -> None:
     """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
     asked = ir.referenced_numbers("SENSOR", look.statements)
     for statement in look.statements:
@@ -222,7 +222,7 @@ def report_unused_readings(look: Look) -> None:
             look.report(codes.UNUSED_READING, statement.span, name=name, fix=f"SHOW({name})")
 
 
-def report_unused_defs(look: Look) -> None:
+def report_unused_defs(look: LintContext) -> None:
     called = {
         statement.procedure for statement in look.statements if isinstance(statement, ir.Call)
     }
