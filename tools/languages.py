@@ -53,14 +53,14 @@ def sources() -> dict[str, Catalogue]:
     which is the one without a special case.
     """
     paths = [path for path in (FOLDER / SOURCE_LANGUAGE).glob("*.toml") if path.name != ABOUT_FILE]
-    found = {path.stem: catalogue_source.load(path) for path in paths}
-    lasts = {entry.key: entry for entry in found.get("messages", Catalogue()).entries.values()}
+    catalogues = {path.stem: catalogue_source.load(path) for path in paths}
+    lasts = {entry.key: entry for entry in catalogues.get("messages", Catalogue()).entries.values()}
     programs = {key: entry.english.splitlines() for key, entry in lasts.items()}
     for key, entry in lasts.items():
         code, _, part = key.partition("/")
         if code in CODES and part in ("message", "try"):
             entry.notes = [f"wrong: {row}" for row in programs.get(f"{code}/wrong", [])]
-    return dict(sorted({**found, NAMES_CATALOGUE: names()}.items()))
+    return dict(sorted({**catalogues, NAMES_CATALOGUE: names()}.items()))
 
 
 def names() -> Catalogue:
@@ -91,9 +91,9 @@ def pseudo(source: Catalogue) -> Catalogue:
     """Return the English texts with translations that are a third longer and have accents."""
     catalogue = Catalogue()
     for at, entry in source.entries.items():
-        said = {name: _longer(form) for name, form in entry.forms.items()}
-        said = entry.forms if entry.is_same and not entry.like else said
-        catalogue.entries[at] = Entry(*at, entry.plural, said, entry.hash, is_same=entry.is_same)
+        forms = {name: _longer(form) for name, form in entry.forms.items()}
+        forms = entry.forms if entry.is_same and not entry.like else forms
+        catalogue.entries[at] = Entry(*at, entry.plural, forms, entry.hash, is_same=entry.is_same)
     return catalogue
 
 
@@ -243,9 +243,11 @@ def report(own: Translation) -> int:
         catalogue = own.merge(name)
         path = own.path(name)
         wrong += tell(path, [*check_robot(catalogue)] if name == "robot" else [])
-        there = [entry for entry in catalogue.entries.values() if entry.seen or not entry.is_same]
-        entries += there
-        stale_entries = [entry for entry in there if entry.is_stale]
+        expected_entries = [
+            entry for entry in catalogue.entries.values() if entry.seen or not entry.is_same
+        ]
+        entries += expected_entries
+        stale_entries = [entry for entry in expected_entries if entry.is_stale]
         change_text = "its English text has changed, and so it is said in English"
         stale_count += tell(
             path,
@@ -255,7 +257,7 @@ def report(own: Translation) -> int:
             ],
         )
         if own.language.is_complete:
-            missing_count += tell(path, [*missing_rows(there)])
+            missing_count += tell(path, [*missing_rows(expected_entries)])
     new = [entry for entry in entries if entry.seen == UNKNOWN_HASH]
     if new:
         print(f"{own.code}: {len(new)} texts are new. Note of which English texts they are:  "

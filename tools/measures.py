@@ -30,7 +30,7 @@ def main() -> int:
     trees = {_name(path): ast.parse(path.read_bytes()) for path in package}
     graph = _graph(trees)
     late = sum(is_indented for tree in trees.values() for _, is_indented in _imports(tree))
-    for what, count in (
+    for label, count in (
         ("tracked lines", _lines(tracked)),
         ("tracked files", len(tracked)),
         ("Python of the package, lines", _lines(package)),
@@ -41,7 +41,7 @@ def main() -> int:
         ("imports that are indented", late),
         ("words of documents, by hand", _words(tracked)),
     ):
-        print(f"{what:38}{count:9,}")
+        print(f"{label:38}{count:9,}")
     return 0
 
 
@@ -148,8 +148,8 @@ def _targets(each: Import, name: str, files: dict[str, ast.Module]) -> Iterator[
 def circles(graph: Graph) -> set[frozenset[str]]:
     """Return the groups of files that import each other."""
     reached = {name: _reachable(graph, name) for name in graph}
-    groups = (frozenset(other for other in found if name in reached[other])
-              for name, found in reached.items())  # fmt: skip
+    groups = (frozenset(other for other in imports if name in reached[other])
+              for name, imports in reached.items())  # fmt: skip
     return {group for group in groups if len(group) > 1}
 
 

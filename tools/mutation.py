@@ -286,10 +286,10 @@ def tests_of(file: str) -> list[str]:
         is_long = name in order.LONG or name.startswith(order.PAGES)
         return is_long, -100 * (stem in path.stem) - len(re.findall(rf"\b{stem}\b", text))
 
-    found: dict[Path, None] = {}
+    tests: dict[Path, None] = {}
     for test in module_of(file).tests:
-        found |= dict.fromkeys(sorted((ROOT / test).rglob("test_*.py")) or [ROOT / test])
-    return [path.relative_to(ROOT).as_posix() for path in sorted(found, key=far)]
+        tests |= dict.fromkeys(sorted((ROOT / test).rglob("test_*.py")) or [ROOT / test])
+    return [path.relative_to(ROOT).as_posix() for path in sorted(tests, key=far)]
 
 
 # -- trying them -----------------------------------------------------------------------------------
@@ -373,9 +373,11 @@ def main(arguments: list[str] | None = None) -> int:
     if options.list:
         print("\n".join(mutant.name for mutant in chosen))
         return 0
-    kept = cache_folder() / f"mutation-{_code()}.json"
-    results: dict[str, str] = json.loads(kept.read_text("utf-8")) if kept.is_file() else {}
-    kept.parent.mkdir(parents=True, exist_ok=True)
+    results_path = cache_folder() / f"mutation-{_code()}.json"
+    results: dict[str, str] = (
+        json.loads(results_path.read_text("utf-8")) if results_path.is_file() else {}
+    )
+    results_path.parent.mkdir(parents=True, exist_ok=True)
 
     def work(rest: Iterator[Mutant]) -> None:
         with tempfile.TemporaryDirectory() as folder:
@@ -383,7 +385,7 @@ def main(arguments: list[str] | None = None) -> int:
             for mutant in rest:
                 if mutant.name not in results:
                     results[mutant.name] = copy.try_mutant(mutant)
-                    kept.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")
+                    results_path.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")
                 print(f"{mutant.name}: {results[mutant.name] or '**nothing**'}", flush=True)
 
     with ThreadPoolExecutor(AT_ONCE) as pool:

@@ -19,7 +19,7 @@ from tiniscript.library.named_robot import robot_of
 from tiniscript.recovery import rewrites
 from tiniscript.recovery.lines import Step
 from tiniscript.recovery.meanings import Names, lexemes, setup_of, texts
-from tiniscript.recovery.told import READERS, ROUNDS, Wrong
+from tiniscript.recovery.told import READERS, ROUNDS, WrongText
 
 OF_WHOLE_LINES = (
     "_sure_findings",
@@ -35,9 +35,9 @@ def trace(text: str) -> Iterator[str]:
         result = analyze(rest, kit).diagnostics
         if not any(each.is_mistake for each in result):
             break
-        wrong = Wrong(Source(rest), result, lambda each: analyze(each, kit).diagnostics, kit)
+        wrong = WrongText(Source(rest), result, lambda each: analyze(each, kit).diagnostics, kit)
         findings = ((reader, reader(wrong)) for reader in READERS)
-        reader, finding = next((each for each in findings if each[1].told), (None, None))
+        reader, finding = next((each for each in findings if each[1].diagnostics), (None, None))
         if reader is None or finding is None:
             yield f"{_line(rest)}: no reader, so usage.py says what it knows of the mistake"
             break

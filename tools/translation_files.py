@@ -118,8 +118,10 @@ class Translation:
                     new = (UNKNOWN_HASH, *[entry.seen for entry in group if fitting and entry.seen])
                     self._note(name, key, [entry.hash if entry.seen in new else entry.seen
                                            for entry in group])  # fmt: skip
-            there = {f"{name} {key}" for key in own.texts}
-            for item in [at for at in self.seen if at.startswith(f"{name} ") and at not in there]:
+            current_rows = {f"{name} {key}" for key in own.texts}
+            for item in [
+                at for at in self.seen if at.startswith(f"{name} ") and at not in current_rows
+            ]:
                 self._note(name, item.removeprefix(f"{name} "), [])
         return [pattern for pattern in patterns if pattern in unused]
 
@@ -153,8 +155,8 @@ class Translation:
         if self._is_seen_new and not self.seen_problems:
             order = [f"{name} {key}" for name, keys in self.groups.items() for key in keys]
             rest = sorted(self.seen.keys() - {*order})
-            there = (at for at in [*order, *rest] if at in self.seen)
-            lines = [f"{at} {' '.join(self.seen[at])}\n" for at in there]
+            seen_rows = (at for at in [*order, *rest] if at in self.seen)
+            lines = [f"{at} {' '.join(self.seen[at])}\n" for at in seen_rows]
             _write(self.folder / SEEN_FILE, SEEN_NOTE.format(self.code) + "".join(lines))
 
     def problems(self) -> Iterator[tuple[Path, list[Problem]]]:

@@ -28,15 +28,15 @@ SIMPLE = ((["one", "other"], "n != 1"), (["one", "other"], "n > 1"), (["other"],
 BRACES = "python-brace-format"  # gettext's flag for a text with gaps like {file}
 
 
-def exchange(what: str, english: dict[str, Catalogue]) -> int:
+def exchange(language_or_file: str, english: dict[str, Catalogue]) -> int:
     """Write a language into a file, or read one; return 1 where something is wrong."""
-    path = Path(what if what.endswith(END) else what + END)
+    path = Path(language_or_file if language_or_file.endswith(END) else language_or_file + END)
     if path.stem not in languages()[1:]:
         print(f"{path.stem}: no such language. Try:  python -m tools.languages {path.stem}")
         return 1
     own = Translation(path.stem, english)
     wrong = sum(tell(file, problems) for file, problems in own.problems())
-    if wrong or what.endswith(END):
+    if wrong or language_or_file.endswith(END):
         return 1 if wrong else take(path, own)
     print(f"{path}: {give(path, own)} texts. Read it with:  python -m tools.languages --po {path}")
     return 0
@@ -90,16 +90,16 @@ def take(path: Path, own: Translation) -> int:
     except (OSError, ValueError, LookupError) as error:  # UnicodeDecodeError is a ValueError
         print(f"{path}: this cannot be read: {error}")
         return 1
-    taken = wrong = 0
+    taken_count = wrong = 0
     for message in catalog:
         forms = _forms(message, own.language)
         if message.id and not message.fuzzy and all(forms.values()):
             if why := _take_text(message, forms, own):
                 print(f"{path}:{message.lineno}: {why}")
                 wrong += 1
-            taken += not why
+            taken_count += not why
     own.write()
-    print(f"{path}: {taken} texts are taken")
+    print(f"{path}: {taken_count} texts are taken")
     return 1 if wrong else 0
 
 
@@ -121,10 +121,10 @@ def _take_text(message: Message, forms: Forms, own: Translation) -> str:
     entry = next((entry for entry in group if (entry.english, entry.plural) == expected), None)
     if entry is None:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
-    said, seen = entry.translation, entry.seen
+    old_translation, seen = entry.translation, entry.seen
     entry.translation, entry.seen = forms, entry.hash
     if why := misfits(entry, own.language):
-        entry.translation, entry.seen = said, seen
+        entry.translation, entry.seen = old_translation, seen
         return f"{message.context}: {why[0]}"
     own.put(name, key, group)
     return ""
@@ -153,5 +153,5 @@ def _forms_by(names: list[str], rule: str) -> list[str]:
 def _cldr_categories(count: int, rule: str, of_cldr: Callable[[int], str]) -> list[str]:
     """Return how CLDR calls the forms of a rule of gettext, nothing if a form has no number."""
     form = c2py(rule)
-    found = {form(number): of_cldr(number) for number in range(NUMBERS_TRIED)}
-    return [found[k] for k in range(count)] if found.keys() == {*range(count)} else []
+    category_of = {form(number): of_cldr(number) for number in range(NUMBERS_TRIED)}
+    return [category_of[k] for k in range(count)] if category_of.keys() == {*range(count)} else []

@@ -30,11 +30,11 @@ def main() -> None:
 
 
 def sizes() -> None:
-    matches = []
+    size_rows = []
     for name, text in zip(ROWS, PROGRAMS, strict=True):
         ours = compile_text(text, KIT)
-        matches.append((name, *(f"{len(item)} bytes" for item in (ours.code, ours.image))))
-    page.show("compiler", matches)
+        size_rows.append((name, *(f"{len(item)} bytes" for item in (ours.code, ours.image))))
+    page.show("compiler", size_rows)
 
 
 def median_pair(ours: Callable[[], object], theirs: Callable[[], object], runs: int) -> list[float]:

@@ -32,13 +32,15 @@ def wired(name: str, robot: Robot) -> Wiring:
     """Return the motors of a driver, on the first pins that fit and that nothing else has."""
     chip, driver = CHIPS[robot.board.chip], DRIVERS["motors", name]
     settings = {setting.key: setting.default for setting in driver.settings}
-    taken = {*chip.link_pins, 11, 13, robot.board.start_button}
+    used_pins = {*chip.link_pins, 11, 13, robot.board.start_button}
     pins = {}
     for key, need, _, fixed, _ in driver.pins:
         if fixed is None:
-            can = (pin for pin in sorted(chip.digital) if chip.can(pin, need) and pin not in taken)
+            can = (
+                pin for pin in sorted(chip.digital) if chip.can(pin, need) and pin not in used_pins
+            )
             pins[key] = next(can)
-            taken.add(pins[key])
+            used_pins.add(pins[key])
         elif driver.chosen_by(key, settings):
             pins[key] = fixed
     return Wiring(name, pins, settings)

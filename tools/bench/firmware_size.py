@@ -96,7 +96,7 @@ def main() -> int:
         print(why, file=sys.stderr)
         return 2
     is_enough = True
-    found = []
+    size_rows = []
     for sketch in sketches:
         is_enough &= sketch.flash <= sketch.holds
         free = "-"
@@ -105,8 +105,8 @@ def main() -> int:
             is_enough &= stack.least_free >= firmware_stack.LEAST_FREE
             free = f"{stack.least_free:,}"
         sizes = [f"{size:,}" for size in (sketch.flash, sketch.holds, sketch.ram)]
-        found.append([row_of(sketch.robot, sketch.board), *sizes, free])
-    page.show("firmware_size", found)
+        size_rows.append([row_of(sketch.robot, sketch.board), *sizes, free])
+    page.show("firmware_size", size_rows)
     if uno.missing():
         print(uno.missing())
     return int(not is_enough)

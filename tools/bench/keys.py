@@ -64,19 +64,21 @@ class Hand:
 
     def change(self, held: Pressed) -> float:
         """Return the ms from a change of what is held to the last of the pins that it changes."""
-        begun, told = self._begin()
+        begun, event_count = self._begin()
         self._hold(held)
-        return self._ms_from(begun, told, held != NOTHING_PRESSED)
+        return self._ms_from(begun, event_count, held != NOTHING_PRESSED)
 
     def lose(self) -> float:
         """Return the ms from where a line is lost, over which somebody drives, to motors off."""
         self._hold(PAD_AHEAD, ANEW_MS)
-        begun, told = self._begin()
+        begun, event_count = self._begin()
         for _ in range(LOST_MS):  # what both say does not arrive
             self._wired.session.poll(self._wired.now_ms)
             self._board.run_ms(1)
-        heard = [event.cycle for event in self._board.events[told:] if event.what == "received"]
-        return self._ms_from(max([begun, *heard]), told, False)
+        heard = [
+            event.cycle for event in self._board.events[event_count:] if event.what == "received"
+        ]
+        return self._ms_from(max([begun, *heard]), event_count, False)
 
     def _hold(self, held: Pressed, more_ms: int = 0) -> None:
         for ms in range(more_ms + self._chance.randint(*HELD_MS)):
@@ -89,17 +91,17 @@ class Hand:
         self._board.run_to(self._board.cycle + self._chance.randrange(CYCLES_PER_MS))
         return self._board.cycle, len(self._board.events)
 
-    def _ms_from(self, begun: int, told: int, are_on: bool) -> float:
+    def _ms_from(self, begun: int, event_count: int, are_on: bool) -> float:
         """Raises RuntimeError where the motors are not as they must be in the end."""
-        matches = [
+        motor_events = [
             event
-            for event in self._board.events[told:]
+            for event in self._board.events[event_count:]
             if event.what == "pin" and event["pin"] in MOTORS
         ]
-        last = {event["pin"]: event["is"] for event in matches}
+        last = {event["pin"]: event["is"] for event in motor_events}
         if {last.get(pin) for pin in PWM_PINS} != {"pwm" if are_on else "low"}:
             raise RuntimeError(f"the motors have not gone {'on' if are_on else 'off'}: {last}")
-        return (matches[-1].cycle - begun) / CYCLES_PER_MS
+        return (motor_events[-1].cycle - begun) / CYCLES_PER_MS
 
 
 def measure(firmware: Path, baud: int) -> list[list[float]]:
@@ -116,14 +118,14 @@ def main() -> int:
     return on_each_baud(measure, print_figures)
 
 
-def print_figures(found: dict[int, list[list[float]]], _: Path) -> bool:
+def print_figures(figures_by_baud: dict[int, list[list[float]]], _: Path) -> bool:
     """Print the figures, half and the slowest of each; return whether they are kept."""
-    by_row = zip(*found.values(), strict=True)
+    by_row = zip(*figures_by_baud.values(), strict=True)
     page.show("keys", [
         (row, *(f"{statistics.median(ms):{form}} and {max(ms):{form}} ms" for ms in figures))
         for row, form, figures in zip(ROWS, FORMS, by_row, strict=True)
     ])  # fmt: skip
-    return all(is_kept(baud, *rows) for baud, rows in found.items())
+    return all(is_kept(baud, *rows) for baud, rows in figures_by_baud.items())
 
 
 def is_kept(

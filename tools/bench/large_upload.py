@@ -72,7 +72,7 @@ def upload(
     robot: HostFirmware, kit: int, code_bytes: int, baud: int = BAUD,
 ) -> Took:  # fmt: skip
     """Upload a program to a robot that has just begun. Raises RuntimeError where it is not done."""
-    there, back = (Wire(baud, ROUND_TRIP_MS / 2) for _ in range(2))
+    to_robot, from_robot = (Wire(baud, ROUND_TRIP_MS / 2) for _ in range(2))
     session = Session(7, baud, kit)
     image = program(code_bytes)
     hello = session.hello()
@@ -86,10 +86,10 @@ def upload(
         if request is not None:
             frames += len([part for part in data.split(b"\0") if part])
             sent_bytes += len(data)
-        there.send(data, now_ms)
+        to_robot.send(data, now_ms)
         now_ms += 1
-        back.send(robot.step(there.receive(now_ms)), now_ms)
-        session.receive(back.receive(now_ms), now_ms)
+        from_robot.send(robot.step(to_robot.receive(now_ms)), now_ms)
+        session.receive(from_robot.receive(now_ms), now_ms)
         if now_ms > MOST_MS:
             raise RuntimeError("the upload has no end")
     if request.outcome.status != OK:

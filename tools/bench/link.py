@@ -136,8 +136,8 @@ def on_each_baud(
         return 2
     with tempfile.TemporaryDirectory() as name:
         try:
-            found = {baud: measure(build(baud, Path(name)), baud) for baud in BAUDS}
-            return int(not are_kept(found, Path(name)))
+            figures_by_baud = {baud: measure(build(baud, Path(name)), baud) for baud in BAUDS}
+            return int(not are_kept(figures_by_baud, Path(name)))
         except RuntimeError as failed:
             print(failed, file=sys.stderr)
             return 2
@@ -147,9 +147,9 @@ def main() -> int:
     return on_each_baud(measure, print_figures)
 
 
-def print_figures(found: dict[int, Figures], folder: Path) -> bool:
+def print_figures(figures_by_baud: dict[int, Figures], folder: Path) -> bool:
     """Print the figures, and those of the other sketches; return whether all are kept."""
-    figures = [*found.values()]
+    figures = [*figures_by_baud.values()]
     page.show("link", [
         (ROWS[0], *(f"{figure.start_ms:.1f} ms" for figure in figures)),
         (ROWS[1], *(f"{figure.live_us:.0f} µs" for figure in figures)),
@@ -161,11 +161,11 @@ def print_figures(found: dict[int, Figures], folder: Path) -> bool:
     page.show("link", [
         (row, f"{others[name].us:.1f} µs", f"{others[name].together_us:.1f} µs")
         for name, row in OTHER_BOARDS.items()
-    ], which=1)  # fmt: skip
+    ], position=1)  # fmt: skip
     late = [name for name, stop in others.items() if stop.us > STOP_US]
     if late:
         print(f"stops later than after {STOP_US} µs: {', '.join(late)}", file=sys.stderr)
-    return not late and all(is_kept(baud, figure) for baud, figure in found.items())
+    return not late and all(is_kept(baud, figure) for baud, figure in figures_by_baud.items())
 
 
 def measure_other_stops(folder: Path) -> dict[str, stops.Slowest]:

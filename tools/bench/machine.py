@@ -56,8 +56,8 @@ def cycles() -> None:
         alone = [f"{per_iteration(work):,.0f}" for work in workloads.WORKS]
     if not uno.missing():
         firmware = firmware_size.measure("uno").firmware
-        matches = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
-        sketch = [f"{item:,.0f}" for item in matches]
+        cycle_counts = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
+        sketch = [f"{item:,.0f}" for item in cycle_counts]
     rows = zip(ROWS, (alone, sketch), strict=True)
     page.show("machine", [(row, "thousandths", *figures) for row, figures in rows])
     for why in filter(None, (avr_bench.missing(), uno.missing())):

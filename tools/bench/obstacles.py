@@ -44,7 +44,7 @@ class Drive(NamedTuple):
 
 
 def main() -> None:
-    matches = []
+    figure_rows = []
     for row, name in zip(ROWS, PROGRAMS, strict=True):
         text = (ROOT / "examples" / name).read_text(encoding="utf-8")
         with ProcessPoolExecutor() as pool:
@@ -54,10 +54,10 @@ def main() -> None:
         stood_s = max(item.stood_s for item in drives)
         stuck = sum(item.stood_s >= STUCK_S for item in drives)
         longest = f"{stood_s:.1f} s" if stood_s < STUCK_S else f"{stood_s:.0f} s"
-        matches.append((row, f"{median(contacts):.0f}", f"{max(contacts)}", f"{metres:.0f}",
+        figure_rows.append((row, f"{median(contacts):.0f}", f"{max(contacts)}", f"{metres:.0f}",
             longest,
                       f"{stuck} of {SEEDS}"))  # fmt: skip
-    page.show("obstacles", matches)
+    page.show("obstacles", figure_rows)
 
 
 def drive(text: str, seed: int) -> Drive:

@@ -249,10 +249,10 @@ def _build(part: Part, use: str, chip: str) -> Size:
 
 
 def _finished_code(*command: str) -> str:
-    ran = subprocess.run(command, capture_output=True, text=True)
-    if ran.returncode != 0:
-        raise RuntimeError(f"{command[0]} fails:\n{ran.stderr[:4000]}")
-    return ran.stdout
+    completed = subprocess.run(command, capture_output=True, text=True)
+    if completed.returncode != 0:
+        raise RuntimeError(f"{command[0]} fails:\n{completed.stderr[:4000]}")
+    return completed.stdout
 
 
 def main() -> int:

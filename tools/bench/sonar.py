@@ -99,16 +99,16 @@ def is_there(ms: float) -> float:
 
 
 def main() -> None:
-    found: list[list[str]] = [[row] for row in ROWS]
+    figure_rows: list[list[str]] = [[row] for row in ROWS]
     for is_trusting in (True, False):
         runs = [looked(seed, is_trusting) for seed in range(SEEDS)]
         wrong, readings = sum(run.wrong for run in runs), sum(run.readings for run in runs)
-        found[0].append(f"{wrong:,} of {readings:,}")
-        found[1].append(f"{sum(run.wrong > 0 for run in runs)} of {SEEDS}")
+        figure_rows[0].append(f"{wrong:,} of {readings:,}")
+        figure_rows[1].append(f"{sum(run.wrong > 0 for run in runs)} of {SEEDS}")
         for row, way in ((2, comes), (3, is_there)):
             late = [late_ms(way, phase / PHASES, is_trusting) for phase in range(PHASES)]
-            found[row].append(f"{median(late):.0f} ms, {max(late):.0f} ms")
-    page.show("sonar", found)
+            figure_rows[row].append(f"{median(late):.0f} ms, {max(late):.0f} ms")
+    page.show("sonar", figure_rows)
 
 
 if __name__ == "__main__":

@@ -167,8 +167,8 @@ def busy(kit: Kit) -> str:
 def slowest(firmware: Path, robot: Robot, board: str, baud: int) -> Slowest:
     """Return the slowest of some hundred stops."""
     with Busy(firmware, robot, board, baud) as stopped:
-        found = {at: stopped.stop(Place(at)) for at in range(0, PERIOD, COARSE)}
-        center = max(found, key=lambda at: found[at])
+        stop_ms_at = {at: stopped.stop(Place(at)) for at in range(0, PERIOD, COARSE)}
+        center = max(stop_ms_at, key=lambda at: stop_ms_at[at])
         for at in range(center - AROUND, center + AROUND, FINE):
             stopped.stop(Place(at))
         if stopped.has_echo:

@@ -119,21 +119,21 @@ TYPE = """async ([text, count, isPausing]) => {
 def main() -> None:
     if why := studio.missing():
         sys.exit(why)
-    matches: list[tuple[str, ...]] = []
+    figure_rows: list[tuple[str, ...]] = []
     with (
         studio.driver() as driver,
         studio.served() as server,
         studio.browser(driver, is_whole=True) as browser,
     ):
         for rows in (_measure, _time_to_move, _drawing_cost):
-            matches += [(ROWS[name], *cells) for name, *cells in rows(browser, server.address)]
+            figure_rows += [(ROWS[name], *cells) for name, *cells in rows(browser, server.address)]
         slowest_ms = _stopped_ms(browser)
     with studio.served(_packed_files()) as server:
         rated = _lighthouse_scores(server.address).values()
-        matches.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in rated), "95"))
+        figure_rows.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in rated), "95"))
     packed = int(size_rows(PAGE)[-1].split()[1].replace(",", ""))
-    matches.append((ROWS["files"], f"{packed / 1e6:.2f} MB", "6 MB"))
-    page_of_figures.show("studio", matches)
+    figure_rows.append((ROWS["files"], f"{packed / 1e6:.2f} MB", "6 MB"))
+    page_of_figures.show("studio", figure_rows)
     if slowest_ms > STOP_LEAVES_MS:
         sys.exit(f"STOP ALL left the page after {slowest_ms:.0f} ms")
 
@@ -230,8 +230,8 @@ def _stopped_ms(browser: Browser) -> float:
 
         def writes(pupils: list[str], last: int) -> None:
             for token in pupils:
-                told = {"do": "here", "text": f"{_program(480)} // {last}", "robot": "tinibot"}
-                room.answer(token, "192.0.2.7", told)
+                message = {"do": "here", "text": f"{_program(480)} // {last}", "robot": "tinibot"}
+                room.answer(token, "192.0.2.7", message)
 
         writes(tokens, 0)
         context = browser.new_context(viewport={"width": 1366, "height": 768})
@@ -313,12 +313,12 @@ def _lighthouse_scores(address: str) -> dict[str, float]:
     node = str(Path(tools.node[0]).parent)  # npm starts Lighthouse by the first node in PATH
     settings = {**os.environ, "CHROME_PATH": studio.chromium() or "",
                 "PATH": os.pathsep.join((node, os.environ["PATH"]))}  # fmt: skip
-    matches: list[dict[str, Any]] = []
+    reports: list[dict[str, Any]] = []
     for _ in range(RATINGS):
         completed = subprocess.run(call, env=settings, capture_output=True, text=True, check=True)
-        matches.append(json.loads(completed.stdout)["categories"])
+        reports.append(json.loads(completed.stdout)["categories"])
     return {
-        name: 100 * median(item[name]["score"] for item in matches) for name in RATED_CATEGORIES
+        name: 100 * median(item[name]["score"] for item in reports) for name in RATED_CATEGORIES
     }
 
 

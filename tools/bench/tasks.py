@@ -72,7 +72,7 @@ def main() -> int:
     page.show("tasks", [
         (part, *(f"{size[item] - less[part][item] or ''}" for item in ("flash", "ram")))
         for part, size in parts_of(firmware).items()
-    ], which=1)  # fmt: skip
+    ], position=1)  # fmt: skip
     return 0
 
 

@@ -50,12 +50,12 @@ def main() -> int:
     return on_each_baud(measure, print_figures)
 
 
-def print_figures(found: dict[int, list[float]], _: Path) -> bool:
+def print_figures(figures_by_baud: dict[int, list[float]], _: Path) -> bool:
     """Print the figures; return whether the short line's are kept."""
-    by_line = zip(*found.values(), strict=True)
+    by_line = zip(*figures_by_baud.values(), strict=True)
     page.show("text", [(row, *(f"{ms:.2f} ms" for ms in figures))
                        for row, figures in zip(ROWS, by_line, strict=True)])  # fmt: skip
-    return all(short_ms <= MUST_MS for short_ms, _ in found.values())
+    return all(short_ms <= MUST_MS for short_ms, _ in figures_by_baud.values())
 
 
 if __name__ == "__main__":

@@ -81,8 +81,8 @@ class Bench:
 def measure(bench: Bench, runs: int) -> tuple[float, float]:
     """Return the medians (ms) of an upload and of a process that does nothing, taken in turn."""
     bench.measure_move_ms()  # what is cached is cached now
-    matches = [(bench.measure_move_ms(), bench.measure_nothing_ms()) for _ in range(runs)]
-    moves_ms, nothing_ms = (statistics.median(item) for item in zip(*matches, strict=True))
+    pairs = [(bench.measure_move_ms(), bench.measure_nothing_ms()) for _ in range(runs)]
+    moves_ms, nothing_ms = (statistics.median(item) for item in zip(*pairs, strict=True))
     return moves_ms, nothing_ms
 
 

@@ -28,11 +28,11 @@ ROWS = tuple(f"`{name}`" for name, _, _ in PROGRAMS)
 
 
 def main() -> None:
-    matches = []
+    figure_rows = []
     for name, robot, world in PROGRAMS:
         times = max(SECONDS / _run_alone_s(name, robot, world) for _ in range(RUNS))
-        matches.append((f"`{name}`", f"`{world}`", f"{times:,.0f}"))
-    page.show("virtual", matches)
+        figure_rows.append((f"`{name}`", f"`{world}`", f"{times:,.0f}"))
+    page.show("virtual", figure_rows)
 
 
 def _run_alone_s(name: str, robot: str, world: str) -> float:

@@ -82,14 +82,14 @@ class Robot(Talk):
         weaker = round(100 * (1 - SLOW / FAST))
         trim = Trim(balance=weaker if seed % 2 else -weaker)
         self.until(self.session.trim(trim.data()))
-        matches = []
+        measures = []
         for power in (40, 80):
             ahead, _, _ = self.drive(f"F(2, {power})")
-            matches.append(round(ahead / TAPE_CM) * TAPE_CM / 2)
+            measures.append(round(ahead / TAPE_CM) * TAPE_CM / 2)
         for power in (40, 80):
             _, _, turned = self.drive(f"R(1, {power})")
-            matches.append(round(abs(turned) / PROTRACTOR) * PROTRACTOR)
-        self.until(self.session.trim(trim._replace(pace=Pace(*matches)).data()))
+            measures.append(round(abs(turned) / PROTRACTOR) * PROTRACTOR)
+        self.until(self.session.trim(trim._replace(pace=Pace(*measures)).data()))
 
 
 def off(seed: int, slip: float, how: str) -> tuple[float, float, float]:
@@ -113,10 +113,10 @@ def off_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float
     one = Driven(firmware, seed, motors, Roughness(slip))
     with one.uno:
         one.drive(GO)
-        gone = one.pose
+        pose_after = one.pose
         one.drive(TURN)
-        turned = one.pose.heading - gone.heading
-    return abs(gone.x_cm - 100), abs(gone.y_cm), abs(turned + 360)
+        turned = one.pose.heading - pose_after.heading
+    return abs(pose_after.x_cm - 100), abs(pose_after.y_cm), abs(turned + 360)
 
 
 def flash() -> int:
@@ -129,8 +129,8 @@ def flash() -> int:
         header = project / "src" / "vm" / "bytecode.h"
         text = header.read_text(encoding="utf-8")
         for pattern, none in known.items():
-            text, found = re.subn(pattern, none, text)
-            assert found == 1, pattern
+            text, count = re.subn(pattern, none, text)
+            assert count == 1, pattern
         header.write_text(text, encoding="utf-8")
         return measure("uno").flash - measure("uno", project).flash
 
@@ -164,14 +164,14 @@ class Off(NamedTuple):
     is_good: bool
 
     @classmethod
-    def summarise(cls, how: str, found: Sequence[tuple[float, float, float]]) -> Off:
+    def summarise(cls, how: str, offsets: Sequence[tuple[float, float, float]]) -> Off:
         limits = LIMITS[how]
-        ways = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in found)
-        turns = sum(item[2] <= limits[2] for item in found)
+        ways = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in offsets)
+        turns = sum(item[2] <= limits[2] for item in offsets)
         within = f"{ways} and {turns}" if limits[0] < math.inf else "-"
-        is_good = 100 * min(ways, turns) >= WANTED_PERCENT * len(found)
+        is_good = 100 * min(ways, turns) >= WANTED_PERCENT * len(offsets)
         return cls(
-            tuple(worst_wanted(column) for column in zip(*found, strict=True)), within, is_good
+            tuple(worst_wanted(column) for column in zip(*offsets, strict=True)), within, is_good
         )
 
     def cells(self) -> tuple[str, str, str]:
@@ -184,8 +184,8 @@ if __name__ == "__main__":
     parser.add_argument("seeds", nargs="?", type=int, default=SEEDS)
     parser.add_argument("--uno", action="store_true", help="the firmware on a simulated chip")
     parser.add_argument("--size", action="store_true", help="only what they take of an Uno's flash")
-    given = parser.parse_args()
-    if given.size:
+    options = parser.parse_args()
+    if options.size:
         print(f"Without discs ways take {flash()} bytes of an Uno's flash.")
         sys.exit()
-    sys.exit(main(given.seeds, given.uno))
+    sys.exit(main(options.seeds, options.uno))

@@ -88,9 +88,9 @@ def calls(disassembled: str, sections: list[Section]) -> list[Call]:
 
     calls = []
     for at, target in _CALL.findall(disassembled):
-        here, there = place(int(at, 16)), place(int(target, 16))
-        if here and there and here[0] != there[0]:
-            calls.append(Call(*here, *there))
+        caller, callee = place(int(at, 16)), place(int(target, 16))
+        if caller and callee and caller[0] != callee[0]:
+            calls.append(Call(*caller, *callee))
     return calls
 
 

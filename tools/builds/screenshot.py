@@ -129,10 +129,10 @@ def take(language: str, scene: str, target: Path) -> None:
         pages.close()
     if pages.wrong:
         raise SystemExit(f"the page said {pages.wrong[0]}")
-    kept = PngInfo()
+    metadata = PngInfo()
     text = sorted({row.strip() for word in words for row in word.splitlines() if row.strip()})
-    kept.add_text(WORDS_SCENE, json.dumps([item for item in text if is_said(item)]))
-    _sheet(shots).quantize(COLOURS).save(target, optimize=True, pnginfo=kept)
+    metadata.add_text(WORDS_SCENE, json.dumps([item for item in text if is_said(item)]))
+    _sheet(shots).quantize(COLOURS).save(target, optimize=True, pnginfo=metadata)
 
 
 @contextmanager
@@ -355,9 +355,10 @@ def why_stale(language: str, scene: str = "") -> str:
         words = json.loads(str(image.info.get(WORDS_SCENE, "[]")))
     if not words:
         return f"{path.name} does not say what can be read in it. Take it:  {COMMAND}"
-    gone = [word for word in words if not is_said(word)]
-    if gone:
-        return f"{path.name} shows “{gone[0]}”, which the page says no more. Take it:  {COMMAND}"
+    missing_words = [word for word in words if not is_said(word)]
+    if missing_words:
+        word = missing_words[0]
+        return f"{path.name} shows “{word}”, which the page says no more. Take it:  {COMMAND}"
     return ""
 
 

@@ -121,10 +121,10 @@ def stage(half: Path, documents: list[Document], on: Shelf, language: str) -> No
     }
     front = sources(on.root, FRONT_PAGE)
     front_page = page(front.get(language, FRONT_PAGE), on, Place(language, "index"))
-    for name, said in {**pages, "index": front_page + contents(documents, language)}.items():
+    for name, markdown in {**pages, "index": front_page + contents(documents, language)}.items():
         target = half / f"{name}.md"
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(said, encoding="utf-8")
+        target.write_text(markdown, encoding="utf-8")
     for name in sorted(on.pictures):
         on.copy(name, half / FILES / name)
     for name in ("templates", "static"):
@@ -136,9 +136,9 @@ def render(half: Path, folder: Path, documents: list[Document], has_studio: bool
     """Make the pages of one half with Sphinx. Raises CannotMake with what it complains about."""
     language = folder.name
     others = {item: language_info(item).name for item in halves_of(documents) if item != language}
-    told = {"others": others, "pages": {page.name: list(page.sources) for page in documents},
+    settings = {"others": others, "pages": {page.name: list(page.sources) for page in documents},
             "has_studio": has_studio}  # fmt: skip
-    (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
+    (half / "half.json").write_text(json.dumps(settings), encoding="utf-8")
     words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going",
              "-E", "-D", f"language={language}", "-d", str(half.parent / f"{language}.trees"),
              str(half), str(folder)]  # fmt: skip

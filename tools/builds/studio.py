@@ -175,8 +175,8 @@ def build_again(page: Path) -> None:
 
 def bring_firmware(page: Path) -> None:
     """Put the package's firmware beside the page: no browser fetches it before it is wanted."""
-    found = {name: file for name, file in with_firmware({}).items() if name != FIRMWARE}
-    if not found:
+    firmware_files = {name: file for name, file in with_firmware({}).items() if name != FIRMWARE}
+    if not firmware_files:
         raise CannotMake(
             "the package has no firmware. Build it:  python -m tools.builds.firmware_files"
         )
@@ -254,11 +254,16 @@ def offline(target: Path) -> None:
     whole = hashlib.sha256()
     for name in names:
         whole.update(f"{name}\0".encode() + hashlib.sha256((target / name).read_bytes()).digest())
-    said = {code: language_files(code) for code in languages()}
-    later = {name for code in said if code != SOURCE_LANGUAGE for name in said[code]}
+    files_by_language = {code: language_files(code) for code in languages()}
+    later = {
+        name
+        for code in files_by_language
+        if code != SOURCE_LANGUAGE
+        for name in files_by_language[code]
+    }
     apart = {"index.html", LICENCES, FIRMWARE, *later}
     files = ["./", *(name for name in names if name not in apart)]
-    constants = {"VERSION": whole.hexdigest()[:16], "FILES": files, "LANGUAGES": said}
+    constants = {"VERSION": whole.hexdigest()[:16], "FILES": files, "LANGUAGES": files_by_language}
     head = "".join(f"const {name} = {json.dumps(value)};\n" for name, value in constants.items())
     worker = (SOURCES / "src" / "service_worker.js").read_text(encoding="utf-8")
     (target / "service_worker.js").write_text(head + worker, encoding="utf-8")
@@ -314,8 +319,8 @@ def run(call: list[str], *arguments: str) -> str:
     return completed.stdout
 
 
-def say(what: str) -> None:
-    print(f"build_studio: {what}", file=sys.stderr, flush=True)
+def say(sentence: str) -> None:
+    print(f"build_studio: {sentence}", file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

@@ -124,8 +124,10 @@ def operand_table() -> str:
     return table(("operand", "bytes", "range", "meaning"), rows)
 
 
-def numbered(head: Sequence[str], found: Mapping[str, tuple[int, str]]) -> str:
-    return table(head, [(number, f"`{name}`", what) for name, (number, what) in found.items()])
+def numbered(head: Sequence[str], meanings: Mapping[str, tuple[int, str]]) -> str:
+    return table(
+        head, [(number, f"`{name}`", meaning) for name, (number, meaning) in meanings.items()]
+    )
 
 
 def role_table() -> str:
@@ -138,9 +140,9 @@ def role_table() -> str:
 
 def fault_table() -> str:
     rows = []
-    for number, name, what in opcodes.FAULTS:
+    for number, name, meaning in opcodes.FAULTS:
         faulting = ", ".join(f"`{item}`" for item in opcodes.FAULTING_OPS[name])
-        rows.append((number, f"`{name}`", what, faulting or "none, in verified code"))
+        rows.append((number, f"`{name}`", meaning, faulting or "none, in verified code"))
     return table(("number", "fault", "when", "instructions"), rows)
 
 

@@ -38,9 +38,9 @@ def header(command: str) -> str:
     fields = [
         (f"k{camel(field.name)}At", at) for at, field in zip(offsets, image.FIELDS, strict=False)
     ]
-    rules = [(name, number, what) for name, (number, what) in verify.RULES.items()]
-    refusals = [(name, number, what) for name, (number, what) in image.REFUSALS.items()]
-    faults = [(name, number, what) for number, name, what in opcodes.FAULTS]
+    rules = [(name, number, meaning) for name, (number, meaning) in verify.RULES.items()]
+    refusals = [(name, number, meaning) for name, (number, meaning) in image.REFUSALS.items()]
+    faults = [(name, number, meaning) for number, name, meaning in opcodes.FAULTS]
     parts = (
         "// A machine runs images of its own major version, and of its own minor version or less.\n"
         + constants(("kIsaMajor", opcodes.ISA_MAJOR), ("kIsaMinor", opcodes.ISA_MINOR)),
@@ -85,8 +85,8 @@ def header(command: str) -> str:
             [
                 ("none", 0, "a byte that begins no instruction"),
                 *(
-                    (role, k, what)
-                    for k, (role, what) in enumerate(opcodes.CONTROL_ROLES.items(), 1)
+                    (role, k, meaning)
+                    for k, (role, meaning) in enumerate(opcodes.CONTROL_ROLES.items(), 1)
                 ),
             ],
         ),
@@ -134,19 +134,19 @@ def constants_of(module: ModuleType, *names: str) -> str:
 def enumeration(name: str, rows: Sequence[tuple[str, int, str]]) -> str:
     """Return an enum of one byte; the third of each row is a comment."""
     lines = []
-    for label, value, what in rows:
+    for label, value, comment_text in rows:
         number = f"0x{value:02x}" if name == "Op" else str(value)
-        comment = f"  // {what}" if what else ""
+        comment = f"  // {comment_text}" if comment_text else ""
         lines.append(f"  k{camel(label)} = {number},{comment}".rstrip() + "\n")
     return f"enum class {name} : uint8_t {{\n{''.join(lines)}}};\n"
 
 
 def ways() -> str:
     """Return what says which second bytes there are: those of a MOVE and of a WATCH of its own."""
-    same = {"GO": "MOVE", "WATCH_GO": "WATCH"}
+    twin_of = {"GO": "MOVE", "WATCH_GO": "WATCH"}
     for code, op in opcodes.ESCAPED_OPS.items():
         base, _, direction = op.name.rpartition("_")
-        twin = opcodes.BY_NAME[f"{same[base]}_{direction}"]
+        twin = opcodes.BY_NAME[f"{twin_of[base]}_{direction}"]
         assert (twin.code, twin.control_role, twin.pops) == (
             code,
             op.control_role,
@@ -224,8 +224,8 @@ def in_order() -> tuple[opcodes.Op, ...]:
 def form_numbers() -> str:
     """Return the families and what is declared of the tables, for the header."""
     named = [
-        (form.family, number, names(same) if len(same) > 1 else "")
-        for number, (form, same) in enumerate(forms().items())
+        (form.family, number, names(ops) if len(ops) > 1 else "")
+        for number, (form, ops) in enumerate(forms().items())
         if form.family
     ]
     return "\n".join(
@@ -251,12 +251,12 @@ def form_numbers() -> str:
 def tables(command: str) -> str:
     """Return `bytecode.cpp`: the tables that the header declares."""
     rows = forms()
-    numbers = {op.code: number for number, same in enumerate(rows.values()) for op in same}
+    numbers = {op.code: number for number, ops in enumerate(rows.values()) for op in ops}
     numbered = [numbers.get(code, 0) for code in range(256)]
-    matches = [numbered[code - code % 4 if code >= FIRST_FOUR else code] for code in range(256)]
+    packed_rows = [numbered[code - code % 4 if code >= FIRST_FOUR else code] for code in range(256)]
     for code in range(FIRST_SIX, 256):
-        matches[code] = 0 if code % 8 >= 6 else matches[code]
-    assert matches == numbered
+        packed_rows[code] = 0 if code % 8 >= 6 else packed_rows[code]
+    assert packed_rows == numbered
     entries = [f"0x{item:02x}" for item in numbered[:FIRST_FOUR] + numbered[FIRST_FOUR::4]]
     for op in TASK_OPS:
         assert op.code < FIRST_FOUR
@@ -283,7 +283,7 @@ def tables(command: str) -> str:
             ),
             array(
                 "kForms[][2]",
-                [(pack_form(form), names(same)) for form, same in rows.items()],
+                [(pack_form(form), names(ops)) for form, ops in rows.items()],
                 len(with_tasks),
             ),
             array(
@@ -311,8 +311,8 @@ def array(name: str, rows: Sequence[tuple[str, str]], some: int = 0) -> str:
     return f"const uint8_t {name} tini_progmem = {{\n{''.join(lines)}}};\n"
 
 
-def names(same: Sequence[opcodes.Op]) -> str:
-    return ", ".join(op.name for op in same[:4]) + (" ..." if len(same) > 4 else "")
+def names(ops: Sequence[opcodes.Op]) -> str:
+    return ", ".join(op.name for op in ops[:4]) + (" ..." if len(ops) > 4 else "")
 
 
 def pack_form(form: DecodeForm) -> str:

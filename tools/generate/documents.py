@@ -109,21 +109,21 @@ def language_document(document: str, language: str) -> str:
             if not word.stands_for and word.text not in by_hand
         ],
     }
-    said = {key: text("documents", f"language/{key}", language) for key in rows}
-    lines = (f"- {said[key]}: {' '.join(found)}\n" for key, found in rows.items() if found)
+    labels = {key: text("documents", f"language/{key}", language) for key in rows}
+    lines = (
+        f"- {labels[key]}: {' '.join(row_words)}\n" for key, row_words in rows.items() if row_words
+    )
     return splice(whole, "fixed", "".join(lines))
 
 
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: title and first sentence of each, in all languages side by side."""
-    matches = [
+    listed = [
         document
         for document in documents(ROOT)
         if document.sources.get(SOURCE_LANGUAGE) != INDEX_PAGE
     ]
-    shown = [
-        language for language in languages() if any(language in one.sources for one in matches)
-    ]
+    shown = [language for language in languages() if any(language in one.sources for one in listed)]
 
     def text_list(key: str) -> list[str]:
         return [text("documents", key, language) for language in shown]
@@ -136,7 +136,7 @@ def list_of_documents(command: str) -> str:
     for part in ("teach", "write", "wiring", "trust", "build"):
         rows = [
             [_link_to(document.sources.get(language, "")) for language in shown]
-            for document in matches
+            for document in listed
             if document.part == part
         ]
         parts.append(table(text_list(f"part/{part}"), rows))

@@ -75,8 +75,8 @@ def _row(x: float, y: float, inside: str, size: int = 15) -> str:
 
 def _color(row: str) -> str:
     code, slashes, note = row.partition("//")
-    matches = [_span(_colour(part), part) for part in WORDS_AND_SIGNS.split(code)]
-    return "".join([*matches, _span(DIM, slashes + note)])
+    spans = [_span(_colour(part), part) for part in WORDS_AND_SIGNS.split(code)]
+    return "".join([*spans, _span(DIM, slashes + note)])
 
 
 def _span(colour: str, text: str) -> str:

@@ -71,9 +71,9 @@ def drive(command: str, guide: str, begin: str, drives: Drives) -> str:
 def lesson(command: str) -> str:
     """Return three worlds of lesson 7, with the way of a right program in each."""
     folder = catalogue.folders()[6]
-    found, program = catalogue.load(folder), catalogue.answers(folder)[0][0].program
-    runs = ((vary(found, k), program, 8000) for k in (1, 2, 3))
-    return _path_pictures(command, found.robot, *runs)
+    shown_lesson, program = catalogue.load(folder), catalogue.answers(folder)[0][0].program
+    runs = ((vary(shown_lesson, k), program, 8000) for k in (1, 2, 3))
+    return _path_pictures(command, shown_lesson.robot, *runs)
 
 
 def _path_pictures(command: str, robot: str, *runs: tuple[World, str, int]) -> str:
@@ -89,8 +89,8 @@ def _path_pictures(command: str, robot: str, *runs: tuple[World, str, int]) -> s
 
 def phone(command: str, language: str) -> str:
     """Return a guide's conversation with a robot on a phone."""
-    [said] = re.findall(r"^```terminal\n(.*?)^```", _text(GUIDES[language]), re.M | re.S)
-    rows = said.splitlines()
+    [conversation] = re.findall(r"^```terminal\n(.*?)^```", _text(GUIDES[language]), re.M | re.S)
+    rows = conversation.splitlines()
     parts = [f'<rect x="{PAD}" y="{PAD}" width="460" height="{34 * len(rows) + 40}" rx="24"'
              f' fill="{FLOOR}" stroke="{WALL}" stroke-width="6"/>']  # fmt: skip
     for k, row in enumerate(rows):
@@ -103,14 +103,14 @@ def phone(command: str, language: str) -> str:
 
 def hand(command: str) -> str:
     """Return what a robot before something shows when a guide asks it for the distance."""
-    [line, said] = re.findall(r'tsc live "(SHOW\(.*?\))"\n(\w+ \d+)', _text(GUIDES["en"]))[0]
-    world, scale = before(int(said.split()[1])), 4.0
+    [line, answer] = re.findall(r'tsc live "(SHOW\(.*?\))"\n(\w+ \d+)', _text(GUIDES["en"]))[0]
+    world, scale = before(int(answer.split()[1])), 4.0
     way = drive_way(f"SI|{line}", "tinibot", world, 200)
     front, wall = (PAD + x * scale for x in (way.points[0][0] + FRONT, world.width_cm))
     y = PAD + world.height_cm / 2 * scale
     parts = arena(world, way, PAD, PAD, scale)
     parts.append(f'<path d="M{front:g},{y:g} L{wall:g},{y:g}" stroke="{WAY}" stroke-width="3"/>')
-    parts.append(_words((front + wall) / 2 - 32, y - 10, said))
+    parts.append(_words((front + wall) / 2 - 32, y - 10, answer))
     return _svg(command, world.width_cm * scale, world.height_cm * scale, parts)
 
 

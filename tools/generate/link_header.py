@@ -62,7 +62,7 @@ def header(command: str) -> str:
         "// What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.\n"
         + enumeration("Answer", statuses),
         *(
-            enumeration(name, [(each, k, what) for k, (each, what) in enumerate(rows)])
+            enumeration(name, [(each, k, meaning) for k, (each, meaning) in enumerate(rows)])
             for name, rows in (
                 ("State", messages.STATES), ("Saved", messages.SAVED), ("Cause", messages.CAUSES),
                 ("Reset", messages.RESETS), ("TextLevel", messages.TEXT_LEVELS),
@@ -72,7 +72,9 @@ def header(command: str) -> str:
             )
         ),
         "// Faults that no instruction makes. The others are `Fault`.\n"
-        + enumeration("LinkFault", [(name, n, what) for n, name, what in messages.LINK_FAULTS]),
+        + enumeration(
+            "LinkFault", [(name, n, meaning) for n, name, meaning in messages.LINK_FAULTS]
+        ),
     )  # fmt: skip
     about = (
         "The numbers of the link: messages, where the fields of their requests begin,",
@@ -105,10 +107,13 @@ def _length_row(request: Message | None) -> str:
     if request is None:
         return "    {kUnknownRequest, 0},  // retired\n"
     lengths = _length_range(request.request)
-    for names, has in ((messages.OF_RADIO, "kHasTransports"), (messages.OF_REMOTE, "kHasRemote")):
+    for names, condition in (
+        (messages.OF_RADIO, "kHasTransports"),
+        (messages.OF_REMOTE, "kHasRemote"),
+    ):
         if request.name in names:
             least, most = lengths.split(", ")
-            lengths = f"{has} ? {least} : kUnknownRequest, {has} ? {most} : 0"
+            lengths = f"{condition} ? {least} : kUnknownRequest, {condition} ? {most} : 0"
     return f"    {{{lengths}}},  // {request.name}\n"
 
 
@@ -179,12 +184,12 @@ def status_rows() -> Rows:
 
 
 def number_rows(table: Sequence[tuple[str, str]]) -> Rows:
-    rows = [(number, f"`{name}`", what) for number, (name, what) in enumerate(table)]
+    rows = [(number, f"`{name}`", meaning) for number, (name, meaning) in enumerate(table)]
     return ("number", "name", "meaning"), rows
 
 
 def bit_rows(table: Sequence[tuple[int, str, str]], bits: str = "bits", digits: int = 2) -> Rows:
-    rows = [(f"0x{number:0{digits}x}", f"`{name}`", what) for number, name, what in table]
+    rows = [(f"0x{number:0{digits}x}", f"`{name}`", meaning) for number, name, meaning in table]
     return (bits, "name", "meaning"), rows
 
 

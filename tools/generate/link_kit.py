@@ -97,10 +97,10 @@ def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
     """Return code that is refused in the same way whatever devices there are."""
     for run in runs:
         code = run.image[HEADER_BYTES:]
-        matches = {verdict(code, 0), verdict(code, 255), verdict(code, len(TINIBOT.readings))}
-        if len(matches) > 1 or "" in matches or len(code) > MOST_BYTES:
+        verdicts = {verdict(code, 0), verdict(code, 255), verdict(code, len(TINIBOT.readings))}
+        if len(verdicts) > 1 or "" in verdicts or len(code) > MOST_BYTES:
             continue
-        rule, at = matches.pop().split()
+        rule, at = verdicts.pop().split()
         yield {"name": run.name, "code": code.hex(), "rule": rule, "at": int(at)}
 
 
@@ -122,16 +122,16 @@ def conversation(case: LinkCase) -> dict[str, object]:
         if not words[0].isdigit():
             rows.append({"happens": row.strip()})
             continue
-        kind, said = words[1], words[2] if len(words) > 2 else ""
+        kind, content = words[1], words[2] if len(words) > 2 else ""
         step: dict[str, object] = {"ms": int(words[0])}
         if kind[0] in "<>":
-            match = BYTES.match(said)
+            match = BYTES.match(content)
             assert match, (case.id, row)
             step[KINDS[kind[0]]] = match[1].strip()
             step["means"] = (match[2] or "").strip()
             if kind.endswith("x"):
                 step["is_lost"] = True
         else:
-            step[KINDS[kind]] = said
+            step[KINDS[kind]] = content
         rows.append(step)
     return {"name": case.id, "has_session": has_session(case), "rows": rows}

@@ -39,10 +39,10 @@ class Clone(NamedTuple):
 
     def environment(self) -> dict[str, str]:
         """Return the variables of a process that builds."""
-        found = {name: value for name, value in os.environ.items()
+        variables = {name: value for name, value in os.environ.items()
                  if not name.startswith(("PIP_REQUIRE", "PYTHON", "XDG_STATE"))}  # fmt: skip
         return {
-            **found,
+            **variables,
             "PYTHONPATH": os.pathsep.join(map(str, (self.root, self.root / "compiler"))),
             "PYTHONHASHSEED": str(self.seed),
             "PYTHONDONTWRITEBYTECODE": "1",
@@ -103,10 +103,10 @@ def page(clone: Clone) -> list[Path]:
     if (clone.root / READY).is_dir():
         clone.python("-c", _FIRMWARE_BESIDE)
     stamp = clone.root / PAGE / "build.json"
-    kept = stamp.read_bytes()
+    stamp_data = stamp.read_bytes()
     stamp.unlink()  # says of which files it was built, not a file of the page
     path = pack(clone.root / PAGE, clone.file_of("studio"), clone.epoch)
-    stamp.write_bytes(kept)
+    stamp.write_bytes(stamp_data)
     return [path]
 
 

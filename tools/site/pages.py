@@ -80,7 +80,7 @@ def page(source: str, on: Shelf, place: Place | None = None) -> str:
     `place` is where it is, if not where its source is. Raises CannotMake where a link leads to no
     file.
     """
-    matches: list[str] = []
+    parts: list[str] = []
     path = on.root / source
     here = place or on.places[source]
     text = on.text(source)
@@ -88,12 +88,12 @@ def page(source: str, on: Shelf, place: Place | None = None) -> str:
         text = fill_numbers(text, source, catalogue.load(path.parent))
     for number, part in enumerate(_FENCED.split(text)):
         is_code = number % 2 == 1
-        matches.append(
+        parts.append(
             part
             if is_code
             else _LINK.sub(lambda link: _resolved_link(link, source, here, on), part)
         )
-    return "".join(matches)
+    return "".join(parts)
 
 
 def _resolved_link(link: re.Match[str], source: str, place: Place, on: Shelf) -> str:
@@ -104,11 +104,13 @@ def _resolved_link(link: re.Match[str], source: str, place: Place, on: Shelf) ->
     target = Path(os.path.normpath(PurePosixPath(source).parent / path)).as_posix()
     twins = on.twins.get(target, {})
     is_itself = place in twins.values()  # in another language
-    there = on.places.get(target) if is_itself else twins.get(place.language, on.places.get(target))
-    if there is not None and there.language == place.language:
-        return f"[{text}]({way(place.name, there.name)}.md{anchor})"
-    if there is not None:
-        return _outside_link(text, way(place.address, there.address) + anchor)
+    target_place = (
+        on.places.get(target) if is_itself else twins.get(place.language, on.places.get(target))
+    )
+    if target_place is not None and target_place.language == place.language:
+        return f"[{text}]({way(place.name, target_place.name)}.md{anchor})"
+    if target_place is not None:
+        return _outside_link(text, way(place.address, target_place.address) + anchor)
     if not on.has(target):
         raise CannotMake(f"{source}: {path}")
     if mark:

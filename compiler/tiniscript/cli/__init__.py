@@ -50,9 +50,9 @@ def _main(arguments: list[str]) -> int:
     _repair_streams()
     language = language_of(arguments)
     try:
-        code = _verb(arguments, language)
+        exit_code = _verb(arguments, language)
         sys.stdout.flush()
-        return code
+        return exit_code
     except KeyboardInterrupt:
         streams.drop_unread()
         print("\n" + text("stopped", language), file=sys.stderr)
@@ -156,6 +156,6 @@ def _verb(arguments: list[str], language: str) -> int:
 def _explain_bug(bug: Exception, language: str) -> int:
     if os.environ.get("TINISCRIPT_DEBUG"):
         raise bug
-    what = " ".join(f"{type(bug).__name__}: {bug}".split())
-    say_aside("bug", language, what=what[:300])
+    description = " ".join(f"{type(bug).__name__}: {bug}".split())
+    say_aside("bug", language, what=description[:300])
     return 2

@@ -64,17 +64,17 @@ def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> 
     if file.problem is not None:
         return Row(file.name, [], 0, file.problem.plain(language))
     repaired = 0
-    given = inputs.Input(file.name, file.data, Path(file.name), options.robot is not None)
-    if given.has_robot:
-        inputs.tell_other(given, robot, language)
+    program_input = inputs.Input(file.name, file.data, Path(file.name), options.robot is not None)
+    if program_input.has_robot:
+        inputs.tell_other(program_input, robot, language)
     else:
-        robot = robot_of(given.data, robot)
+        robot = robot_of(program_input.data, robot)
     if options.fix or options.diff:
-        compiled, repaired, problem = _repair(given, options, robot, language)
+        compiled, repaired, problem = _repair(program_input, options, robot, language)
         if problem:
             return Row(file.name, [], 0, problem)
     else:
-        compiled = compiling.compile_input(given, robot, is_strict=False)
+        compiled = compiling.compile_input(program_input, robot, is_strict=False)
     compiled = compiling.for_level(compiled, robot, options.text_level)
     messages = [
         message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics
@@ -84,17 +84,17 @@ def _row(file: ProgramFile, options: Namespace, robot: Robot, language: str) -> 
 
 
 def _repair(
-    given: inputs.Input, options: Namespace, robot: Robot, language: str
+    program_input: inputs.Input, options: Namespace, robot: Robot, language: str
 ) -> tuple[Compiled, int, str]:
     """Make or show the sure repairs of a program; return what is left, how many, and a problem."""
-    result = repair(given, robot)
+    result = repair(program_input, robot)
     if result.repairs and not options.json:
-        print_difference(given.data, result.data, given.name)
+        print_difference(program_input.data, result.data, program_input.name)
     if options.diff:
-        return compiling.compile_input(given, robot, is_strict=False), result.repairs, ""
+        return compiling.compile_input(program_input, robot, is_strict=False), result.repairs, ""
     if result.repairs:
         try:
-            outputs.write(Path(given.name), result.data, "unwritable_source")
+            outputs.write(Path(program_input.name), result.data, "unwritable_source")
         except CommandError as problem:
             return result.compiled, 0, problem.plain(language)
     return result.compiled, result.repairs, ""

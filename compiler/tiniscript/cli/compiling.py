@@ -13,11 +13,17 @@ from tiniscript.syntax.parser import parse
 
 
 def compile_input(
-    given: inputs.Input, robot: Robot, is_strict: bool, names_robots: bool = True
+    program_input: inputs.Input, robot: Robot, is_strict: bool, names_robots: bool = True
 ) -> Compiled:
     """Return the result of compiling an input, whose `--robot` has chosen the robot or not."""
-    return compile_source(given.data, robot, given.name, is_strict, names_robots=names_robots,
-                          is_chosen=given.has_robot)  # fmt: skip
+    return compile_source(
+        program_input.data,
+        robot,
+        program_input.name,
+        is_strict,
+        names_robots=names_robots,
+        is_chosen=program_input.has_robot,
+    )
 
 
 def for_level(compiled: Compiled, robot: Robot, name: str | None) -> Compiled:
@@ -30,10 +36,10 @@ def for_level(compiled: Compiled, robot: Robot, name: str | None) -> Compiled:
     return compiled._replace(diagnostics=in_order([*compiled.diagnostics, *lacking]))
 
 
-def parse_input(given: inputs.Input, kit: Kit) -> Compiled:
+def parse_input(program_input: inputs.Input, kit: Kit) -> Compiled:
     """Return only the syntax mistakes of a program's text."""
-    text = text_of(given.data, given.name)
+    text = text_of(program_input.data, program_input.name)
     if not isinstance(text, str):
         return text
-    source = Source(text, given.name)
+    source = Source(text, program_input.name)
     return Compiled(source, in_order(parse(source).diagnostics))

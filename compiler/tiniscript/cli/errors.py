@@ -23,9 +23,9 @@ class CommandError(Exception):
         if self.values.get("near"):
             suggestion = text("did_you_mean", language).format(near=self.values["near"])
             try_it = f" {languages.text('messages', 'label/try', language)}  "
-            what, advice, example = result.rpartition(try_it)  # what was typed may have it, too
+            failure, advice, example = result.rpartition(try_it)  # what was typed may have it, too
             return Sentence(
-                f"{what} {suggestion}{advice}{example}" if advice else f"{result} {suggestion}"
+                f"{failure} {suggestion}{advice}{example}" if advice else f"{result} {suggestion}"
             )
         return result
 

@@ -122,9 +122,9 @@ def run(
     progress = Progress(language, 100)
     doing = ""
 
-    def look(said: str) -> None:
+    def look(output: str) -> None:
         nonlocal doing
-        step = read_step(said)
+        step = read_step(output)
         if step.key != doing:
             doing = step.key
             progress.end()
@@ -145,9 +145,9 @@ def run(
 
 def _failure(doing: str, log: str) -> CommandError:
     """Return the sentence for a program that has failed, and keep what it has said."""
-    kept = files.cache_folder() / LOG_FILE
-    files.keep(kept, log.encode("utf-8", "replace"))  # else the sentence has to do
+    log_path = files.cache_folder() / LOG_FILE
+    files.keep(log_path, log.encode("utf-8", "replace"))  # else the sentence has to do
     kinds = (("fetch_no_room", _NO_ROOM), ("fetch_offline", _OFFLINE))
     key = next((key for key, pattern in kinds if pattern.search(log)), "fetch_failed")
     why = printable_name(children.reason(log))
-    return CommandError(2, key, doing=doing, why=why, log=printable_name(str(kept)))
+    return CommandError(2, key, doing=doing, why=why, log=printable_name(str(log_path)))

@@ -16,7 +16,13 @@ from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts import say_aside, text
 from tiniscript.flash import building, ready
-from tiniscript.flash.building import LESS_REMOTE, LESS_TASKS, CannotBuild, Sources, StepProgress
+from tiniscript.flash.building import (
+    WITHOUT_REMOTE,
+    WITHOUT_TASKS,
+    CannotBuild,
+    Sources,
+    StepProgress,
+)
 from tiniscript.flash.ready import Ready
 from tiniscript.library import install_advice
 from tiniscript.robots.ports import AVRS, ESP32S
@@ -111,19 +117,19 @@ def _show_build(
     progress = Progress(language, 100)
     fetched = ""
 
-    def look(seen: StepProgress) -> None:
+    def look(build_progress: StepProgress) -> None:
         nonlocal fetched
-        if seen.phase in (LESS_TASKS, LESS_REMOTE):
+        if build_progress.phase in (WITHOUT_TASKS, WITHOUT_REMOTE):
             progress.end()
-            say_aside(f"flash_{seen.phase}", language, **values)
+            say_aside(f"flash_{build_progress.phase}", language, **values)
             return
-        progress.label = text(f"flash_{seen.phase}", language)
-        if seen.what and seen.what != fetched:
+        progress.label = text(f"flash_{build_progress.phase}", language)
+        if build_progress.file_name and build_progress.file_name != fetched:
             progress.end()
-            what = printable_name(seen.what)
-            say_aside("flash_fetches", language, what=what)
-            fetched = seen.what
-        progress.draw(seen.percent)
+            file_name = printable_name(build_progress.file_name)
+            say_aside("flash_fetches", language, what=file_name)
+            fetched = build_progress.file_name
+        progress.draw(build_progress.percent)
 
     try:
         yield look
@@ -162,8 +168,8 @@ def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:
     if why.log:
         files.keep(log, why.log.encode("utf-8", "replace"))  # else the sentence has to do
     how = install_advice.command(install_advice.FIRMWARE)
-    said = {"why": printable_name(why.said), "log": printable_name(str(log)), "how": how}
-    return CommandError(2, f"flash_{why.why}", **said, **values)
+    texts = {"why": printable_name(why.last_output), "log": printable_name(str(log)), "how": how}
+    return CommandError(2, f"flash_{why.why}", **texts, **values)
 
 
 def print_list(language: str) -> None:
@@ -174,8 +180,8 @@ def print_list(language: str) -> None:
             print(row(robot, _ready(robot, sources), language))
 
 
-def row(robot: Robot, found: Ready | None, language: str) -> str:
+def row(robot: Robot, firmware: Ready | None, language: str) -> str:
     values = {"robot": robot.name, "board": robot.board.chip}
-    if found is None:
+    if firmware is None:
         return text("flash_row_none", language).format(**values)
-    return text("flash_row", language).format(bytes=f"{found.bytes:,}", **values)
+    return text("flash_row", language).format(bytes=f"{firmware.bytes:,}", **values)

@@ -86,12 +86,12 @@ def full_help(language: str, width: int = WIDTH) -> str:
 
 def groups(language: str) -> list[tuple[str, list[Row]]]:
     """Return the headings of all verbs with the commands below each, and what these do."""
-    found: dict[str, list[Row]] = {}
+    rows_by_heading: dict[str, list[Row]] = {}
     for verb, group in VERBS.items():
         own = [] if verb == SET_COMMAND else [verb]  # which does nothing without a word after it
         rows = [_row(command, language) for command in (*own, *steps_of(verb))]
-        found.setdefault(verb_text(f"group/{group}", language), []).extend(rows)
-    return list(found.items())
+        rows_by_heading.setdefault(verb_text(f"group/{group}", language), []).extend(rows)
+    return list(rows_by_heading.items())
 
 
 def _row(command: str, language: str) -> Row:

@@ -33,23 +33,25 @@ class OtherRobot(Exception):
 
 
 def ready(
-    given: inputs.Input, robot: Robot, language: str, is_strict: bool = False,
-    is_open: bool = False,
+    program_input: inputs.Input, robot: Robot, language: str, is_strict: bool = False,
+    may_choose_robot: bool = False,
 ) -> Ready | None:  # fmt: skip
     """Return the program of an input, or None if it has mistakes, which are printed.
 
     `is_strict`: a program that is too large for the robot, or has what the robot lacks,
-    is a mistake. `is_open`: a program for another robot raises OtherRobot. Raises CommandError if
-    an image is refused.
+    is a mistake. `may_choose_robot`: a program for another robot raises OtherRobot. Raises
+    CommandError if an image is refused.
     """
-    if given.is_image:
-        image = _read(given)
-        _check(given, image, robot)
+    if program_input.is_image:
+        image = _read(program_input)
+        _check(program_input, image, robot)
         if is_strict and (lacks := missing_need(image.needs, robot)):
-            raise CommandError(1, lacks, robot=robot.name, file=inputs.printable_name(given.name))
-        return Ready(image, len(given.data), source_map.recall(image.checksum))
-    compiled = compiling.compile_input(given, robot, is_strict)
-    if is_open and not compiled.is_right:
+            raise CommandError(
+                1, lacks, robot=robot.name, file=inputs.printable_name(program_input.name)
+            )
+        return Ready(image, len(program_input.data), source_map.recall(image.checksum))
+    compiled = compiling.compile_input(program_input, robot, is_strict)
+    if may_choose_robot and not compiled.is_right:
         if is_other_robots(compiled.diagnostics):
             raise OtherRobot(compiled)
     if is_strict:
@@ -62,17 +64,17 @@ def ready(
     return Ready(image, len(compiled.image), places)
 
 
-def _read(given: inputs.Input) -> Image:
+def _read(program_input: inputs.Input) -> Image:
     try:
-        return unpack(given.data)
+        return unpack(program_input.data)
     except ImageRefused as refused:
-        values = {"file": inputs.printable_name(given.name), **refused.values}
+        values = {"file": inputs.printable_name(program_input.name), **refused.values}
         raise CommandError(1, f"image_{refused.name}", **values) from None
 
 
-def _check(given: inputs.Input, image: Image, robot: Robot) -> None:
+def _check(program_input: inputs.Input, image: Image, robot: Robot) -> None:
     """Raise CommandError where the robot may not run an image, and say which known one may."""
-    file = inputs.printable_name(given.name)
+    file = inputs.printable_name(program_input.name)
     try:
         check(image, robot.kit)
     except (ImageRefused, Refused) as refused:
@@ -89,9 +91,9 @@ def _check(given: inputs.Input, image: Image, robot: Robot) -> None:
         raise CommandError(1, "image_code", file=file, offset=where, **values) from None
 
 
-def robot_for(given: inputs.Input, robot: Robot) -> Robot:
+def robot_for(program_input: inputs.Input, robot: Robot) -> Robot:
     """Return `robot`, or a known robot that has the devices of an image if `robot` lacks them."""
-    return find_robot_for(_read(given), robot) or robot
+    return find_robot_for(_read(program_input), robot) or robot
 
 
 def keep_map(ready: Ready) -> None:

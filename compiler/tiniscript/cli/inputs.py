@@ -65,26 +65,26 @@ def _program(options: Namespace) -> Input:
 
 def file(name: str, typed: str | None = None) -> Input:
     """Return what is in a file. Raises CommandError, which names it as it was `typed`."""
-    path, said = Path(name), printable_name(name if typed is None else typed)
+    path, shown_name = Path(name), printable_name(name if typed is None else typed)
     if sys.platform == "win32":
         from tiniscript.cli.windows_names import is_device
 
         if is_device(name):
-            raise CommandError(2, "file_missing", file=said)
+            raise CommandError(2, "file_missing", file=shown_name)
     if is_pipe(name):
-        raise CommandError(2, "file_no_file", file=said)
+        raise CommandError(2, "file_no_file", file=shown_name)
     try:
         with path.open("rb") as opened:
             return Input(name, opened.read(LARGEST_SOURCE_BYTES + 1), path)
     except FileNotFoundError:
-        raise CommandError(2, "file_missing", file=said) from None
+        raise CommandError(2, "file_missing", file=shown_name) from None
     except IsADirectoryError:
-        raise CommandError(2, "file_directory", file=said) from None
+        raise CommandError(2, "file_directory", file=shown_name) from None
     except PermissionError:
         key = "file_directory" if path.is_dir() and os.access(path, os.R_OK) else "file_forbidden"
-        raise CommandError(2, key, file=said) from None
+        raise CommandError(2, key, file=shown_name) from None
     except (OSError, ValueError) as why:  # ValueError: a name that no file can have
-        raise CommandError(2, "file_unreadable", file=said, why=why) from None
+        raise CommandError(2, "file_unreadable", file=shown_name, why=why) from None
 
 
 def port(name: str) -> str:
@@ -120,26 +120,26 @@ def wired_robot(options: Namespace, language: str) -> Robot:
     return result
 
 
-def robot_for(given: Input, options: Namespace, language: str) -> Robot:
+def robot_for(program_input: Input, options: Namespace, language: str) -> Robot:
     """Return the robot that `--robot` names, else the one that the program names, else the default.
 
     What the program names counts from now on as if `--robot` had named it.
     """
-    named = named_robot.shipped_name_in(given.data)
+    named = named_robot.shipped_name_in(program_input.data)
     if options.robot is None:
         options.robot = named
     result = robot(options, language)
-    if given.has_robot:
-        tell_other(given, result, language)
+    if program_input.has_robot:
+        tell_other(program_input, result, language)
     return result
 
 
-def tell_other(given: Input, chosen: Robot, language: str) -> None:
+def tell_other(program_input: Input, chosen: Robot, language: str) -> None:
     """Say on standard error that `--robot` wins, where the program names another robot."""
-    named = named_robot.robot_name(given.data)
+    named = named_robot.robot_name(program_input.data)
     if named is not None and named.lower() != chosen.name.lower():
         values = {
-            "file": printable_name(given.name),
+            "file": printable_name(program_input.name),
             "robot": printable_name(chosen.name),
             "named": printable_name(named),
         }

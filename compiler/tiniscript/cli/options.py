@@ -92,20 +92,20 @@ class Options(ArgumentParser):
             return False
         return True
 
-    def _refuse_other(self, option: Option, found: str | None) -> None:
+    def _refuse_other(self, option: Option, typed: str | None) -> None:
         """Refuse a value that is not among the option's choices, or that goes with another one.
 
         Whatever stands beside it: `--board nano --port P` is no board too many, but a chip.
         """
-        if option.flags == "--board" and found is not None:
+        if option.flags == "--board" and typed is not None:
             from tiniscript.flash.bootloaders import BOARDS
 
-            if found.lower() in BOARDS:
-                raise CommandError(2, "board_is_chip", chip=found.lower())
+            if typed.lower() in BOARDS:
+                raise CommandError(2, "board_is_chip", chip=typed.lower())
         known = option.kind.choices if option.kind is not None else ()
-        if known and found is not None and found not in known:
+        if known and typed is not None and typed not in known:
             label = option.shown_value(self.language) if option.is_argument else option.flags
-            raise bad_choice(label, known, found, self.language)
+            raise bad_choice(label, known, typed, self.language)
 
     def error(self, message: str) -> NoReturn:
         unknown = message.partition("unrecognized arguments: ")[2].partition(" ")[0]
@@ -136,70 +136,70 @@ class Options(ArgumentParser):
             raise CommandError(2, "one_step", first=self.verb, second=other)
         raise CommandError(2, "option_of_step", option=unknown, verb=self.verb, other=other)
 
-    def _suggestion(self, found: str) -> str:
+    def _suggestion(self, typed: str) -> str:
         """Return what somebody may have meant with a word that is unknown here, or nothing."""
         table = [*self.table, *choosers_of(self.command)]
         flags = [flag for option in table if not option.is_argument
                  for flag in option.flags.split()]  # fmt: skip
-        if "--robot" in flags and found.lower() in robots.names():
-            return f"--robot {found.lower()}"
-        return _suggestion(found, flags) if found.startswith("--") else ""
+        if "--robot" in flags and typed.lower() in robots.names():
+            return f"--robot {typed.lower()}"
+        return _suggestion(typed, flags) if typed.startswith("--") else ""
 
 
 def _has(command: str, flag: str) -> bool:
     return any(flag in option.flags.split() for option in options_of(command))
 
 
-def _suggestion(found: str, known: Sequence[str]) -> str:
+def _suggestion(typed: str, known: Sequence[str]) -> str:
     from tiniscript.base.spelling import nearest
 
-    return nearest(found, known) or ""
+    return nearest(typed, known) or ""
 
 
-def bad_choice(option: str, known: Sequence[str], found: str, language: str) -> CommandError:
+def bad_choice(option: str, known: Sequence[str], typed: str, language: str) -> CommandError:
     """Return the error for a value that is not among an option's choices."""
     allowed = f"{', '.join(known[:-1])} {text('or', language)} {known[-1]}"
-    shown = printable_name(found) or "''"
-    near = _suggestion(found, known)
+    shown = printable_name(typed) or "''"
+    near = _suggestion(typed, known)
     return CommandError(2, "bad_choice", option=option, known=allowed, found=shown, near=near)
 
 
-def whole_number(option: str, found: str | None, default: int, low: int, high: int,
+def whole_number(option: str, typed: str | None, default: int, low: int, high: int,
                  language: str) -> int:  # fmt: skip
     """Return an option's whole number, from `low` to `high`."""
-    if found is None:
+    if typed is None:
         return default
-    digits = found[1:] if found[:1] == "-" else found
+    digits = typed[1:] if typed[:1] == "-" else typed
     if not (digits.isascii() and digits.isdigit() and len(digits) < 20):
         value = low - 1
     else:
-        value = int(found)
+        value = int(typed)
     if not low <= value <= high:
         allowed = text("range_whole", language).format(low=low, high=high)
-        raise CommandError(2, "bad_number", option=option, range=allowed, found=found)
+        raise CommandError(2, "bad_number", option=option, range=allowed, found=typed)
     return value
 
 
-def decimal(found: str) -> int | None:
+def decimal(typed: str) -> int | None:
     """Return the thousandths of a decimal, rounded; None where it is none or far too large."""
-    digits = found[1:] if found[:1] == "-" else found
+    digits = typed[1:] if typed[:1] == "-" else typed
     if not re.fullmatch(r"[0-9]+(\.[0-9]+)?|\.[0-9]+", digits, re.ASCII):
         return None
     value, _ = read_literal(digits)
-    return -value if found[:1] == "-" else value
+    return -value if typed[:1] == "-" else value
 
 
 def thousandths(
-    option: str, found: str | None, default: int, low: int, high: int, language: str
+    option: str, typed: str | None, default: int, low: int, high: int, language: str
 ) -> int:
     """Return an option's decimal number in thousandths, from `low` to `high`."""
-    if found is None:
+    if typed is None:
         return default
-    value = decimal(found)
+    value = decimal(typed)
     if value is None or not low <= value <= high:
         allowed = text("range_number", language).format(low=as_text(low), high=as_text(high))
         raise CommandError(
-            2, "bad_number", option=option, range=allowed, found=printable_name(found) or "''"
+            2, "bad_number", option=option, range=allowed, found=printable_name(typed) or "''"
         )
     return value
 
@@ -232,16 +232,16 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
     return lists
 
 
-def _parse_reading(device: Device, found: str, language: str) -> int:
+def _parse_reading(device: Device, typed: str, language: str) -> int:
     if device.is_yes_no:
-        value = {"TRUE": 1, "FALSE": 0, "1": 1, "0": 0}.get(found.upper())
+        value = {"TRUE": 1, "FALSE": 0, "1": 1, "0": 0}.get(typed.upper())
         allowed = text("range_yes_no", language)
     else:
-        value = decimal(found)
+        value = decimal(typed)
         low, high = device.text(device.low), device.text(device.high)
         allowed = text("range_number", language).format(low=low, high=high)
     if value is None or not device.low <= value <= device.high:
-        raise CommandError(2, "sensor_value", found=found or "''", name=device.name, range=allowed)
+        raise CommandError(2, "sensor_value", found=typed or "''", name=device.name, range=allowed)
     return value
 
 

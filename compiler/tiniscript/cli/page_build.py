@@ -44,8 +44,8 @@ def build(options: Namespace, language: str) -> None:
         fetching.install(install_advice.STUDIO, NODE, language)
     growing = fetching.FolderProgress(building.MODULES, building.NODE_MODULES_MB)
 
-    def read_step(said: str) -> Step:
-        step = max(building.step(said), 0 if NPM in parts else 1)
+    def read_step(output: str) -> Step:
+        step = max(building.step(output), 0 if NPM in parts else 1)
         is_fetching = STEPS[step] == "fetch_npm_now"
         return Step(STEPS[step], growing.percent() if is_fetching else STEP_PERCENT[step])
 

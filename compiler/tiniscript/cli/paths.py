@@ -54,20 +54,20 @@ def check(options: Namespace, language: str) -> None:
     outputs = list(_output_paths(options))
     if not outputs:
         return
-    matches = [_identity(output) for output in outputs]
-    for number, (output, identity) in enumerate(zip(outputs, matches, strict=True)):
-        for other, its_own in zip(outputs[:number], matches, strict=False):
-            if identity is not None and identity == its_own:
+    identities = [_identity(output) for output in outputs]
+    for number, (output, identity) in enumerate(zip(outputs, identities, strict=True)):
+        for other, output_identity in zip(outputs[:number], identities, strict=False):
+            if identity is not None and identity == output_identity:
                 raise CommandError(2, "same_outputs", option=other.label, file=other.path,
                               second=output.label, other=output.path)  # fmt: skip
     for read in _read(options, language):
         identity = _identity(read, may_be_device=read.dest in ("port", "ports"))
-        for output, its_own in zip(outputs, matches, strict=True):
+        for output, output_identity in zip(outputs, identities, strict=True):
             if output.dest == read.dest:
                 continue  # in place
             if read.dest in ("port", "ports"):
-                its_own = _identity(output, may_be_device=True)
-            if identity is not None and identity == its_own:
+                output_identity = _identity(output, may_be_device=True)
+            if identity is not None and identity == output_identity:
                 raise CommandError(2, "over_input", option=output.label, file=output.path,
                               what=read.label, other=read.path)  # fmt: skip
     for output in outputs:

@@ -47,8 +47,8 @@ def _present_command(command: str, words: list[str], language: str) -> str:
     head = STEPS[command].head if command in STEPS else command
     for item in (head, command_words(command)):
         verb, *more = [*item.split(), *words]
-        found, rest = chosen(verb, more)
-        if found == command and Options(command, language).fits(rest):
+        present, rest = chosen(verb, more)
+        if present == command and Options(command, language).fits(rest):
             return shlex.join([verb, *more])
     from tiniscript.cli.help import begins
 
@@ -107,7 +107,7 @@ LEAST_LETTERS = 3  # letters of a word that says something
 STEM_LETTERS = 5  # letters in which forms of a word agree: connect, connected; conecta, conectar
 
 
-def verbs_for(said: str) -> list[str]:
+def verbs_for(question: str) -> list[str]:
     """Return the commands whose texts have the words of a question, best first; most have none.
 
     A word counts more where fewer commands have it, and more in a command's name and summary than
@@ -115,22 +115,22 @@ def verbs_for(said: str) -> list[str]:
     """
     texts = {command: _weights(command) for command in COMMANDS}
     scores = dict.fromkeys(COMMANDS, 0.0)
-    for stem in _stems(said):
+    for stem in _stems(question):
         having = [command for command in COMMANDS if stem in texts[command]]
         for command in having:
             scores[command] += texts[command][stem] * log(1 + len(COMMANDS) / len(having))
     best = max(scores.values())
-    matches = [command for command in COMMANDS if scores[command] and scores[command] >= best / 2]
-    return sorted(matches, key=lambda verb: -scores[verb])[:MOST_VERBS]
+    commands = [command for command in COMMANDS if scores[command] and scores[command] >= best / 2]
+    return sorted(commands, key=lambda verb: -scores[verb])[:MOST_VERBS]
 
 
 def _weights(verb: str) -> dict[str, int]:
     """Return what each stem of a command's texts counts."""
     options = [option for option in options_of(verb) if option.verbs not in ("*", "tsc")]
 
-    def stems_of(what: str) -> set[str]:
+    def stems_of(part: str) -> set[str]:
         return {
-            stem for language in languages() for stem in _stems(verb_sentence(verb, what, language))
+            stem for language in languages() for stem in _stems(verb_sentence(verb, part, language))
         }
 
     helps = (option.help(language) for option in options for language in languages())

@@ -60,8 +60,8 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
             got = ask(case.request(), sum(len(row) + 2 for row in case.answer))
         except Problem as problem:
             verdict = compare(case.name, case.answer, problem.rows)
-            yield verdict._replace(what=problem.what, detail=problem.detail)
-            endless += problem.what in ("hang", "flood")
+            yield verdict._replace(what=problem.kind, detail=problem.detail)
+            endless += problem.kind in ("hang", "flood")
             silent += not answers
             if endless == MOST_ENDLESS or silent == MOST_SILENT:
                 return

@@ -72,10 +72,10 @@ def machine_cases() -> list[MachineCase]:
     return cases_in(_read("machine.json"))
 
 
-def cases_in(found: Any) -> list[MachineCase]:
+def cases_in(kit_file: Any) -> list[MachineCase]:
     """Return the cases of a file of this version, as JSON has it."""
-    assert (found["form"], found["version"]) == (MACHINE_FORM, MACHINE_VERSION)
-    kits = [tuple(lines) for lines in found["kits"]]
+    assert (kit_file["form"], kit_file["version"]) == (MACHINE_FORM, MACHINE_VERSION)
+    kits = [tuple(lines) for lines in kit_file["kits"]]
     return [
         MachineCase(
             row["name"],
@@ -90,7 +90,7 @@ def cases_in(found: Any) -> list[MachineCase]:
             tuple(row["answer"]),
             {int(number): tuple(times) for number, times in row.get("slow", {}).items()},
         )
-        for row in found["cases"]
+        for row in kit_file["cases"]
     ]
 
 

@@ -36,7 +36,7 @@ class Problem(Exception):
 
     def __init__(self, what: str, detail: str, rows: tuple[str, ...]) -> None:
         super().__init__(what)
-        self.what = what
+        self.kind = what
         self.detail = detail
         self.rows = rows
 
@@ -75,8 +75,8 @@ class MachineProcess:
         try:
             return self._query(request, most)
         except _ProcessEnded as ended:
-            code = ended.code
-        self._fail("crash", str(code), [])
+            exit_code = ended.code
+        self._fail("crash", str(exit_code), [])
 
     def close(self) -> str:
         """End the process and all that it has started; return the end of its standard error."""
@@ -175,11 +175,11 @@ class MachineProcess:
             except queue.Empty:
                 self._fail("hang", self._rest.decode("utf-8", "replace"), rows)
             if not data:
-                code = self._exit_code()
+                exit_code = self._exit_code()
                 if rows or self._rest:
                     rows += [self._rest.decode("utf-8", "replace")] if self._rest else []
-                    self._fail("crash", str(code), rows)
-                raise _ProcessEnded(code)
+                    self._fail("crash", str(exit_code), rows)
+                raise _ProcessEnded(exit_code)
             count += len(data)
             self._rest += data
             if count > most:
@@ -192,19 +192,19 @@ class MachineProcess:
         except subprocess.TimeoutExpired:
             return None
 
-    def _fail(self, what: str, detail: str, rows: list[str]) -> NoReturn:
+    def _fail(self, kind: str, detail: str, rows: list[str]) -> NoReturn:
         tail = self.close()
-        if what == "crash" and tail:
+        if kind == "crash" and tail:
             detail = f"{detail}: {tail}"
-        raise Problem(what, detail, tuple(rows))
+        raise Problem(kind, detail, tuple(rows))
 
 
 class _ProcessEnded(Exception):
     """The process has ended without a byte of an answer."""
 
-    def __init__(self, code: int | None) -> None:
-        super().__init__(code)
-        self.code = code
+    def __init__(self, exit_code: int | None) -> None:
+        super().__init__(exit_code)
+        self.code = exit_code
 
 
 def _thread(work: object, *arguments: object) -> threading.Thread:

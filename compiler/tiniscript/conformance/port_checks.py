@@ -227,8 +227,12 @@ def _check_repeated_request(robot: WireRobot) -> tuple[str, ...]:
     robot.wait(EVENT_S, "DONE")
     second = robot.again(number, payload, epoch=epoch)
     robot.wait(0.4)
-    same = "the same answer" if first.payload == second.payload else answer_text(second)
-    return (answer_text(first), same, f"{sum(e.name == 'SHOW' for e in robot.events)} SHOW")
+    second_answer = "the same answer" if first.payload == second.payload else answer_text(second)
+    return (
+        answer_text(first),
+        second_answer,
+        f"{sum(e.name == 'SHOW' for e in robot.events)} SHOW",
+    )
 
 
 def _check_noise(robot: WireRobot) -> tuple[str, ...]:

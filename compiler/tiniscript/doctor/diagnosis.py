@@ -197,9 +197,13 @@ def _diagnose_shared(
     try:
         reply = robot.hello()
         if reply is None:
-            found = stranger(client)
-            if found is not None:
-                return (Finding(found.name, found.is_sure, {"said": found.said}),)
+            foreign_board = stranger(client)
+            if foreign_board is not None:
+                return (
+                    Finding(
+                        foreign_board.name, foreign_board.is_sure, {"said": foreign_board.said}
+                    ),
+                )
             return (probably("falls_silent"),)
         return tuple(examine(robot, reply, question.expected, question.watch_ms, doors.on_step))
     except ConnectionLost:

@@ -43,17 +43,17 @@ def find_bootloader(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootload
     for line, greeting, answer in GREETINGS:
         wire.set_baud(line.baud)
         wire.reset_board()
-        said = wire.receive(BLINK_MS, BLINK_MS)
+        answer_bytes = wire.receive(BLINK_MS, BLINK_MS)
         is_there = False
         for _ in range(TRIES):
             wire.send(greeting)
-            said += wire.receive(ANSWER_MS)
-            if is_there := answer in said:
+            answer_bytes += wire.receive(ANSWER_MS)
+            if is_there := answer in answer_bytes:
                 break
         if is_there:
             wire.receive(BOOTLOADER_MS, BOOTLOADER_MS)
             return line, _greet(wire, greeting, answer)
-        hear(said)
+        hear(answer_bytes)
     return None
 
 
@@ -97,9 +97,9 @@ def diagnose_line(
     if _is_error(heard):
         return [sure("module_set_up", baud=str(line.baud))]
     others = _Others(wire, RADIO_PROBE_MS if line.is_radio else PROBE_MS)
-    found = others.find(heard, robot.spoken, partial(_identify_echo, wire, line, expected))
-    if found is not None:
-        return [found]
+    finding = others.find(heard, robot.spoken, partial(_identify_echo, wire, line, expected))
+    if finding is not None:
+        return [finding]
     if line.is_radio:
         return [others.best_finding() or _diagnose_radio(heard)]
     return _diagnose_cable(wire, line, expected, heard, others, on_step)
@@ -132,22 +132,22 @@ class _Others:
     def find(self, heard: bytes, spoken: bytes, echo: Callable[[], Finding]) -> Finding | None:
         """Return what is surely there. `echo` returns what it is that sends back what is sent, and
         says nothing else."""
-        found = self.look(heard)
+        finding = self.look(heard)
         is_echo = _is_echo(heard, spoken)
-        if found is None and not (is_echo and self.best_finding() is None):
-            found = self.ask(heard, not is_echo)
-        if found is None and is_echo:
-            said = _text_beside(heard, spoken)
-            found = sure(ECHO_SKETCH, said=said) if said else echo()
-        return found
+        if finding is None and not (is_echo and self.best_finding() is None):
+            finding = self.ask(heard, not is_echo)
+        if finding is None and is_echo:
+            text = _text_beside(heard, spoken)
+            finding = sure(ECHO_SKETCH, said=text) if text else echo()
+        return finding
 
     def look(self, heard: bytes) -> Finding | None:
         """Return what has surely sent these bytes, by its row or as a robot that does not hear."""
         if foreign.is_robot(heard):
             return probably("one_way")
-        found = foreign.identify_board(heard)
+        board = foreign.identify_board(heard)
         return (
-            None if found is not None and found.name in foreign.GENERAL_ROWS else self._judge(found)
+            None if board is not None and board.name in foreign.GENERAL_ROWS else self._judge(board)
         )
 
     def ask(self, heard: bytes, may_be_text: bool) -> Finding | None:
@@ -159,34 +159,34 @@ class _Others:
         for row in foreign.ROWS:
             if row.probe:
                 self._wire.send(row.probe)
-                found = self._judge(
+                finding = self._judge(
                     foreign.identify_board(heard + self._wire.receive(self._wait_ms))
                 )
-                if found is not None:
-                    return found
+                if finding is not None:
+                    return finding
         if (best := self.best_finding()) is not None and best.cause == "at_firmware":
             self._wire.send(foreign.AT_VERSION_QUESTION)
-            found = self._judge(
+            finding = self._judge(
                 foreign.identify_board(heard + self._wire.receive(dialects.ANSWER_MS))
             )
-            if found is not None:
-                return found
+            if finding is not None:
+                return finding
         return self._judge(foreign.identify_stranger(heard)) if may_be_text else None
 
     def settle(self, heard: bytes) -> Finding | None:
         """Return what has sent these bytes, where no question would help."""
-        found = foreign.identify_board(heard)
-        return None if found is None else self._judge(found)
+        board = foreign.identify_board(heard)
+        return None if board is None else self._judge(board)
 
     def best_finding(self) -> Finding | None:
         """Return what is probably there."""
         return self._kept[0] if self._kept else None
 
-    def _judge(self, found: Foreign | None) -> Finding | None:
-        if found is None:
+    def _judge(self, board: Foreign | None) -> Finding | None:
+        if board is None:
             return None
-        finding = Finding(found.name, found.is_sure, {"said": found.said})
-        if found.is_sure:
+        finding = Finding(board.name, board.is_sure, {"said": board.said})
+        if board.is_sure:
             return finding
         self._kept.append(finding)
         return None
@@ -223,9 +223,9 @@ def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
         return None
     if not module.version:  # no module has told which one it is
         wire.send(foreign.AT_VERSION_QUESTION)
-        found = foreign.identify_board(wire.receive(dialects.ANSWER_MS))
-        if found is not None:
-            return Finding(found.name, found.is_sure, {"said": found.said})
+        board = foreign.identify_board(wire.receive(dialects.ANSWER_MS))
+        if board is not None:
+            return Finding(board.name, board.is_sure, {"said": board.said})
     cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
     return sure(cause, baud=str(module.baud), module=module.dialect.name)
 
@@ -256,27 +256,27 @@ def _diagnose_cable(
             return [finding, *(finding for finding in rest if finding.cause != "fine")]
         more += robot.heard
         alone = partial(_identify_echo_of_one_speed, wire, baud)
-        found = others.find(more, robot.spoken, alone)
-        if found is not None:
-            return [found]
+        other_finding = others.find(more, robot.spoken, alone)
+        if other_finding is not None:
+            return [other_finding]
         garbage = max(garbage, len(more))
     on_step("module")
-    found = _find_module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))))
-    if found is not None:
-        return [found]
+    other_finding = _find_module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))))
+    if other_finding is not None:
+        return [other_finding]
     on_step("bootloader")
     booted: list[bytes] = []
     found_bootloader = find_bootloader(wire, booted.append)
     for said in booted:
-        found = others.look(said) or others.settle(said)
-        if found is not None:
-            return [found]
+        other_finding = others.look(said) or others.settle(said)
+        if other_finding is not None:
+            return [other_finding]
     if found_bootloader is not None:
         board, is_alone = found_bootloader
         return [sure("bootloader_only", board=board.name) if is_alone
                 else others.best_finding() or probably("other_sketch", said="")]  # fmt: skip
-    kept = others.best_finding()
+    best_finding = others.best_finding()
     return [
-        kept
+        best_finding
         or (probably("garbled", n=str(garbage)) if garbage >= LEAST_BYTES else probably("silent"))
     ]

@@ -46,8 +46,8 @@ _CAUSES = (
 class WriteResult(NamedTuple):
     """The outcome, a name from above, and the last lines of output if they help."""
 
-    how: str
-    said: str = ""
+    outcome: str
+    output: str = ""
 
 
 class StepProgress(NamedTuple):
@@ -101,14 +101,14 @@ def write(
     words = [*command, "-c", to.programmer, "-p", to.part, "-P", port, "-b", str(to.baud), "-D"]
     words += ["-U", f"flash:w:{firmware}:i"]
     try:
-        code, said = children.run(words, None, _Watch(look), leave_s=LEAVE_S)
+        exit_code, output = children.run(words, None, _Watch(look), leave_s=LEAVE_S)
     except _Ended as over:
         return over.ended
     except subprocess.TimeoutExpired:
         return WriteResult(ENDLESS)
     except children.CannotStart as why:
         return WriteResult(FAILED, str(why.strerror or why))
-    return outcome(code, said)
+    return outcome(exit_code, output)
 
 
 class _Ended(Exception):
@@ -127,28 +127,28 @@ class _Watch:
         self._said = ""
         self._began_s = self._heard_s = monotonic()
 
-    def __call__(self, said: str) -> None:
-        now_s, found = monotonic(), parse_progress(said)
-        self._look(found)
-        if said != self._said:
-            self._said, self._heard_s = said, now_s
-        if now_s - self._began_s >= WHOLE_S or len(said) > MOST_BYTES:
+    def __call__(self, output: str) -> None:
+        now_s, progress = monotonic(), parse_progress(output)
+        self._look(progress)
+        if output != self._said:
+            self._said, self._heard_s = output, now_s
+        if now_s - self._began_s >= WHOLE_S or len(output) > MOST_BYTES:
             raise _Ended(ENDLESS)
-        if found is not None:
+        if progress is not None:
             if now_s - self._heard_s >= SILENCE_S:
                 raise _Ended(BROKEN_OFF)
-        elif now_s - self._heard_s >= NOBODY_S or _attempt(said) >= MOST_ATTEMPTS:
+        elif now_s - self._heard_s >= NOBODY_S or _attempt(output) >= MOST_ATTEMPTS:
             raise _Ended(NOBODY)
 
 
-def _attempt(said: str) -> int:
+def _attempt(output: str) -> int:
     """Return the number of its last attempt."""
-    return max(map(int, _ATTEMPT.findall(said)), default=0)
+    return max(map(int, _ATTEMPT.findall(output)), default=0)
 
 
-def parse_progress(said: str) -> StepProgress | None:
+def parse_progress(output: str) -> StepProgress | None:
     """Return the progress, from its whole output."""
-    bars = _PROGRESS_BAR.findall(said)
+    bars = _PROGRESS_BAR.findall(output)
     names = [name for name, _ in bars]
     if "Writing" not in names:
         return None  # the bar before that is for the signature
@@ -157,17 +157,19 @@ def parse_progress(said: str) -> StepProgress | None:
     return StepProgress(phase, min(100, 100 * len(marks) // BAR_MARKS))
 
 
-def outcome(code: int, said: str) -> WriteResult:
+def outcome(exit_code: int, output: str) -> WriteResult:
     """Return the outcome, from its exit code and its whole output."""
-    if code == 0:
+    if exit_code == 0:
         return WriteResult(DONE)
-    began_to_write = parse_progress(said) is not None
+    began_to_write = parse_progress(output) is not None
     for how, pattern in _CAUSES:
-        if re.search(pattern, said, re.IGNORECASE):
+        if re.search(pattern, output, re.IGNORECASE):
             if began_to_write and how != DIFFERS:
                 return WriteResult(BROKEN_OFF)
             return WriteResult(how)
-    rows = [row.strip() for row in said.splitlines() if row.strip() and "done." not in row]
+    rows = [row.strip() for row in output.splitlines() if row.strip() and "done." not in row]
     if began_to_write:
         return WriteResult(BROKEN_OFF)
-    return WriteResult(FAILED, rows[-1].removeprefix("avrdude: ") if rows else f"exit code {code}")
+    return WriteResult(
+        FAILED, rows[-1].removeprefix("avrdude: ") if rows else f"exit code {exit_code}"
+    )

@@ -33,12 +33,12 @@ MADE_BY = "tsc firmware, from a robot profile."
 
 FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
 # It is too large, and is built once more, without tasks or without a remote control.
-LESS_TASKS, LESS_REMOTE = "less_tasks", "less_remote"
+WITHOUT_TASKS, WITHOUT_REMOTE = "less_tasks", "less_remote"
 CORE_FILES = 26  # of Arduino's core, about
 # For a robot that does not fit on its board with all of it: one of more devices than tinibot.
 SMALLER_FIRMWARE = {
-    "uno": ("uno_without_tasks", LESS_TASKS),
-    "nano": ("nano_without_remote", LESS_REMOTE),
+    "uno": ("uno_without_tasks", WITHOUT_TASKS),
+    "nano": ("nano_without_remote", WITHOUT_REMOTE),
 }
 # For a robot with discs on its wheels, which have the place of the reader of text.
 ENVIRONMENT_WITH_DISCS = {"uno": "uno_tinibot2", "nano": "nano_tinibot2"}
@@ -68,7 +68,7 @@ class StepProgress(NamedTuple):
 
     phase: str
     percent: int
-    what: str = ""
+    file_name: str = ""
 
 
 class CannotBuild(Exception):
@@ -78,10 +78,10 @@ class CannotBuild(Exception):
     UNREACHABLE, FAILED, TOO_LARGE = "unreachable", "build_failed", "too_large"
     NOT_WRITTEN = "not_written"
 
-    def __init__(self, why: str, said: str = "", log: str = "") -> None:
-        super().__init__(said or why)
+    def __init__(self, why: str, last_output: str = "", log: str = "") -> None:
+        super().__init__(last_output or why)
         self.why = why
-        self.said = said
+        self.last_output = last_output
         self.log = log
 
 
@@ -177,9 +177,9 @@ class _Project:
         It runs in the folder: Python finds modules where it begins, and not in a pupil's.
         """
 
-        def look_at(said: str) -> None:
-            if found := parse_progress(said, self.files):
-                look(found)
+        def look_at(output: str) -> None:
+            if progress := parse_progress(output, self.files):
+                look(progress)
 
         command = [*self.command, self.environment, *words]
         return children.run(command, self.folder, look_at, _environment())
@@ -250,17 +250,17 @@ def _environment() -> dict[str, str]:
     return {**own, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
 
 
-def parse_progress(said: str, files: int) -> StepProgress | None:
+def parse_progress(output: str, files: int) -> StepProgress | None:
     """Return the progress, from its whole output; `files` is the total number of files."""
-    text = _WRITING.findall(said)
+    text = _WRITING.findall(output)
     if text:
         return StepProgress(WRITING, min(100, int(text[-1])))
-    compiled = len(_COMPILING.findall(said))
+    compiled = len(_COMPILING.findall(output))
     if compiled:
         return StepProgress(COMPILING, min(99, 100 * compiled // files))
-    installing = list(_INSTALLING.finditer(said))
+    installing = list(_INSTALLING.finditer(output))
     if installing:
-        percents = _PERCENT.findall(said, installing[-1].end())
+        percents = _PERCENT.findall(output, installing[-1].end())
         percent = min(100, int(percents[-1])) if percents else 0
         return StepProgress(FETCHING, percent, installing[-1][1])
     return None

@@ -27,14 +27,14 @@ class CannotStart(OSError):
 def run(
     command: list[str],
     folder: Path | None,
-    look: Callable[[str], None],
+    on_output: Callable[[str], None],
     environment: Mapping[str, str] | None = None,
-    may_end: Callable[[str], bool] = lambda said: True,
+    may_end: Callable[[str], bool] = lambda output: True,
     leave_s: float | None = None,
 ) -> tuple[int, str]:
     """Run a program in a folder, or here; return its exit code, and what it has said.
 
-    `look` gets what it has said until now, ten times a second. An exception, such as Ctrl-C,
+    `on_output` gets what it has said until now, ten times a second. An exception, such as Ctrl-C,
     ends the program and its children; where it may not end after what it has said, it is waited for
     first. Raises CannotStart, and TimeoutExpired where it has not ended `leave_s` after its last
     output.
@@ -53,13 +53,13 @@ def run(
         except OSError as why:
             raise CannotStart(*why.args) from why
         assert running.stdout
-        pipe, said = running.stdout, bytearray()
+        pipe, output = running.stdout, bytearray()
 
         def read() -> None:
             with pipe:
                 while data := os.read(pipe.fileno(), 1 << 16):
-                    said.extend(data)
-                    del said[:-LOG_BYTES]
+                    output.extend(data)
+                    del output[:-LOG_BYTES]
 
         reader = Thread(target=read, daemon=True)
         try:
@@ -67,12 +67,12 @@ def run(
             reader.start()
             while True:  # one look at least, also at what has ended meanwhile
                 reader.join(LOOK_S)
-                look(said.decode(errors="replace"))
+                on_output(output.decode(errors="replace"))
                 if not reader.is_alive():
                     break
-            code = running.wait(leave_s)
+            exit_code = running.wait(leave_s)
         except BaseException:
-            if may_end(said.decode(errors="replace")):
+            if may_end(output.decode(errors="replace")):
                 _end(running)
             else:
                 running.wait()
@@ -81,7 +81,7 @@ def run(
                 reader.join(KILLED_AFTER_S)
             raise
     _kill(running)  # what it has started may go on, and hold a port
-    return code, said.decode(errors="replace")
+    return exit_code, output.decode(errors="replace")
 
 
 @contextmanager

@@ -106,8 +106,8 @@ def keep(title: str, board: str, digest: str, data: bytes) -> Ready:
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / name_of(title, board, digest)
     replace(path, data)
-    kept = sorted(folder.glob("*.hex"), key=lambda path: path.stat().st_mtime_ns)
-    for old in kept[:-MOST_FILES]:
+    cached_files = sorted(folder.glob("*.hex"), key=lambda path: path.stat().st_mtime_ns)
+    for old in cached_files[:-MOST_FILES]:
         if old != path:
             old.unlink(missing_ok=True)
     return Ready(title, board, digest, path)

@@ -61,9 +61,9 @@ def main(words: list[str]) -> int:
     for name in ("pages", "examples"):
         shutil.copytree(STICK / name, folder / name, dirs_exist_ok=True)
     tried = [str(python), "-m", "tiniscript", "run", "--machine", "cpp", "-e", "SI|F(1, 80)"]
-    ran = subprocess.run(tried, env=variables, capture_output=True)
-    if ran.returncode:
-        why = ran.stderr.decode("utf-8", "replace").strip().splitlines() or ["?"]
+    completed = subprocess.run(tried, env=variables, capture_output=True)
+    if completed.returncode:
+        why = completed.stderr.decode("utf-8", "replace").strip().splitlines() or ["?"]
         _say("no_robot", why=why[0])
     activate = f'. "{programs}/activate"'
     if IS_WINDOWS:

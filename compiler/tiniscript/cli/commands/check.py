@@ -26,13 +26,13 @@ def run(options: Namespace, language: str) -> int:
     if len(names) > 1:
         raise CommandError(2, "two_programs")
     options.program = names[0] if names else None
-    given = inputs.program(options)
-    inputs.robot_for(given, options, language)
+    program_input = inputs.program(options)
+    inputs.robot_for(program_input, options, language)
     robot = _robot(options, language)
     if options.fix or options.diff:
-        compiled, is_right = _repair(options, given, robot, language)
+        compiled, is_right = _repair(options, program_input, robot, language)
     else:
-        compiled = compiling.compile_input(given, robot, is_strict=False)
+        compiled = compiling.compile_input(program_input, robot, is_strict=False)
         compiled = compiling.for_level(compiled, robot, options.text_level)
         is_right = compiled.is_right
     if options.json:
@@ -42,33 +42,39 @@ def run(options: Namespace, language: str) -> int:
         print(json.dumps(as_json(messages), indent=2))
     else:
         outputs.print_diagnostics(compiled, language)
-        if compiled.is_right and not options.diff and (given.path is not None or not options.fix):
-            say("no_mistakes", language, file=inputs.printable_name(given.name))
+        if (
+            compiled.is_right
+            and not options.diff
+            and (program_input.path is not None or not options.fix)
+        ):
+            say("no_mistakes", language, file=inputs.printable_name(program_input.name))
     return 0 if is_right else 1
 
 
-def _repair(options: Namespace, given: Input, robot: Robot, language: str) -> tuple[Compiled, bool]:
+def _repair(
+    options: Namespace, program_input: Input, robot: Robot, language: str
+) -> tuple[Compiled, bool]:
     """Make or show the sure repairs; return what is left, and whether the program is right now."""
     from tiniscript.cli.repairing import print_difference, repair
 
-    result = repair(given, robot)
-    name = inputs.printable_name(given.name)
+    result = repair(program_input, robot)
+    name = inputs.printable_name(program_input.name)
     says = not options.json
     if options.diff:
         if says and result.repairs:
-            print_difference(given.data, result.data, given.name)
+            print_difference(program_input.data, result.data, program_input.name)
         key = "would_repair" if result.repairs else "nothing_repaired"
         if says and (result.repairs or not result.compiled.is_right):
             key += "_one" if result.repairs == 1 else ""
             say_aside(key, language, file=name, n=result.repairs)
         return result.compiled, result.compiled.is_right and not result.repairs
-    if given.path is None:
+    if program_input.path is None:
         if says:
             outputs.write_output(None, result.data)
     elif result.repairs:
-        outputs.write(given.path, result.data, "unwritable_source")
-    if says and result.repairs and given.path is not None:
-        print_difference(given.data, result.data, given.name)
+        outputs.write(program_input.path, result.data, "unwritable_source")
+    if says and result.repairs and program_input.path is not None:
+        print_difference(program_input.data, result.data, program_input.name)
         key = "repaired_one" if result.repairs == 1 else "repaired"
         say_aside(key, language, file=name, n=result.repairs)
     if says and not result.compiled.is_right:

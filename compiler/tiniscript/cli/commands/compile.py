@@ -20,16 +20,16 @@ from tiniscript.semantics.ir import Program
 
 
 def run(options: Namespace, language: str) -> int:
-    given = inputs.program(options)
+    program_input = inputs.program(options)
     if options.text:
-        return _line(options, given, language)
+        return _line(options, program_input, language)
     if options.text_level is not None:
         raise CommandError(2, "level_needs_text", level=options.text_level)
-    target = _target(given, options.output)
+    target = _target(program_input, options.output)
     if options.map == "-":
         raise CommandError(2, "over_map", file="-")
-    robot = inputs.robot_for(given, options, language)
-    compiled = compiling.compile_input(given, robot, is_strict=True)
+    robot = inputs.robot_for(program_input, options, language)
+    compiled = compiling.compile_input(program_input, robot, is_strict=True)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
@@ -41,7 +41,7 @@ def run(options: Namespace, language: str) -> int:
     source_map.remember(compiled.image, places)
     will_fault = any(diagnostic.code is WILL_FAULT for diagnostic in compiled.diagnostics)
     sentence = text("compiled", language).format(
-        source=inputs.printable_name(given.name),
+        source=inputs.printable_name(program_input.name),
         target=inputs.printable_name(target or "-"),
         image=len(compiled.image),
         code=len(compiled.code),
@@ -53,12 +53,12 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
-def _line(options: Namespace, given: inputs.Input, language: str) -> int:
+def _line(options: Namespace, program_input: inputs.Input, language: str) -> int:
     """Write the program as one line of text."""
     if options.map is not None:
         raise CommandError(2, "text_has_no_map")
-    robot = inputs.robot_for(given, options, language)
-    compiled = fit_to_robot(compiling.compile_input(given, robot, is_strict=True), robot)
+    robot = inputs.robot_for(program_input, options, language)
+    compiled = fit_to_robot(compiling.compile_input(program_input, robot, is_strict=True), robot)
     compiled = compiling.for_level(compiled, robot, options.text_level)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
@@ -69,7 +69,7 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     line = (line_of(compiled.source) + "\n").encode()
     is_printed = not outputs.write_output(options.output, line)
     sentence = text("compiled_text", language).format(
-        source=inputs.printable_name(given.name),
+        source=inputs.printable_name(program_input.name),
         target="-" if is_printed else inputs.printable_name(options.output),
         bytes=len(line),
         code=plain_code(compiled.program).length,
@@ -78,13 +78,13 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     return 0
 
 
-def _target(given: inputs.Input, output: str | None) -> str | None:
+def _target(program_input: inputs.Input, output: str | None) -> str | None:
     """Return the file to write, or None for standard output."""
     if output == "-":
         return None
-    if output is None and given.path is None:
+    if output is None and program_input.path is None:
         raise CommandError(2, "needs_output")
-    return paths.default_output(given.name) if output is None else output
+    return paths.default_output(program_input.name) if output is None else output
 
 
 def _runs(program: Program | None, kit: Kit, language: str) -> str:

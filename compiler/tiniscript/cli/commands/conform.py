@@ -121,7 +121,7 @@ def _port(options: Namespace, language: str) -> int:
 
 
 def report(
-    found: Iterable[Verdict],
+    verdicts: Iterable[Verdict],
     count: int,
     facts: dict[str, str],
     end: str,
@@ -130,16 +130,16 @@ def report(
     language: str,
 ) -> int:
     """Print what differs, and the sum; return the exit code."""
-    found = list(found)
-    lacking = sum(verdict.what == LACKS for verdict in found)
-    found = [verdict for verdict in found if verdict.what != LACKS]
-    count -= lacking
-    differing = [verdict for verdict in found if verdict.what != AGREES]
-    good = len(found) - len(differing)
+    verdicts = list(verdicts)
+    lacking_count = sum(verdict.what == LACKS for verdict in verdicts)
+    verdicts = [verdict for verdict in verdicts if verdict.what != LACKS]
+    count -= lacking_count
+    differing = [verdict for verdict in verdicts if verdict.what != AGREES]
+    agreeing_count = len(verdicts) - len(differing)
     if options.json:
         rows = [verdict._asdict() for verdict in differing]
-        sums = {**facts, "cases": count, "agree": good, "differ": len(differing)}
-        sums |= {"left_out": lacking} if lacking else {}
+        sums = {**facts, "cases": count, "agree": agreeing_count, "differ": len(differing)}
+        sums |= {"left_out": lacking_count} if lacking_count else {}
         sums["found"] = rows
         print(json.dumps(sums, indent=2, ensure_ascii=False))
         return int(bool(differing))
@@ -147,11 +147,11 @@ def report(
         print("\n".join(_rows(verdict, timeout_s, language)))
     if len(differing) > MOST_ROWS:
         say("conform_others", language, n=len(differing) - MOST_ROWS)
-    if len(found) < count:
+    if len(verdicts) < count:
         say("conform_given_up", language)
-    if lacking:
-        say("conform_left_out", language, n=lacking)
-    say(end, language, good=good, all=count, **facts)
+    if lacking_count:
+        say("conform_left_out", language, n=lacking_count)
+    say(end, language, good=agreeing_count, all=count, **facts)
     return int(bool(differing))
 
 

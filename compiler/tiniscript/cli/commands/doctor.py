@@ -55,10 +55,10 @@ def run(options: Namespace, language: str) -> int:
             raise CommandError(2, "doctor_one")
         work = partial(_examine_member, expected)
         return run_together(options, inputs.robot(options, language), language, work)
-    told: dict[str, str] = {}  # by a robot, of itself
+    robot_facts: dict[str, str] = {}  # by a robot, of itself
     heard: list[RobotAnswers] = []
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
-    expected = expected._replace(note=told.update, hear=heard.append)
+    expected = expected._replace(note=robot_facts.update, hear=heard.append)
     diagnosis = diagnosis_of(options, _port(options), expected, language, watch_s * 1000)
     robot = _description(diagnosis.port or "", heard[-1], language) if heard else None
     if robot is not None:
@@ -79,7 +79,7 @@ def run(options: Namespace, language: str) -> int:
         lines += ["", text("doctor_ports", language), *lines_of_ports(rows, language)]
         print(Sentence("\n".join(lines)), flush=True)
     if options.report is not None:
-        data = "\n".join(_report(diagnosis, told, language)) + "\n"
+        data = "\n".join(_report(diagnosis, robot_facts, language)) + "\n"
         outputs.write(Path(options.report), data.encode(), "unwritable_at --report")
         sentence = text("doctor_report", language).format(file=printable_name(options.report))
         print(sentence, file=sys.stderr if options.json else sys.stdout)
@@ -104,7 +104,7 @@ def _examine_member(expected: Expectations, connection: Connection, member: Memb
         connection, expected, lambda what: member.tell(f"doing_{what}", n=expected.pings)
     )
     wrong = [finding for finding in findings if finding.is_wrong]
-    rows, fields = [sentences_of(finding, language).what for finding in wrong], {}
+    rows, fields = [sentences_of(finding, language).finding for finding in wrong], {}
     if heard is not None:
         robot, trips_ms = _description(connection.port, heard, language), [*heard.trips_ms]
         rows.append(robot.line())
@@ -148,9 +148,9 @@ def _lines(diagnosis: Diagnosis, language: str) -> list[str]:
     return head + _rows(diagnosis, language, is_private=False)
 
 
-def _form(told: Mapping[str, str], language: str) -> list[str]:
+def _form(robot_facts: Mapping[str, str], language: str) -> list[str]:
     """Return the form of a bring-up, filled as far as a computer can."""
-    known = dict(told)
+    known = dict(robot_facts)
     if known.get("reset") in dict(RESETS):
         known["reset"] = text(f"reset_{known['reset']}", language)
     rows = [text("bring_up_about", language), text("bring_up_person", language)]
@@ -166,7 +166,7 @@ def _form(told: Mapping[str, str], language: str) -> list[str]:
     return rows
 
 
-def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> list[str]:
+def _report(diagnosis: Diagnosis, robot_facts: Mapping[str, str], language: str) -> list[str]:
     """Return the lines of a report."""
     rows = report.head(report.REPORT_MARK, text("report_about", language),
                        report.facts(diagnosis.computer), diagnosis.port)  # fmt: skip
@@ -174,7 +174,13 @@ def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> lis
         f"{finding.cause} {'sure' if finding.is_sure else 'probably'}"
         for finding in diagnosis.findings
     ]
-    return [*rows, "", *_rows(diagnosis, language, is_private=True), "", *_form(told, language)]
+    return [
+        *rows,
+        "",
+        *_rows(diagnosis, language, is_private=True),
+        "",
+        *_form(robot_facts, language),
+    ]
 
 
 def _fields(diagnosis: Diagnosis, language: str) -> dict[str, object]:

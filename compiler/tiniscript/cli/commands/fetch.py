@@ -16,10 +16,10 @@ def run(options: Namespace, language: str) -> int:
         connection.meet()
         data = connection.request(lambda session: session.fetch()).values.image
         name = connection.name
-    given = inputs.Input(name, data, Path("fetched.bin"))
+    program_input = inputs.Input(name, data, Path("fetched.bin"))
     if options.robot is None:
-        robot = images.robot_for(given, robot)
-    ready = images.ready(given, robot, language)
+        robot = images.robot_for(program_input, robot)
+    ready = images.ready(program_input, robot, language)
     assert ready is not None  # an image has no mistakes
     if options.output is not None:
         outputs.write(Path(options.output), data, "unwritable")

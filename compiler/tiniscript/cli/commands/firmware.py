@@ -79,13 +79,13 @@ def _selected_robot(options: Namespace, language: str) -> tuple[Robot, tuple[Boo
         raise bad_choice("--chip", list(BOARDS), options.chip, language)
     robot = inputs.robot(options, language)
     board, bootloaders = BOARDS[options.chip or robot.board.chip]
-    there = firmware_build.on_boards(options.robot, language, [board])
-    if not there:
+    fitting_robots = firmware_build.on_boards(options.robot, language, [board])
+    if not fitting_robots:
         fits = ", ".join(
             board.board.chip for board in firmware_build.on_boards(options.robot, language)
         )
         raise CommandError(2, "flash_no_fit", robot=robot.name, board=board, known=fits)
-    return there[0], bootloaders
+    return fitting_robots[0], bootloaders
 
 
 def _port(options: Namespace) -> str:
@@ -112,15 +112,15 @@ def _write(
         if bootloader is not bootloaders[0]:
             say_aside("flash_older", language)
         ended = _write_firmware(command, bootloader, port, firmware, language)
-        if ended.how != avrdude.NOBODY:
+        if ended.outcome != avrdude.NOBODY:
             break
-    if ended.how != avrdude.DONE:
+    if ended.outcome != avrdude.DONE:
         values = {
             "port": printable_name(port),
             "board": firmware.board,
-            "why": printable_name(ended.said),
+            "why": printable_name(ended.output),
         }
-        raise CommandError(3, f"flash_{ended.how}", **values)
+        raise CommandError(3, f"flash_{ended.outcome}", **values)
 
 
 def _write_firmware(

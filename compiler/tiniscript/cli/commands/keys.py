@@ -50,36 +50,36 @@ def _export(robot_keys: list[RobotKey], name: str, language: str) -> None:
     path = Path(name)
     if path.exists():
         raise CommandError(2, "export_there", file=printable_name(name))
-    taken = [key._replace(is_stale=False) for key in robot_keys if not key.is_pending]
-    outputs.write(path, keys.encode_keys(taken), "unwritable_more --export", keys.FILE_MODE)
-    say("keys_exported", language, n=len(taken), file=printable_name(name))
+    exported_keys = [key._replace(is_stale=False) for key in robot_keys if not key.is_pending]
+    outputs.write(path, keys.encode_keys(exported_keys), "unwritable_more --export", keys.FILE_MODE)
+    say("keys_exported", language, n=len(exported_keys), file=printable_name(name))
 
 
 def _import(own: KeyFile, name: str, language: str) -> None:
     try:
-        brought = keys.decode_keys(files.contents(Path(name), keys.FILE_BYTES))
+        imported_keys = keys.decode_keys(files.contents(Path(name), keys.FILE_BYTES))
     except (OSError, ValueError, BadKeys):
         raise CommandError(2, "bad_keys", file=printable_name(name)) from None
     try:
-        changed = own.add(brought)
+        changed = own.add(imported_keys)
     except TooManyKeys:
         raise CommandError(
             2, "too_many_keys", most=str(keys.MOST_KEYS), file=printable_name(name)
         ) from None
     except BadKeys as why:
         raise _key_file_error(own, "own_keys_full", why) from None
-    say("keys_imported", language, n=changed, all=len(brought), file=printable_name(name))
+    say("keys_imported", language, n=changed, all=len(imported_keys), file=printable_name(name))
 
 
-def _forget(own: KeyFile, robot_keys: list[RobotKey], robot: str, language: str) -> None:
-    gone = [key for key in robot_keys if robot.lower() == f"{key.id:08x}"]
-    gone = gone or [key for key in robot_keys if robot == key.name]
-    if len({key.id for key in gone}) != 1:
+def _forget(key_file: KeyFile, robot_keys: list[RobotKey], robot: str, language: str) -> None:
+    forgotten_keys = [key for key in robot_keys if robot.lower() == f"{key.id:08x}"]
+    forgotten_keys = forgotten_keys or [key for key in robot_keys if robot == key.name]
+    if len({key.id for key in forgotten_keys}) != 1:
         raise CommandError(2, "no_such_key", robot=printable_name(robot))
     try:
-        own.forget(gone[0].id)
+        key_file.forget(forgotten_keys[0].id)
     except BadKeys as why:
-        raise _key_file_error(own, "own_keys_full", why) from None
+        raise _key_file_error(key_file, "own_keys_full", why) from None
     say("keys_forgotten", language, robot=printable_name(robot))
 
 

@@ -43,9 +43,9 @@ def run(options: Namespace, language: str) -> int:
     try:
         return _SetUp(wire, options, expected, language, steps).run()
     except OSError:
-        code = _print_finding(sure("port_gone")._replace(of="module"), language)
+        exit_code = _print_finding(sure("port_gone")._replace(of="module"), language)
         print(_speed_after_abort(steps, language))
-        return code
+        return exit_code
     except KeyboardInterrupt:
         raise CommandError(2, "module_stopped", left=_speed_after_abort(steps, language)) from None
     finally:
@@ -90,15 +90,15 @@ def _wanted_settings(options: Namespace) -> WantedSettings:
     return result
 
 
-def _refuse(wanted: WantedSettings, dialect: Dialect, what: str) -> None:
-    if what == NAME:
+def _refuse(wanted: WantedSettings, dialect: Dialect, setting: str) -> None:
+    if setting == NAME:
         raise CommandError(
             2,
             "module_bad_name",
             most=str(dialect.name_bytes),
             found=printable_name(wanted.name or "") or "''",
         )
-    if what == PIN:
+    if setting == PIN:
         raise CommandError(2, "module_bad_pin", digits=str(dialect.pin_digits), module=dialect.name)
 
 
@@ -132,9 +132,9 @@ class _SetUp:
         doing.end()
         if module is None:
             return _print_finding(sure("module_silent"), self.language)
-        what = set_up.misfit(self.wanted, module.dialect)
-        if what:
-            _refuse(self.wanted, module.dialect, what)
+        misfit = set_up.misfit(self.wanted, module.dialect)
+        if misfit:
+            _refuse(self.wanted, module.dialect, misfit)
         plan = set_up.steps(self.wanted, module.dialect)
         now = self._values(module)
         self._introduce(module, now)
@@ -161,8 +161,8 @@ class _SetUp:
         dialect = module.dialect
         questions = {NAME: dialect.ask_name, BAUD: dialect.ask_baud}
         values = {
-            what: value_of(ask(self.wire, question, dialect.ending, dialect.wait_ms))
-            for what, question in questions.items()
+            setting: value_of(ask(self.wire, question, dialect.ending, dialect.wait_ms))
+            for setting, question in questions.items()
             if question
         }
         if BAUD in values:
@@ -170,7 +170,7 @@ class _SetUp:
             values[BAUD] = next(
                 (str(baud) for baud, value in dialect.bauds.items() if value == text), ""
             )
-        return {what: printable_name(value) for what, value in values.items() if value}
+        return {setting: printable_name(value) for setting, value in values.items() if value}
 
     def _introduce(self, module: Module, now: dict[str, str]) -> None:
         version = printable_name(module.version) or self._text("module_no_version")
@@ -184,9 +184,9 @@ class _SetUp:
 
     def _show(self, plan: list[Step]) -> None:
         for step in plan:
-            what = self._text(f"module_what_{step.what}", value=step.value)
+            description = self._text(f"module_what_{step.what}", value=step.value)
             commands = self._text("module_plan_or").join(step.commands)
-            print(f"{what}: " + self._text("module_plan", commands=commands))
+            print(f"{description}: " + self._text("module_plan", commands=commands))
 
     def _print_outcome(self, outcome: Outcome) -> None:
         step, how, text = outcome

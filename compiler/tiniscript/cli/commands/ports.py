@@ -62,7 +62,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
         with closing(open_client(port, robot, LOOKING_VERB, baud, language, OPEN_S)) as client:
             reply = client.hello()
             device_info, heard = client.line.robot, client.line.heard
-            found = stranger(client.line)
+            foreign_board = stranger(client.line)
     except CommandError as failure:
         return {"answer": None, "said": failure.plain(language)}
     except RobotError as gone:
@@ -86,6 +86,6 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
             "owner": owner,
             "said": sentence,
         }
-    if found is not None and (found.has_row or found.is_sure):
-        return {"answer": None, "said": Sentence(explain(found, language).said.rstrip("."))}
+    if foreign_board is not None and (foreign_board.has_row or foreign_board.is_sure):
+        return {"answer": None, "said": Sentence(explain(foreign_board, language).said.rstrip("."))}
     return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}

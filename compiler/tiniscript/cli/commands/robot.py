@@ -228,13 +228,13 @@ def _announcement(name: str, number: int) -> Announcement:
         raise CommandError(3, "no_announcement", why=why) from None
 
 
-def _pushes_ms(option: str, found: str | None) -> list[int]:
-    if found is None:
+def _pushes_ms(option: str, typed: str | None) -> list[int]:
+    if typed is None:
         return []
-    values = [decimal(part.strip()) for part in found.split(",")]
+    values = [decimal(part.strip()) for part in typed.split(",")]
     known = [value for value in values if value is not None and value >= 0]
     if len(known) != len(values):
-        raise CommandError(2, "bad_button", option=option, found=printable_name(found) or "''")
+        raise CommandError(2, "bad_button", option=option, found=printable_name(typed) or "''")
     return known
 
 

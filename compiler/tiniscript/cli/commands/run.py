@@ -23,24 +23,24 @@ LONGEST = 10**12  # milliseconds
 
 
 def run(options: Namespace, language: str) -> int:
-    given = inputs.program(options)
-    if is_recording(given.data):
+    program_input = inputs.program(options)
+    if is_recording(program_input.data):
         from tiniscript.cli.robot.recorded_run import play
 
-        return play(given, options, language)
+        return play(program_input, options, language)
     if options.record is not None:
         from tiniscript.cli.robot.recorded_run import record
 
-        return record(given, options, language)
+        return record(program_input, options, language)
     if options.world is not None:
         raise CommandError(2, "world_alone")
     max_ms = thousandths("--max-time", options.max_time, 60_000, 0, LONGEST, language)
     pace = thousandths("--pace", options.pace, 1000, 0, 10**9, language)
     max_steps = whole_number("--max-steps", options.max_steps, MAX_STEPS, 0, 10**15, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
-    robot = inputs.robot_for(given, options, language)
+    robot = inputs.robot_for(program_input, options, language)
     lists = sensor_lists(options.sensor, robot, language)
-    ready = images.ready(given, robot, language)
+    ready = images.ready(program_input, robot, language)
     if ready is None:
         return 1
     machine_of = _cpp_machine(ready.image, robot) if options.machine == "cpp" else None
@@ -60,7 +60,7 @@ def run(options: Namespace, language: str) -> int:
         say_aside("read_nothing", language, **values)
     if ending.what != "FAULT":
         return 0
-    text = fault_text(ending.fault, ending.offset, ready.places, given.is_image, language)
+    text = fault_text(ending.fault, ending.offset, ready.places, program_input.is_image, language)
     print(text, file=sys.stderr)
     return 1
 

@@ -109,8 +109,8 @@ def _class_keeper() -> class_keeping.Keeper:
 
 def _resume_class(taught: _Class) -> int:
     """Go on with a class that a crash has ended; return how many pupils it has."""
-    kept = taught.keeper.read()
-    pupils = taught.room.go_on(*kept) if kept is not None else 0
+    saved_class = taught.keeper.read()
+    pupils = taught.room.go_on(*saved_class) if saved_class is not None else 0
     taught.room.tidy()
     return pupils
 

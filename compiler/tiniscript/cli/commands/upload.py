@@ -29,12 +29,12 @@ from tiniscript.robots.profile import Robot
 
 
 def run(options: Namespace, language: str) -> int:
-    given = inputs.program(options)
-    robot = inputs.robot_for(given, options, language)
+    program_input = inputs.program(options)
+    robot = inputs.robot_for(program_input, options, language)
     is_many = select_port(options)
     # the robot that answers may not be the default one
-    is_open = options.robot is None and not is_many and not given.is_image
-    ready = _ready(given, robot, options, is_open)
+    may_choose_robot = options.robot is None and not is_many and not program_input.is_image
+    ready = _ready(program_input, robot, options, may_choose_robot)
     if ready is None:
         return 1
     is_followed = ready.image.start == "SI" and not (options.no_run or options.detach)
@@ -44,13 +44,15 @@ def run(options: Namespace, language: str) -> int:
         from tiniscript.cli.robot.recorded_run import require_known_robot, source_text
 
         require_known_robot(robot)
-        options.recorded_text = source_text(given)
+        options.recorded_text = source_text(program_input)
     if options.breaks and (is_many or not is_followed):
         raise CommandError(2, "break_follows")
     if is_many:
         from tiniscript.cli.robot.fleet_upload import upload_to_many
 
-        return upload_to_many(options, robot, language, ready, inputs.printable_name(given.name))
+        return upload_to_many(
+            options, robot, language, ready, inputs.printable_name(program_input.name)
+        )
     with Connection(options, robot, language) as connection:
         if connection.simulator is not None and options.detach:
             raise CommandError(2, "virtual_and_detach")
@@ -60,32 +62,32 @@ def run(options: Namespace, language: str) -> int:
             return introduce(connection, options.json)
         connection.meet()
         is_kit_wrong = ready.image.devices and connection.device_info.kit != robot.kit.fingerprint
-        if is_open and is_kit_wrong and own_kit.use_answering_profile(connection, options):
-            ready = images.ready(given, connection.profile, language, is_strict=True)
+        if may_choose_robot and is_kit_wrong and own_kit.use_answering_profile(connection, options):
+            ready = images.ready(program_input, connection.profile, language, is_strict=True)
             if ready is None:
                 return 1
         try:
-            return _upload(connection, ready, inputs.printable_name(given.name), options)
+            return _upload(connection, ready, inputs.printable_name(program_input.name), options)
         except KeyboardInterrupt:
             return stop_and_say(connection)
 
 
 def _ready(
-    given: inputs.Input, robot: Robot, options: Namespace, is_open: bool
+    program_input: inputs.Input, robot: Robot, options: Namespace, may_choose_robot: bool
 ) -> images.Ready | None:  # fmt: skip
     """Return the program, or None where its mistakes have just been printed.
 
     One with words of another robot is compiled for the robot that answers, if there is one.
     """
     language: str = options.language
-    if not is_open:
-        return images.ready(given, robot, language, is_strict=True)
+    if not may_choose_robot:
+        return images.ready(program_input, robot, language, is_strict=True)
     try:
-        return images.ready(given, robot, language, is_strict=True, is_open=True)
+        return images.ready(program_input, robot, language, is_strict=True, may_choose_robot=True)
     except images.OtherRobot as other:
         result = own_kit.find_answering_robot(options, robot, language)
         if result is not None:
-            return images.ready(given, result, language, is_strict=True)
+            return images.ready(program_input, result, language, is_strict=True)
         outputs.print_diagnostics(other.compiled, language)
         return None
 

@@ -41,10 +41,10 @@ def run(options: Namespace, language: str) -> int:
 
 def _merge_by_tag(rows: list[tuple[str, ...]]) -> list[tuple[str, ...]]:
     """Return the rows of power and GND with one row for a tag."""
-    found: dict[tuple[str, ...], list[str]] = {}
+    ends_by_tag: dict[tuple[str, ...], list[str]] = {}
     for *tag, end in rows:
-        found.setdefault(tuple(tag), []).append(end)
-    return [(*tag, ", ".join(ends)) for tag, ends in found.items()]
+        ends_by_tag.setdefault(tuple(tag), []).append(end)
+    return [(*tag, ", ".join(ends)) for tag, ends in ends_by_tag.items()]
 
 
 def _print_rows(rows: list[tuple[str, ...]]) -> None:

@@ -80,14 +80,16 @@ class Classroom:
             raise CommandError(3, "class_empty", group=self.group, host=str(self.place))
         return result
 
-    def targets(self, found: list[Present], verb: str = "class") -> Namespace:
+    def targets(self, present_robots: list[Present], verb: str = "class") -> Namespace:
         """Return the options with which a verb reaches these robots.
 
         Only who has them drive has to attend to them.
         """
         from tiniscript.link.transports.broker import port_of
 
-        ports = [port_of(*self.place, self.group, item.id) for item in found if item.is_here]
+        ports = [
+            port_of(*self.place, self.group, item.id) for item in present_robots if item.is_here
+        ]
         fleet_defaults = {option.name: option.unset for option in options_of(UPLOAD_VERB)}
         own = Namespace(**{**fleet_defaults, "port": None, **vars(self.options)})
         own.ports, own.verb = ports, verb
@@ -109,12 +111,12 @@ def list_robots(room: Classroom) -> int:
 def upload(room: Classroom) -> int:
     """Send a program to all at once, and follow it until it ends on each."""
     own = room.targets(room.present(), UPLOAD_VERB)
-    given = inputs.program(own)
-    robot = inputs.robot_for(given, own, room.language)
-    ready = images.ready(given, robot, room.language, is_strict=True)
+    program_input = inputs.program(own)
+    robot = inputs.robot_for(program_input, own, room.language)
+    ready = images.ready(program_input, robot, room.language, is_strict=True)
     if ready is None:
         return 1
-    return upload_to_many(own, robot, room.language, ready, printable_name(given.name))
+    return upload_to_many(own, robot, room.language, ready, printable_name(program_input.name))
 
 
 def stop(room: Classroom) -> int:

@@ -292,20 +292,24 @@ class Connection(Client):
         if reason == "status":
             return CommandError(3, "plain", said=self.refusal_text(reply))
         if reason == FOREIGN:
-            what, then = self.foreign()
+            explanation, advice = self.foreign()
             return CommandError(
-                3, reason, port=printable_name(self.port), what=Sentence(what), then=Sentence(then)
+                3,
+                reason,
+                port=printable_name(self.port),
+                what=Sentence(explanation),
+                then=Sentence(advice),
             )
         return CommandError(3, reason, port=printable_name(self.port), id=f"{reply.detail:08x}")
 
     def refusal_text(self, reply: Reply[object]) -> str:
         """Return the meaning of a robot's refusal, and what to do."""
-        said, advice = sentence(reply.status, reply.detail, self.language)
+        meaning, advice = sentence(reply.status, reply.detail, self.language)
         if reply.status == STATUSES["WRONG_KIT"]:
             name = shipped_name_of_kit(reply.detail)
             if name is not None:
                 advice = text("choose_kit", self.language).format(robot=name)
-        return f"{said} {advice}".strip()
+        return f"{meaning} {advice}".strip()
 
     def error_for_loss(self, loss: ConnectionLost) -> CommandError:
         """Return the sentence for a connection that has ended."""
@@ -380,8 +384,8 @@ def _select_port(options: Namespace, language: str) -> str:
             raise CommandError(2, "only_virtual", option=f"--{name}")
     if port is not None:
         return inputs.port(port)
-    if (there := opening.last_port()) is not None:
-        return there
+    if (last_port := opening.last_port()) is not None:
+        return last_port
     last = known_ports.remembered_ports().last
     virtual = directory.unclaimed_robots() if can_bring else directory.running_robots()
     if len(virtual) == 1:

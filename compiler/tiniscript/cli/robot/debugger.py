@@ -32,15 +32,15 @@ from tiniscript.link.requests import Reply
 STEP, GO = "sS \n\r", "gG"  # keys
 
 
-def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, ...]:
+def places_of(line_texts: Sequence[str], ready: Ready, language: str) -> tuple[int, ...]:
     """Return the offset of the first statement from each line on. Raises CommandError."""
-    lines = [whole_number("--break", line, 1, 1, 10**6, language) for line in given]
+    lines = [whole_number("--break", line, 1, 1, 10**6, language) for line in line_texts]
     if ready.places is None:
         raise CommandError(2, "break_image")
     if len(set(lines)) > MOST_BREAKPOINTS:
         raise CommandError(2, "break_most", most=str(MOST_BREAKPOINTS))
     statements = statement_starts(ready.image.code)
-    matches = []
+    offsets = []
     for line in lines:
         places = [
             statement_of(statements, place.offset)
@@ -49,8 +49,8 @@ def places_of(given: Sequence[str], ready: Ready, language: str) -> tuple[int, .
         ]
         if not places:
             raise CommandError(1, "break_nowhere", line=str(line))
-        matches.append(min(places))
-    return tuple(sorted(set(matches)))
+        offsets.append(min(places))
+    return tuple(sorted(set(offsets)))
 
 
 def require_breakpoints(connection: Connection) -> None:
@@ -120,8 +120,8 @@ class Debugger:
         variables = self._variables()
         tasks = self._tasks(task)
         line = 0 if place is None else place.line
-        what = "" if place is None else self.map.line(line)[place.column - 1 :].split(";")[0]
-        texts = [text("halted", language).format(line=line, what=what.strip())]
+        instruction = "" if place is None else self.map.line(line)[place.column - 1 :].split(";")[0]
+        texts = [text("halted", language).format(line=line, what=instruction.strip())]
         values = ", ".join(
             f"{name} = {value_text(value, is_yes_no)}" for name, value, is_yes_no in variables
         )

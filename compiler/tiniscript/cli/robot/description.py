@@ -192,7 +192,7 @@ def measure_line(connection: Connection, member: Member) -> Result:
     result = describe_in_a_line(connection, member)
     member.tell("crew_pinging")
     trips = _trips(connection, ROUND_TRIPS)
-    text = f"{result.said}; {trips_in_words(trips, connection.language)}"
+    text = f"{result.sentence}; {trips_in_words(trips, connection.language)}"
     return Result(True, text, {**result.fields, **trips_as_data(trips)})
 
 

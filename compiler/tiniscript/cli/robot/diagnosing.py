@@ -83,8 +83,8 @@ def examination_of(
     return findings, heard[-1] if heard else None
 
 
-def _has_key(robot: int) -> bool:
-    return bool(KeyFile().of_robot(robot))
+def _has_key(robot_id: int) -> bool:
+    return bool(KeyFile().of_robot(robot_id))
 
 
 def _doubt(port: str, hello: HelloReply) -> str:
@@ -110,8 +110,10 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
 
     @contextmanager
     def share(port: str) -> Iterator[LinkConnection]:
-        given = Namespace(verb="doctor", port=port, baud=options.baud, virtual=False)
-        with Connection(given, inputs.robot(options, language), language) as connection:
+        connection_options = Namespace(verb="doctor", port=port, baud=options.baud, virtual=False)
+        with Connection(
+            connection_options, inputs.robot(options, language), language
+        ) as connection:
             connection.meet()
             yield connection.line
 

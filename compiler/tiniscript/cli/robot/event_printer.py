@@ -116,12 +116,12 @@ class EventPrinter:
 
     def _tell_value(self, since_ms: int, event: ShownEvent) -> None:
         value = event.value, bool(event.is_yes_no)
-        what, show = value_text(*value), self.shows.show_of(event)
+        value_shown, show = value_text(*value), self.shows.show_of(event)
         if show is None:
-            self.say(since_ms, "SHOW", what, value=value_of(*value))
+            self.say(since_ms, "SHOW", value_shown, value=value_of(*value))
             return
-        text = f"{self._name_with_place(show, str(show.line))} {what}"
-        self.say(since_ms, "SHOW", what, text, self.name_of(event), value=value_of(*value),
+        text = f"{self._name_with_place(show, str(show.line))} {value_shown}"
+        self.say(since_ms, "SHOW", value_shown, text, self.name_of(event), value=value_of(*value),
                  name=show.text, line=show.line, column=show.column)  # fmt: skip
 
     def _tell_fault(self, since_ms: int, number: int, at: int, program: int) -> None:

@@ -121,9 +121,11 @@ class Fleet:
                 streams.drop_unread()
                 end_s = monotonic() + opening.CONFIRM_S + 1
         if table is not None:
-            there = [member for member in self.in_order() if not member.is_absent]
-            there.sort(key=lambda member: member.mark == "bad")  # failures are printed last
-            table.end(member.row for member in there)
+            present_members = [member for member in self.in_order() if not member.is_absent]
+            present_members.sort(
+                key=lambda member: member.mark == "bad"
+            )  # failures are printed last
+            table.end(member.row for member in present_members)
         self._print_sum()
 
     def _refuse_unread(self) -> None:
@@ -257,12 +259,12 @@ class Fleet:
     def _print_sum(self) -> None:
         """Print the number of successes, and the ports without a robot."""
         absent = [member for member in self.in_order() if member.is_absent]
-        there = len(self.members) - len(absent)
-        if self.options.json or not there:
+        present_count = len(self.members) - len(absent)
+        if self.options.json or not present_count:
             return
         sys.stdout.flush()
         done = sum(member.mark == "ok" for member in self.members)
-        lines = [text("crew_sum", self.language).format(done=done, all=there)]
+        lines = [text("crew_sum", self.language).format(done=done, all=present_count)]
         if absent:
             ports = ", ".join(printable_name(member.target.port) for member in absent)
             lines.append(text("crew_absent", self.language).format(ports=ports))

@@ -50,7 +50,7 @@ def _upload(
     member.tell("crew_running" if runs and not options.detach else "crew_saving")
     printer = MemberPrinter(connection, ready, member, options.json, values.program)
     saving = Saving(connection, printer, values)
-    code = program_upload.follow_run(connection, ready, saving, options, printer)
+    exit_code = program_upload.follow_run(connection, ready, saving, options, printer)
     if not runs or options.detach:
         key = "how_waits" if not runs else "how_detached"
         printer.end = text(key, language).format(start=ready.image.start)
@@ -59,7 +59,7 @@ def _upload(
         sentence = text("crew_uploaded", language).format(
             checksum=receipt["checksum"], code=receipt["code_bytes"], how=sentence
         )
-    return Result(code == 0, sentence, {"checksum": receipt["checksum"]})
+    return Result(exit_code == 0, sentence, {"checksum": receipt["checksum"]})
 
 
 class MemberPrinter(EventPrinter):

@@ -75,15 +75,17 @@ def _find_by_radio(known: list[str], language: str) -> InReach:
 
 
 def _find_by_name(known: list[str], language: str) -> InReach:
-    there = ports.find_announced()
+    announced_robots = ports.find_announced()
     rows = []
-    for announced in there:
+    for announced in announced_robots:
         name = TCP + announced.name if announced.name.isprintable() else announced.port
         sentence = text("announced_port", language).format(port=announced.port)
         rows.append((name, {canonical_port(name), canonical_port(announced.port)}, sentence))
     ours = {port: canonical_port(port) for port in known if is_network_name(port)}
     reach = _rows(rows, ours)
-    reach.others.extend(announced.port for announced in there if announced.port not in reach.about)
+    reach.others.extend(
+        announced.port for announced in announced_robots if announced.port not in reach.about
+    )
     return reach
 
 
@@ -91,9 +93,9 @@ def _rows(rows: list[tuple[str, set[str], str]], ours: dict[str, str]) -> InReac
     """Name each robot by the port that the user knows: `rows` have a port, all that mean it, and a
     description; `ours` maps known ports to what they mean."""
     reach = InReach({}, [], list(ours), [])
-    for port, means, said in rows:
+    for port, means, description in rows:
         known = [value for value, meant in ours.items() if meant in means]
-        reach.about[known[0] if known else port] = said
+        reach.about[known[0] if known else port] = description
         reach.others.extend(known[1:])
         for item in known:
             reach.absent.remove(item)

@@ -59,8 +59,8 @@ def targets(options: Namespace) -> list[Target]:
     names = {canonical_port(port): name for port, name in reversed(known.items())}
     chosen = {canonical_port(port): port for port in reversed(expected)}
     return [
-        Target(port, names.get(same, ""), not options.all, same in names)
-        for same, port in reversed(chosen.items())
+        Target(port, names.get(canonical, ""), not options.all, canonical in names)
+        for canonical, port in reversed(chosen.items())
     ]
 
 
@@ -68,7 +68,7 @@ class Result(NamedTuple):
     """The result for one robot, as a sentence and as data. `is_absent`: there is none."""
 
     is_done: bool
-    said: str
+    sentence: str
     fields: Mapping[str, object] = {}
     is_absent: bool = False
 
@@ -113,14 +113,14 @@ class Member:
     def state_text(self, language: str) -> str:
         """Return the current state, or the result."""
         if self.result is not None:
-            return self.result.said
+            return self.result.sentence
         key, values = self.state
         sentence = text(key, language).format(**values)
         return f"{sentence}   {self.value}" if self.value else sentence
 
     @property
     def row(self) -> str:
-        text = self.result.said if self.result is not None else ""
+        text = self.result.sentence if self.result is not None else ""
         name = (
             f"{printable_name(self.name)} ({printable_name(self.target.port)})"
             if self.name
@@ -130,8 +130,8 @@ class Member:
 
     def as_json(self) -> str:
         assert self.result is not None
-        is_done, said, fields, is_absent = self.result
+        is_done, sentence, fields, is_absent = self.result
         return json.dumps({
             "event": "RESULT", "port": self.target.port, "robot": self.name or None,
-            "is_done": is_done, "is_absent": is_absent, "said": said, **fields,
+            "is_done": is_done, "is_absent": is_absent, "said": sentence, **fields,
         })  # fmt: skip

@@ -54,20 +54,20 @@ def follow_run(
 
     Raises CommandError.
     """
-    code = 0
+    exit_code = 0
     if is_running(ready, options):
         if options.detach:
             return 0
         if connection.simulator is not None:
             connection.simulator.watch()
         if options.breaks:
-            code = _follow_halts(connection, ready, saving, printer)
+            exit_code = _follow_halts(connection, ready, saving, printer)
         else:
-            code = RunMonitor(connection, printer, look=saving.look).follow(saving.run)
+            exit_code = RunMonitor(connection, printer, look=saving.look).follow(saving.run)
     elif has_button(connection, ready, options):
-        code = follow_button(connection, printer, saving)
+        exit_code = follow_button(connection, printer, saving)
     saving.wait()
-    return code
+    return exit_code
 
 
 def _follow_halts(
@@ -96,9 +96,9 @@ def has_button(connection: Connection, ready: images.Ready, options: Namespace) 
 def _failure(connection: Connection, reply: Reply[object], ready: images.Ready) -> CommandError:
     port = inputs.printable_name(connection.port)
     if reply.status == STATUSES["TOO_LARGE"]:
-        code, room = len(ready.image.code), reply.detail
+        code_bytes, room = len(ready.image.code), reply.detail
         return CommandError(
-            1, "too_large_by", code=str(code), over=str(code - room), room=str(room)
+            1, "too_large_by", code=str(code_bytes), over=str(code_bytes - room), room=str(room)
         )
     if reply.status == LOST:
         return CommandError(3, "upload_lost", port=port)
@@ -178,9 +178,9 @@ def follow_button(connection: Connection, printer: EventPrinter, saving: Saving)
             _check_event(connection, result[1], saving.program)
             if result[1].name != "STARTED":
                 printer.tell(*result)
-            code = exit_code_of(result[1], None)
-            if code is not None and not (is_person and _is_push(result[1])):
-                return code
+            exit_code = exit_code_of(result[1], None)
+            if exit_code is not None and not (is_person and _is_push(result[1])):
+                return exit_code
 
 
 def _check_event(connection: Connection, event: Event, program: int) -> None:

@@ -91,11 +91,11 @@ class Recorder:
         self._is_over = False
         self._rows = Rows(name, head.encode(), "unwritable_more --record")
 
-    def add(self, _: int, name: str, what: str, __: str = "") -> None:
+    def add(self, _: int, name: str, text: str, __: str = "") -> None:
         """Add an event as `EventPrinter` tells it, at the time at which it came here."""
         if self._is_over or name not in ("SHOW", *ENDING_EVENTS):
             return
-        event = f"{name} {what}" if name in ("SHOW", "FAULT") else name
+        event = f"{name} {text}" if name in ("SHOW", "FAULT") else name
         if self._began_s is None:
             self._began_s = monotonic()
         row = Row(self._ms(event), event)

@@ -70,9 +70,9 @@ class RunMonitor:
                 self.printer.tell(time_ms, event)
                 if event.name != "STARTED":
                     self.connection.quiet.note_words()
-            code = exit_code_of(event, run)
-            if code is not None:
-                return code
+            exit_code = exit_code_of(event, run)
+            if exit_code is not None:
+                return exit_code
 
     def stop_in_time(self) -> int:
         """Stop a virtual robot at its time limit: it stands already, but its firmware runs on."""

@@ -165,7 +165,7 @@ class TrimWizard(Conversation):
     def _failure(self, finding: Finding) -> CommandError:
         result = sentences_of(finding, self.language)
         part = label(finding, self.language)
-        return CommandError(3, "trim_found", part=part, found=result.what, then=result.then)
+        return CommandError(3, "trim_found", part=part, found=result.finding, then=result.advice)
 
     def _set(self, trim: Trim) -> None:
         self.connection.request(

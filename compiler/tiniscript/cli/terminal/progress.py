@@ -61,9 +61,9 @@ class Doing:
     def __init__(self, is_shown: bool = True) -> None:
         self._is_shown = is_shown and reads_sequences(sys.stderr)
 
-    def tell(self, said: str) -> None:
+    def tell(self, sentence: str) -> None:
         if self._is_shown:
-            print(f"\r\x1b[K{said}", end="", file=sys.stderr, flush=True)
+            print(f"\r\x1b[K{sentence}", end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
         self.tell("")
@@ -79,9 +79,9 @@ class Silence:
     Where nobody looks on, nothing is imported.
     """
 
-    def __init__(self, said: str) -> None:
+    def __init__(self, sentence: str) -> None:
         self.is_told = False
-        self._said = said
+        self._said = sentence
         self._timer: Timer | None = None
         if sys.stderr.isatty():
             import threading
@@ -108,9 +108,9 @@ class Silence:
 class Quiet:
     """The same for waits that follow each other: said once, until something else came between."""
 
-    def __init__(self, said: str, is_seen: bool) -> None:
+    def __init__(self, sentence: str, is_seen: bool) -> None:
         self.before: Callable[[], None] = lambda: None  # clears the line of a bar
-        self._said = said
+        self._said = sentence
         self._is_seen = is_seen and sys.stderr.isatty()
         self._since_s = self._until_s = monotonic()
         self.is_told = False
@@ -137,9 +137,9 @@ class Quiet:
         """The wait has ended, and nothing was said: what comes next is the same silence."""
         self._until_s = monotonic()
 
-    def with_words(self, said: str) -> Quiet:
+    def with_words(self, sentence: str) -> Quiet:
         """Return the same silence, of which something else is said."""
-        quiet = Quiet(said, self._is_seen)
+        quiet = Quiet(sentence, self._is_seen)
         quiet._since_s = self._since_s
         return quiet
 

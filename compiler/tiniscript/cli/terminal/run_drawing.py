@@ -69,22 +69,22 @@ class Picture:
         self.widest = [0, 0]  # columns of values and units, so far
 
     def take(self, event: Event) -> None:
-        self.now_ms, what, values, said, _ = event
-        if what == "MOTORS":
+        self.now_ms, name, values, event_text, _ = event
+        if name == "MOTORS":
             self.sketch.set_motors(self.now_ms, *values)
-        elif what == "READ":
+        elif name == "READ":
             self.readings[values[0]] = values[1]
-        elif what == "SET":
+        elif name == "SET":
             self.settings[values[0]] = values[1]
-        elif what == "RELEASE":
+        elif name == "RELEASE":
             self.settings.pop(values[0], None)
-        elif what == "SHOW":
-            self.shown.append(said.removeprefix("SHOW "))
-        elif what == "BEEP":
+        elif name == "SHOW":
+            self.shown.append(event_text.removeprefix("SHOW "))
+        elif name == "BEEP":
             self.hertz, self.silent_ms = values[0], self.now_ms + values[1]
         else:
             self.sketch.set_motors(self.now_ms, 0, 0)
-            self.ending = text(f"ended_{what}", self.language)
+            self.ending = text(f"ended_{name}", self.language)
             self.sketch.view = None  # the last picture has no need of room to grow
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
