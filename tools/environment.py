@@ -100,8 +100,10 @@ def make(extras: str, root: Path = ROOT) -> Path:
     # after it was cut off, nothing is.
     stamp = root / ".venv" / "installed"
     source = f"{hashlib.sha256((root / 'pyproject.toml').read_bytes()).hexdigest()} {root}"
-    was, *done_extras = stamp.read_text(encoding="utf-8").split("\n") if stamp.is_file() else ("",)
-    if was != source:
+    installed_source, *done_extras = (
+        stamp.read_text(encoding="utf-8").split("\n") if stamp.is_file() else ("",)
+    )
+    if installed_source != source:
         done_extras = []
     if extras not in done_extras:
         stamp.unlink(missing_ok=True)

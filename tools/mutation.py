@@ -248,12 +248,12 @@ def mutants(module: Module) -> list[Mutant]:
         if "enerated" in text.partition("\n")[0]:
             continue
         for start, end, instead in EDITS[path.suffix](text):
-            changed = text[:start] + instead + text[end:]
+            changed_text = text[:start] + instead + text[end:]
             line = text.count("\n", 0, start)
-            was, becomes = (item.splitlines()[line].strip() for item in (text, changed))
+            old_line, new_line = (item.splitlines()[line].strip() for item in (text, changed_text))
             name = path.relative_to(ROOT).as_posix()
-            if was != becomes and (name, was, becomes) not in needless:
-                mutants.append(Mutant(name, line + 1, was, becomes, changed))
+            if old_line != new_line and (name, old_line, new_line) not in needless:
+                mutants.append(Mutant(name, line + 1, old_line, new_line, changed_text))
     return mutants
 
 
@@ -369,9 +369,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--file", default="*", help="only files like this one")
     parser.add_argument("--list", action="store_true", help="only list them")
     options = parser.parse_args(arguments)
-    chosen = draw(MODULES, options.count, options.seed, options.file)
+    chosen_mutants = draw(MODULES, options.count, options.seed, options.file)
     if options.list:
-        print("\n".join(mutant.name for mutant in chosen))
+        print("\n".join(mutant.name for mutant in chosen_mutants))
         return 0
     results_path = cache_folder() / f"mutation-{_code()}.json"
     results: dict[str, str] = (
@@ -389,9 +389,9 @@ def main(arguments: list[str] | None = None) -> int:
                 print(f"{mutant.name}: {results[mutant.name] or '**nothing**'}", flush=True)
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        list(pool.map(work, [iter(chosen)] * AT_ONCE))
-    survivors = [mutant.name for mutant in chosen if not results[mutant.name]]
-    print(f"\n{len(chosen)} mutants, {len(survivors)} survived:", *survivors, sep="\n  ")
+        list(pool.map(work, [iter(chosen_mutants)] * AT_ONCE))
+    survivors = [mutant.name for mutant in chosen_mutants if not results[mutant.name]]
+    print(f"\n{len(chosen_mutants)} mutants, {len(survivors)} survived:", *survivors, sep="\n  ")
     return int(bool(survivors))
 
 

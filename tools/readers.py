@@ -35,15 +35,17 @@ def trace(text: str) -> Iterator[str]:
         result = analyze(rest, kit).diagnostics
         if not any(each.is_mistake for each in result):
             break
-        wrong = WrongText(Source(rest), result, lambda each: analyze(each, kit).diagnostics, kit)
-        findings = ((reader, reader(wrong)) for reader in READERS)
+        wrong_text = WrongText(
+            Source(rest), result, lambda each: analyze(each, kit).diagnostics, kit
+        )
+        findings = ((reader, reader(wrong_text)) for reader in READERS)
         reader, finding = next((each for each in findings if each[1].diagnostics), (None, None))
         if reader is None or finding is None:
             yield f"{_line(rest)}: no reader, so usage.py says what it knows of the mistake"
             break
         yield f"{_line(rest)}: {reader.__name__.strip('_')}"
-        is_whole = reader.__name__ in OF_WHOLE_LINES and wrong.recovery is not None
-        candidate = wrong.recovery.whole if is_whole and wrong.recovery else None
+        is_whole = reader.__name__ in OF_WHOLE_LINES and wrong_text.recovery is not None
+        candidate = wrong_text.recovery.whole if is_whole and wrong_text.recovery else None
         for change in candidate.changes if candidate else ():
             for step in change.steps:
                 yield f"  {_step_text(step)}\n    by {row_of(step, kit)}"

@@ -60,7 +60,7 @@ def watched(
         try:
             watch("".join(part for at_s, part in parts if at_s <= passed_s))
         except avrdude._Ended as over:
-            return over.ended, passed_s
+            return over.result, passed_s
         clock.now_s += LOOK_S
     percents = [each.percent + 100 * (each.phase == avrdude.READING) for each in seen if each]
     assert percents == sorted(percents) and percents[-1] == 200

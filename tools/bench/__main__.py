@@ -24,18 +24,18 @@ def commands() -> list[list[str]]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    shown = commands()
-    known = list(dict.fromkeys(name for name, *_ in shown))
+    rows = commands()
+    names_known = list(dict.fromkeys(name for name, *_ in rows))
     parser = argparse.ArgumentParser(
         prog="python -m tools.bench", description="Print the figures of docs/en/figures.md."
     )
-    parser.add_argument("names", nargs="*", metavar="name", help=f"only some of {known}")
-    names: list[str] = parser.parse_args(arguments).names or known
-    unknown = [name for name in names if name not in known]
-    if unknown:
-        parser.error(f"no such benchmark: {', '.join(unknown)}")
+    parser.add_argument("names", nargs="*", metavar="name", help=f"only some of {names_known}")
+    names: list[str] = parser.parse_args(arguments).names or names_known
+    unknown_names = [name for name in names if name not in names_known]
+    if unknown_names:
+        parser.error(f"no such benchmark: {', '.join(unknown_names)}")
     failed = []
-    for name, *rest in shown:
+    for name, *rest in rows:
         if name not in names:
             continue
         print("\n# python -m", " ".join([f"tools.bench.{name}", *rest]), end="\n\n", flush=True)

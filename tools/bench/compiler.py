@@ -37,12 +37,14 @@ def sizes() -> None:
     page.show("compiler", size_rows)
 
 
-def median_pair(ours: Callable[[], object], theirs: Callable[[], object], runs: int) -> list[float]:
+def median_pair(
+    own_work: Callable[[], object], other_work: Callable[[], object], runs: int
+) -> list[float]:
     """Return the median times of both, in seconds, and of their ratio; taken in turn."""
     pairs = []
     for _ in range(runs):
         times = []
-        for item in (ours, theirs):
+        for item in (own_work, other_work):
             start = time.perf_counter()
             item()
             times.append(time.perf_counter() - start)

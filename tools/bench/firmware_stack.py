@@ -206,18 +206,18 @@ def longest_program(kit: Kit, room: int) -> Image:
 
 def all_devices(kit: Kit) -> list[str]:
     """Return statements that read each sensor and set each actuator."""
-    reads = [
+    read_statements = [
         f"Y = {sensor.name}" if sensor.kind == NUMBER else f"IF({sensor.name}); Y = 1; ENDIF"
         for sensor in kit.sensors
     ]
-    sets = [
+    set_statements = [
         f"{actuator.name}({'X' if actuator.kind == NUMBER else 'TRUE'})"
         for actuator in kit.actuators
     ]
-    return [*reads, *sets]
+    return [*read_statements, *set_statements]
 
 
-def deep_program_text(kit: Kit, more: int) -> str:
+def deep_program_text(kit: Kit, show_count: int) -> str:
     lines = ["X = 0; Y = 0", "DEF D1", *all_devices(kit)]
     lines += ["BEEP(0.02, 440 + X)", "SHOW(X * 1.5 / 7)", "END_DEF"]
     for number in range(2, CALLS_AT_ONCE + 1):
@@ -227,5 +227,5 @@ def deep_program_text(kit: Kit, more: int) -> str:
         sum_of_all = f"0.{number + 1} {'+-*'[number % 3]} ({sum_of_all})"
     lines += ["LOOP(FOREVER)", "X = X % 100 + 1", "M(50, 0 - 50)", f"D{CALLS_AT_ONCE}"]
     lines += [f"Z = {sum_of_all}", "F(0.05, 80) UNTIL(X > 50 AND NOT (Y < 3 OR Z > 1))"]
-    lines += [f"SHOW(X + {number})" for number in range(more)]
+    lines += [f"SHOW(X + {number})" for number in range(show_count)]
     return "SI|" + "; ".join([*lines, "END_LOOP"])

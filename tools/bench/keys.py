@@ -62,28 +62,28 @@ class Hand:
     def __exit__(self, *raised: object) -> None:
         self._board.close()
 
-    def change(self, held: Pressed) -> float:
+    def change(self, pressed: Pressed) -> float:
         """Return the ms from a change of what is held to the last of the pins that it changes."""
-        begun, event_count = self._begin()
-        self._hold(held)
-        return self._ms_from(begun, event_count, held != NOTHING_PRESSED)
+        begin_cycle, event_count = self._begin()
+        self._hold(pressed)
+        return self._ms_from(begin_cycle, event_count, pressed != NOTHING_PRESSED)
 
     def lose(self) -> float:
         """Return the ms from where a line is lost, over which somebody drives, to motors off."""
         self._hold(PAD_AHEAD, ANEW_MS)
-        begun, event_count = self._begin()
+        begin_cycle, event_count = self._begin()
         for _ in range(LOST_MS):  # what both say does not arrive
             self._wired.session.poll(self._wired.now_ms)
             self._board.run_ms(1)
-        heard = [
+        received_cycles = [
             event.cycle for event in self._board.events[event_count:] if event.what == "received"
         ]
-        return self._ms_from(max([begun, *heard]), event_count, False)
+        return self._ms_from(max([begin_cycle, *received_cycles]), event_count, False)
 
-    def _hold(self, held: Pressed, more_ms: int = 0) -> None:
+    def _hold(self, pressed: Pressed, more_ms: int = 0) -> None:
         for ms in range(more_ms + self._chance.randint(*HELD_MS)):
             if ms % SAID_MS == 0:  # who says nothing for a while holds nothing
-                self._wired.session.press(*held)
+                self._wired.session.press(*pressed)
             self._wired.run(1)
 
     def _begin(self) -> tuple[int, int]:
@@ -91,7 +91,7 @@ class Hand:
         self._board.run_to(self._board.cycle + self._chance.randrange(CYCLES_PER_MS))
         return self._board.cycle, len(self._board.events)
 
-    def _ms_from(self, begun: int, event_count: int, are_on: bool) -> float:
+    def _ms_from(self, begin_cycle: int, event_count: int, are_on: bool) -> float:
         """Raises RuntimeError where the motors are not as they must be in the end."""
         motor_events = [
             event
@@ -101,7 +101,7 @@ class Hand:
         last = {event["pin"]: event["is"] for event in motor_events}
         if {last.get(pin) for pin in PWM_PINS} != {"pwm" if are_on else "low"}:
             raise RuntimeError(f"the motors have not gone {'on' if are_on else 'off'}: {last}")
-        return (motor_events[-1].cycle - begun) / CYCLES_PER_MS
+        return (motor_events[-1].cycle - begin_cycle) / CYCLES_PER_MS
 
 
 def measure(firmware: Path, baud: int) -> list[list[float]]:
@@ -129,13 +129,13 @@ def print_figures(figures_by_baud: dict[int, list[list[float]]], _: Path) -> boo
 
 
 def is_kept(
-    baud: int, held: list[float], let_go: list[float], _: list[float], lost: list[float]
+    baud: int, held_ms: list[float], let_go_ms: list[float], _: list[float], lost_ms: list[float]
 ) -> bool:
     """Return whether the slowest are as they must be."""
     return (
-        max(held) <= HELD_MOST_MS[baud]
-        and max(let_go) <= LET_GO_MOST_MS[baud]
-        and max(lost) <= LOST_MOST_MS
+        max(held_ms) <= HELD_MOST_MS[baud]
+        and max(let_go_ms) <= LET_GO_MOST_MS[baud]
+        and max(lost_ms) <= LOST_MOST_MS
     )
 
 

@@ -231,19 +231,19 @@ def size(name: str, chip: str = AVR) -> Size:
 
 
 @lru_cache
-def _build(part: Part, use: str, chip: str) -> Size:
-    program = part.program.replace("USE", use)
+def _build(part: Part, statement: str, chip: str) -> Size:
+    program = part.program.replace("USE", statement)
     if chip != AVR:
         return Size(*chips.size(EMULATED[chip], program, *part.folders))
     folders = sorted(("vm", *part.folders))
     code = [path for folder in folders for path in sorted((SOURCE / folder).glob("*.[cS]*"))]
     with tempfile.TemporaryDirectory() as folder:
-        source, made = Path(folder) / "probe.cpp", Path(folder) / "probe"
+        source, binary = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(program, encoding="utf-8")
         _finished_code(
-            "avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(made)
+            "avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(binary)
         )
-        sentence = _finished_code("avr-size", str(made))
+        sentence = _finished_code("avr-size", str(binary))
     text, data, bss = (int(word) for word in sentence.splitlines()[1].split()[:3])
     return Size(text + data, data + bss)
 

@@ -39,7 +39,7 @@ ROWS = (
 
 class Looked(NamedTuple):
     readings: int
-    wrong: int
+    wrong_count: int
 
 
 def board_of(text: str, is_trusting: bool) -> Board:
@@ -58,19 +58,19 @@ def board_of(text: str, is_trusting: bool) -> Board:
 
 
 def looked(seed: int, is_trusting: bool) -> Looked:
-    true, heard = approaching(seed, SAMPLES)
+    true_distances, distances_heard = approaching(seed, SAMPLES)
     board = board_of(LOOKS, is_trusting)
     trigger, echo = wire(board.robot)
     board.watch(trigger)
-    board.echoes(trigger, echo, [cm * US_PER_CM for cm in heard])
+    board.echoes(trigger, echo, [cm * US_PER_CM for cm in distances_heard])
     times = pings(board.ran(START + 2900), trigger)
     readings = driven_ms(board, 1)
-    wrong = 0
+    wrong_count = 0
     for ms in readings:
         number = sum(sent < ms for sent in times) - 1
         cm = 2 * int(board.motors(ms)[0].removeprefix("pwm ")) / 2.55
-        wrong += abs(cm - true[number]) > max(4, 0.2 * true[number] + 3)
-    return Looked(len(readings), wrong)
+        wrong_count += abs(cm - true_distances[number]) > max(4, 0.2 * true_distances[number] + 3)
+    return Looked(len(readings), wrong_count)
 
 
 def late_ms(distances: Callable[[float], float], phase: float, is_trusting: bool) -> float:
@@ -102,12 +102,19 @@ def main() -> None:
     figure_rows: list[list[str]] = [[row] for row in ROWS]
     for is_trusting in (True, False):
         runs = [looked(seed, is_trusting) for seed in range(SEEDS)]
-        wrong, readings = sum(run.wrong for run in runs), sum(run.readings for run in runs)
-        figure_rows[0].append(f"{wrong:,} of {readings:,}")
-        figure_rows[1].append(f"{sum(run.wrong > 0 for run in runs)} of {SEEDS}")
+        wrong_count, readings = (
+            sum(run.wrong_count for run in runs),
+            sum(run.readings for run in runs),
+        )
+        figure_rows[0].append(f"{wrong_count:,} of {readings:,}")
+        figure_rows[1].append(f"{sum(run.wrong_count > 0 for run in runs)} of {SEEDS}")
         for row, way in ((2, comes), (3, is_there)):
-            late = [late_ms(way, phase / PHASES, is_trusting) for phase in range(PHASES)]
-            figure_rows[row].append(f"{median(late):.0f} ms, {max(late):.0f} ms")
+            late_ms_of_phases = [
+                late_ms(way, phase / PHASES, is_trusting) for phase in range(PHASES)
+            ]
+            figure_rows[row].append(
+                f"{median(late_ms_of_phases):.0f} ms, {max(late_ms_of_phases):.0f} ms"
+            )
     page.show("sonar", figure_rows)
 
 

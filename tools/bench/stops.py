@@ -124,12 +124,12 @@ class Busy:
             self._level = not self._level
             for name in self._discs:
                 chip.drive(name, self._level, at=last + place.edge)
-        since = len(chip.events)
+        event_count = len(chip.events)
         chip.send(text + STOP, begin)
         chip.run_to(last + round(BITS_PER_BYTE * BITS_PER_BYTE * bit))
-        new = chip.events[since:]
+        new = chip.events[event_count:]
         zeros = [event.cycle for event in new if event.what == "received" and event["byte"] == 0]
-        off = [
+        off_cycles = [
             event.cycle
             for event in new
             if event.what == "pin"
@@ -138,7 +138,7 @@ class Busy:
             and event["pin"] in self._motors
         ]
         self._wired.run(2 * QUIET_MS)
-        self.cycles.append(max(off) - zeros[STOP_RUN - 1])
+        self.cycles.append(max(off_cycles) - zeros[STOP_RUN - 1])
         return self.cycles[-1]
 
     def together(self) -> int:

@@ -131,8 +131,8 @@ def main() -> None:
     with studio.served(_packed_files()) as server:
         rated = _lighthouse_scores(server.address).values()
         figure_rows.append((ROWS["rated"], ", ".join(f"{points:.0f}" for points in rated), "95"))
-    packed = int(size_rows(PAGE)[-1].split()[1].replace(",", ""))
-    figure_rows.append((ROWS["files"], f"{packed / 1e6:.2f} MB", "6 MB"))
+    packed_bytes = int(size_rows(PAGE)[-1].split()[1].replace(",", ""))
+    figure_rows.append((ROWS["files"], f"{packed_bytes / 1e6:.2f} MB", "6 MB"))
     page_of_figures.show("studio", figure_rows)
     if slowest_ms > STOP_LEAVES_MS:
         sys.exit(f"STOP ALL left the page after {slowest_ms:.0f} ms")
@@ -189,8 +189,8 @@ def _time_to_move(browser: Browser, address: str) -> Iterator[tuple[str, str, st
         context.close()
     yield "moving", f"{median(cold):.2f} s", "2.5 s"
     yield "again", f"{median(warm):.2f} s", "2.5 s"
-    late = sum(frame > LATE_MS for frame in frames)
-    yield "pictures", f"{late} of {len(frames):,}", "none"
+    late_count = sum(frame > LATE_MS for frame in frames)
+    yield "pictures", f"{late_count} of {len(frames):,}", "none"
 
 
 def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, str]]:
@@ -210,8 +210,8 @@ def _drawing_cost(browser: Browser, address: str) -> Iterator[tuple[str, str, st
         works += _works_ms(json.loads(browser.stop_tracing())["traceEvents"])
         context.close()
     slow = [CPU_THROTTLING * work for work in works]
-    late = sum(item > LATE_MS for item in slow)
-    yield "work", f"{late} of {len(slow):,}, median {median(slow):.1f} ms", "none"
+    late_count = sum(item > LATE_MS for item in slow)
+    yield "work", f"{late_count} of {len(slow):,}, median {median(slow):.1f} ms", "none"
 
 
 def _stopped_ms(browser: Browser) -> float:
@@ -253,12 +253,12 @@ def _works_ms(events: list[dict[str, Any]]) -> list[float]:
     """Return the processor time of the page's main thread from each picture to the next."""
     draws = [event for event in events if event["name"] == "FireAnimationFrame"]
     thread = Counter((draw["pid"], draw["tid"]) for draw in draws).most_common(1)[0][0]
-    asked = sorted(draw["ts"] for draw in draws if (draw["pid"], draw["tid"]) == thread)
-    works = [0.0] * len(asked)
+    draw_times = sorted(draw["ts"] for draw in draws if (draw["pid"], draw["tid"]) == thread)
+    works = [0.0] * len(draw_times)
     for task in events:
         if task["name"] != TASK or task.get("ph") != "X" or (task["pid"], task["tid"]) != thread:
             continue
-        picture = bisect_right(asked, task["ts"] + task["dur"]) - 1  # the newest
+        picture = bisect_right(draw_times, task["ts"] + task["dur"]) - 1  # the newest
         if picture >= 0:
             works[picture] += task.get("tdur", 0) / 1000
     return works

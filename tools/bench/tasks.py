@@ -57,18 +57,20 @@ def main() -> int:
         return 2
     try:
         firmware = firmware_size.measure("uno").firmware
-        without = firmware_size.measure(building.SMALLER_FIRMWARE["uno"][0]).firmware
+        firmware_without_tasks = firmware_size.measure(building.SMALLER_FIRMWARE["uno"][0]).firmware
     except RuntimeError as failed:
         print(failed, file=sys.stderr)
         return 2
     page.show("tasks", [(row, f"{jitter_ms(firmware, others):.2f} ms")
                         for others, row in COUNTING_ROWS.items()])  # fmt: skip
     rounds = [turns_cycles(tasks) for tasks in range(5)]
-    first, *more = [(after - before) / TURNS for before, after in pairwise(rounds)]
-    least, most = min(more), max(more)
-    print(f"A turn of a task takes {first:,.0f} cycles where it is the only one, and {least:,.0f} "
-          f"to {most:,.0f} where it is the second to the fourth.\n")  # fmt: skip
-    less = parts_of(without)
+    first, *later_rounds = [(after - before) / TURNS for before, after in pairwise(rounds)]
+    least_cycles, most_cycles = min(later_rounds), max(later_rounds)
+    print(
+        f"A turn of a task takes {first:,.0f} cycles where it is the only one, and "
+        f"{least_cycles:,.0f} to {most_cycles:,.0f} where it is the second to the fourth.\n"
+    )
+    less = parts_of(firmware_without_tasks)
     page.show("tasks", [
         (part, *(f"{size[item] - less[part][item] or ''}" for item in ("flash", "ram")))
         for part, size in parts_of(firmware).items()
@@ -94,9 +96,9 @@ def turns_cycles(tasks: int) -> int:
     return count(code, (), BUDGET, WITH_TASKS)[1]
 
 
-def jitter_ms(firmware: Path, others: int) -> float:
+def jitter_ms(firmware: Path, task_count: int) -> float:
     """Return how far apart the looks of a WHEN are on their grid of 20 ms."""
-    text = "SI|W(3600);" + WATCH + "".join(COUNTING.format(name) for name in "XYZ"[:others])
+    text = "SI|W(3600);" + WATCH + "".join(COUNTING.format(name) for name in "XYZ"[:task_count])
     names = {"left": f"D{ROBOT.board.motors.pins['left_pwm']}"}
     with tempfile.TemporaryDirectory() as folder, Uno(
         firmware, names=names, eeprom=Path(folder) / "eeprom",
@@ -114,8 +116,8 @@ def jitter_ms(firmware: Path, others: int) -> float:
             board.analog(SENSOR_PIN, 100)
             board.run_ms(120)
         first = at_ms[0]
-        late = [(at_m - first + LOOK_MS / 2) % LOOK_MS for at_m in at_ms]
-        return max(late) - min(late)
+        lateness_ms = [(at_m - first + LOOK_MS / 2) % LOOK_MS for at_m in at_ms]
+        return max(lateness_ms) - min(lateness_ms)
 
 
 if __name__ == "__main__":

@@ -28,12 +28,12 @@ def typed_line_ms(board: Uno, line: str, wait: int) -> float:
     board.send(line.encode() + b"\n")
     board.run_ms(3 * len(line) + 200)
     at = first_move(board, began)
-    heard = [byte for byte in board.received_bytes if began <= byte.began and byte.cycle <= at]
-    if len(heard) != len(line) + 1:
-        raise RuntimeError(f"the robot moved after {len(heard)} of {len(line) + 1} bytes")
+    line_bytes = [byte for byte in board.received_bytes if began <= byte.began and byte.cycle <= at]
+    if len(line_bytes) != len(line) + 1:
+        raise RuntimeError(f"the robot moved after {len(line_bytes)} of {len(line) + 1} bytes")
     board.send(b"S\n")
     board.run_ms(SILENCE_MS)
-    return (at - heard[-1].cycle) / CYCLES_PER_MS
+    return (at - line_bytes[-1].cycle) / CYCLES_PER_MS
 
 
 def slowest(board: Uno, line: str) -> float:

@@ -73,9 +73,9 @@ class Robot(Talk):
         pose = self.robot.pose
         along = math.radians(before.heading)
         x, y = pose.x_cm - before.x_cm, pose.y_cm - before.y_cm
-        ahead = x * math.cos(along) + y * math.sin(along)
-        aside = y * math.cos(along) - x * math.sin(along)
-        return ahead, aside, pose.heading - before.heading
+        ahead_cm = x * math.cos(along) + y * math.sin(along)
+        aside_cm = y * math.cos(along) - x * math.sin(along)
+        return ahead_cm, aside_cm, pose.heading - before.heading
 
     def calibrate(self, seed: int) -> None:
         """Do what `tsc set trim` does: make it straight, and measure at two powers."""
@@ -84,18 +84,18 @@ class Robot(Talk):
         self.until(self.session.trim(trim.data()))
         measures = []
         for power in (40, 80):
-            ahead, _, _ = self.drive(f"F(2, {power})")
-            measures.append(round(ahead / TAPE_CM) * TAPE_CM / 2)
+            ahead_cm, _, _ = self.drive(f"F(2, {power})")
+            measures.append(round(ahead_cm / TAPE_CM) * TAPE_CM / 2)
         for power in (40, 80):
             _, _, turned = self.drive(f"R(1, {power})")
             measures.append(round(abs(turned) / PROTRACTOR) * PROTRACTOR)
         self.until(self.session.trim(trim._replace(pace=Pace(*measures)).data()))
 
 
-def off(seed: int, slip: float, how: str) -> tuple[float, float, float]:
+def off(seed: int, slip: float, method: str) -> tuple[float, float, float]:
     """Return how far one robot is off: along and aside in cm, turned in degrees."""
-    one = Robot(seed, slip, how == "discs")
-    if how == "time, calibrated":
+    one = Robot(seed, slip, method == "discs")
+    if method == "time, calibrated":
         one.calibrate(seed)
     ahead, aside, _ = one.drive(GO)
     _, _, turned = one.drive(TURN)
@@ -121,14 +121,14 @@ def off_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float
 
 def flash() -> int:
     """Return the bytes that an Uno's firmware is larger than one that knows no ways."""
-    known = {r"(is_way\(uint8_t) code\) {.*}": r"\1) { return false; }",
-             r"(kNeedsWays =) \d+;": r"\1 0;"}  # fmt: skip
+    replacements = {r"(is_way\(uint8_t) code\) {.*}": r"\1) { return false; }",
+                    r"(kNeedsWays =) \d+;": r"\1 0;"}  # fmt: skip
     with tempfile.TemporaryDirectory() as folder:
         project = Path(folder) / PROJECT.name
         shutil.copytree(PROJECT, project, ignore=shutil.ignore_patterns(".pio"))
         header = project / "src" / "vm" / "bytecode.h"
         text = header.read_text(encoding="utf-8")
-        for pattern, none in known.items():
+        for pattern, none in replacements.items():
             text, count = re.subn(pattern, none, text)
             assert count == 1, pattern
         header.write_text(text, encoding="utf-8")
@@ -141,15 +141,19 @@ def main(seeds: int = SEEDS, is_uno: bool = False) -> int:
         result = Off.summarise(
             "discs", [off_uno(firmware, seed, SLIPS[0]) for seed in range(1, seeds + 1)]
         )
-        along, aside, turn = result.cells()
-        print(f"With discs and 0.5 % of slip {along} along, {aside} aside and {turn}, "
-              f"{result.within} within.")  # fmt: skip
+        along_cell, aside_cell, turn_cell = result.cells()
+        print(
+            f"With discs and 0.5 % of slip {along_cell} along, {aside_cell} aside and "
+            f"{turn_cell}, {result.within} within."
+        )
         return int(not result.is_good)
     is_good = True
     rows = []
-    for how, (row, slips) in SHOWN_ROWS.items():
+    for method, (row, slips) in SHOWN_ROWS.items():
         for slip in slips:
-            result = Off.summarise(how, [off(seed, slip, how) for seed in range(1, seeds + 1)])
+            result = Off.summarise(
+                method, [off(seed, slip, method) for seed in range(1, seeds + 1)]
+            )
             rows.append((row, f"{100 * slip:g} %", *result.cells(), result.within))
             is_good = is_good and (result.is_good or slip != SLIPS[0])
     page.show("ways", rows, keys=2)
@@ -164,8 +168,8 @@ class Off(NamedTuple):
     is_good: bool
 
     @classmethod
-    def summarise(cls, how: str, offsets: Sequence[tuple[float, float, float]]) -> Off:
-        limits = LIMITS[how]
+    def summarise(cls, method: str, offsets: Sequence[tuple[float, float, float]]) -> Off:
+        limits = LIMITS[method]
         ways = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in offsets)
         turns = sum(item[2] <= limits[2] for item in offsets)
         within = f"{ways} and {turns}" if limits[0] < math.inf else "-"

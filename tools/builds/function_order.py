@@ -120,19 +120,19 @@ def move_some(order: list[int], chance: random.Random) -> list[int]:
 
 
 def best_order(
-    among: list[Piece], all_calls: list[Call], tries: int, chance: random.Random
+    among: list[Piece], all_calls: list[Call], try_count: int, chance: random.Random
 ) -> list[int]:
     """Search by simulated annealing."""
     order = result = list(range(len(among)))
-    now = least = count_far(order, among, all_calls)
-    for number in range(tries):
-        heat = 3.0 * (1 - number / tries) + 0.05
+    far_count = least_far_count = count_far(order, among, all_calls)
+    for number in range(try_count):
+        heat = 3.0 * (1 - number / try_count) + 0.05
         other = move_some(order, chance)
         count = count_far(other, among, all_calls)
-        if count <= now or chance.random() < math.exp((now - count) / heat):
-            order, now = other, count
-            if now < least:
-                result, least = order, now
+        if count <= far_count or chance.random() < math.exp((far_count - count) / heat):
+            order, far_count = other, count
+            if far_count < least_far_count:
+                result, least_far_count = order, far_count
     return result
 
 

@@ -120,9 +120,9 @@ def why_needless(project: Path, offline: bool) -> str:
     platforms = Path(config_of(project).get("platformio", "platforms_dir")).resolve()
     if HOME in platforms.parents:
         return ""  # the variables are set already
-    own = sorted(path.parent.name for path in platforms.glob("*/platform.json"))
-    if own:
-        return f"PlatformIO has platforms of its own ({', '.join(own)})"
+    own_platforms = sorted(path.parent.name for path in platforms.glob("*/platform.json"))
+    if own_platforms:
+        return f"PlatformIO has platforms of its own ({', '.join(own_platforms)})"
     if not offline and registry_answers():
         return "PlatformIO's registry answers"
     return ""
@@ -221,10 +221,10 @@ def add_doctest(folder: Path, project: Path) -> None:
     parts = [re.search(rf"DOCTEST_VERSION_{part}\s+(\d+)", text) for part in PARTS]
     version = ".".join(match[1] for match in parts if match)
     runner = (project / "test" / "test_custom_runner.py").read_text(encoding="utf-8")
-    named = re.search(r"doctest/doctest@[^\"']+", runner)
-    if named is None:
+    requirement = re.search(r"doctest/doctest@[^\"']+", runner)
+    if requirement is None:
         raise CannotMake("vm_arduino/test/test_custom_runner.py names no doctest/doctest@")
-    expected = PackageSpec(named[0])
+    expected = PackageSpec(requirement[0])
     if Version(version) not in expected.requirements:
         raise CannotMake(
             f"doctest-dev is doctest {version}, the tests want {expected.requirements}"

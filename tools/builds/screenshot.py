@@ -93,10 +93,10 @@ def main(arguments: list[str] | None = None) -> int:
             take(language, scene, picture(language, scene))
             print(f"wrote {picture(language, scene).relative_to(ROOT)}")
         return 0
-    wrong = [why for item in product(LANGUAGES, SCENES) if (why := why_stale(*item))]
-    for why in wrong:
+    complaints = [why for item in product(LANGUAGES, SCENES) if (why := why_stale(*item))]
+    for why in complaints:
         print(f"screenshot: {why}", file=sys.stderr)
-    return 1 if wrong else 0
+    return 1 if complaints else 0
 
 
 def take(language: str, scene: str, target: Path) -> None:
@@ -104,7 +104,7 @@ def take(language: str, scene: str, target: Path) -> None:
     words: list[str] = []
     shots: list[Image.Image] = []
 
-    def look() -> None:
+    def take_shot() -> None:
         page.evaluate(studio.SETTLED)
         words.extend(
             page.eval_on_selector_all(
@@ -117,15 +117,15 @@ def take(language: str, scene: str, target: Path) -> None:
     with (
         _serve_scene(scene) as (address, entrance),
         studio.driver() as driver,
-        studio.browser(driver) as opened,
+        studio.browser(driver) as browser,
     ):
-        pages = studio.Pages(opened, address, patience_s=120)
+        pages = studio.Pages(browser, address, patience_s=120)
         view = "wall" if scene == WALL else "text"
         page = pages.visit(entrance, view, viewport=SIZE, device_scale_factor=1)
         studio.speak(page, language)
         if scene != WALL:
             studio.write(page, PROGRAM)
-        SHEETS.get(scene, _take_single)(page, scene, look)
+        SHEETS.get(scene, _take_single)(page, scene, take_shot)
         pages.close()
     if pages.wrong:
         raise SystemExit(f"the page said {pages.wrong[0]}")
@@ -166,7 +166,7 @@ def _serve_scene(scene: str) -> Iterator[tuple[str, str]]:
             pupils.join()
 
 
-def _take_single(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _take_single(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     if scene == ".start":
         page.click("#home")
         page.click("#start_write")
@@ -190,49 +190,49 @@ def _take_single(page: Page, scene: str, look: Callable[[], None]) -> None:
     if scene in ("", ".lesson"):
         page.click("#view_blocks")
         studio.shown(page)
-    look()
+    take_shot()
 
 
 def _in_phase(page: Page, phase: str) -> None:
     page.locator(f"[data-phase={phase}]").first.wait_for(state="attached")
 
 
-def _drawing(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _drawing(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     page.select_option("#world", "parking")
     page.click("#world_draw")
     page.select_option("#world_part", index=1)
-    look()
+    take_shot()
 
 
-def _phone(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _phone(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """The program, the robot on its way, and a world that is drawn."""
     page.select_option("#world", "maze")
     page.select_option("#speed", "20")
     page.click("#view_blocks")
     studio.shown(page)
     page.set_viewport_size({"width": 390, "height": 844})
-    look()
+    take_shot()
     page.click("#run")
     _in_phase(page, "ended")
-    look()
+    take_shot()
     page.click("#world_draw")
     page.select_option("#world_part", index=1)
-    look()
+    take_shot()
 
 
-def _minute(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _minute(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """The start, a robot that dances, its blocks, one of them changed, run again, and a lesson."""
     page.click("#home")
-    look()
+    take_shot()
     page.click("[data-begin=obstacle]")
     _in_phase(page, "running")
     page.wait_for_timeout(2500)
-    look()
+    take_shot()
     page.click("#stop")
     page.click("#view_blocks")
     studio.shown(page)
     page.locator(".blocklyToolboxCategory").first.click()
-    look()
+    take_shot()
     page.keyboard.press("Escape")
     page.click("#view_text")
     studio.write(page, PROGRAM.replace("(0.5, 60)", "(0.9, 60)"))
@@ -241,19 +241,19 @@ def _minute(page: Page, scene: str, look: Callable[[], None]) -> None:
     page.click("#run")
     _in_phase(page, "running")  # the run before has ended, too
     _in_phase(page, "ended")
-    look()
+    take_shot()
     page.select_option("#world", "maze")
     page.click("#run")
     page.locator("#score").wait_for()
     page.wait_for_timeout(500)
-    look()
+    take_shot()
     page.click("#stop")
     page.click("#side_lessons")
     page.locator("#lesson_check:enabled").wait_for(state="attached")
-    look()
+    take_shot()
 
 
-def _drive(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _drive(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """By hand: straight on, a turn with the horn, and the same on a large screen."""
     page.click("#home")
     page.set_viewport_size({"width": 390, "height": 844})
@@ -263,27 +263,27 @@ def _drive(page: Page, scene: str, look: Callable[[], None]) -> None:
         page.keyboard.down(key)
         page.wait_for_timeout(lasts_ms)
         if key != "ArrowLeft":
-            look()
+            take_shot()
     page.set_viewport_size({"width": 1366, "height": 768})
     page.click("#view_blocks")
     studio.shown(page)
-    look()
+    take_shot()
 
 
-def _teacher(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _teacher(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """A real robot in four steps, and below them what is for the teacher."""
     page.click("#side_real")
     page.click("#link_teacher summary")
-    look()
+    take_shot()
 
 
-def _wall(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _wall(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """Thirty pupils, one with a hand up, without scrolling."""
     page.locator("#wall img[src^=blob]").nth(len(PUPILS) - 1).wait_for()
-    look()
+    take_shot()
 
 
-def _take_more(page: Page, scene: str, look: Callable[[], None]) -> None:
+def _take_more(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """A loose block, a wrong one, a link, a phone on its side twice, a block that keys move."""
     page.click("#view_blocks")
     for text in ("SI|F(1, 80)\n\n/// R(0.5, 60)\n/// B(1, 80)\n", "SI|F(-2, 80)\nR(0.5, 60)\n"):
@@ -291,26 +291,26 @@ def _take_more(page: Page, scene: str, look: Callable[[], None]) -> None:
         studio.shown(page)
         if "-2" in text:
             page.locator(".blocklyBubble").wait_for()
-        look()
+        take_shot()
     studio.write(page, "SI|F(1, 80)\nR(0.5, 60)\n")
     page.click("#my_programs")
     page.click("#share summary")
     page.locator("#programs[data-shared=done]").wait_for()
-    look()
+    take_shot()
     page.click("#programs_close")
     page.set_viewport_size({"width": 844, "height": 390})
-    look()
+    take_shot()
     page.click("#other")
     page.click("#side_lessons")
     page.locator("#lesson_next:enabled").wait_for()
-    look()
+    take_shot()
     page.click("#side_virtual")
     page.set_viewport_size({"width": SIZE["width"], "height": SIZE["height"]})
     page.evaluate(studio.SETTLED)
     page.locator("#redo").focus()
     for key in ("Tab", "Tab", "Tab", "ArrowDown", "ArrowDown", "m", "ArrowDown"):
         page.keyboard.press(key)
-    look()
+    take_shot()
 
 
 # Scenes of several pictures, or beside the program.

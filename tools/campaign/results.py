@@ -110,11 +110,11 @@ def rows() -> list[tuple[str, ...]]:
     outcome: list[tuple[str, ...]] = []
     for goal in GOALS:
         result = results.get(goal.name)
-        about = ("", "", "")
+        run_cells = ("", "", "")
         if result is not None:
             last = max(result.seed, result.next_seed - goal.stride)
             seeds = f"{result.seed}" if last == result.seed else f"{result.seed} to {last}"
-            about = ("-" if "{seed}" not in goal.command else seeds, result.date, result.commit)
+            run_cells = ("-" if "{seed}" not in goal.command else seeds, result.date, result.commit)
         row = (f"`{goal.name}`", goal.guarantee, f"{goal.target:,} {goal.unit}")
-        outcome.append((*row, figure_text(goal, result), *about))
+        outcome.append((*row, figure_text(goal, result), *run_cells))
     return outcome

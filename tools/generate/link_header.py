@@ -24,7 +24,7 @@ UNKNOWN_REQUEST = 255  # no payload is so long
 
 def header(command: str) -> str:
     """Return `messages.h`: every number of the link."""
-    named = [(message.name, message.number, message.meaning) for message in MESSAGES]
+    message_rows = [(message.name, message.number, message.meaning) for message in MESSAGES]
     statuses = [
         (name, number, text("statuses", f"{name}/said", SOURCE_LANGUAGE))
         for name, number in messages.STATUSES.items()
@@ -50,7 +50,7 @@ def header(command: str) -> str:
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.WHEELS)),
         "// What the robot is able to do and who may drive it, in one number.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.FEATURES)),
-        enumeration("Message", named),
+        enumeration("Message", message_rows),
         "// Requests are the numbers from 1 up to this one; from kFirstActing on they act.\n"
         + constants_of(messages, "FIRST_ACTING")
         + _last_request(),
@@ -76,12 +76,12 @@ def header(command: str) -> str:
             "LinkFault", [(name, n, meaning) for n, name, meaning in messages.LINK_FAULTS]
         ),
     )  # fmt: skip
-    about = (
+    comment_lines = (
         "The numbers of the link: messages, where the fields of their requests begin,",
         "statuses, states, times. Knows no behaviour. `docs/develop/link.md` says what they mean.",
     )
     body = "\n".join(parts)
-    return cpp_file(command, "link/messages.h", about, body, "../vm/build.h", "../vm/cpu.h")
+    return cpp_file(command, "link/messages.h", comment_lines, body, "../vm/build.h", "../vm/cpu.h")
 
 
 def tables(command: str) -> str:
@@ -235,8 +235,10 @@ def payloads(command: str) -> str:
         "from typing import Literal, NamedTuple\n"
     ]
     for name, shared in types.items():
-        of = ", ".join(message.name for message in shared)
-        parts.append(_type_definition(name, f"What is in the reply to {of}.", shared[0].reply))
+        message_names = ", ".join(message.name for message in shared)
+        parts.append(
+            _type_definition(name, f"What is in the reply to {message_names}.", shared[0].reply)
+        )
     for event in events:
         tag = f'    name: Literal["{event.name}"] = "{event.name}"\n'
         parts.append(_type_definition(_event(event), event.meaning, event.reply, tag))

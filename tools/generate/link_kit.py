@@ -78,8 +78,8 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
             if event.what == "SHOW"
         ]
         is_still = all(not any(e.values) for e in robot.events if e.what == "MOTORS")
-        others = {event.what for event in robot.events} - {"SHOW", "MOTORS"}
-        if status not in (DONE, FAULT) or others or not is_still or len(shows) > MOST_SHOWS:
+        other_events = {event.what for event in robot.events} - {"SHOW", "MOTORS"}
+        if status not in (DONE, FAULT) or other_events or not is_still or len(shows) > MOST_SHOWS:
             continue
         numbers = {name: number for number, name, _ in FAULTS}
         fault = numbers[machine.fault] if machine.fault else 0

@@ -72,7 +72,7 @@ class Run(NamedTuple):
     name: str
     kit: Kit
     image: bytes
-    senses: Senses = Senses()
+    inputs: Senses = Senses()
     when: When = USUAL
     slow: Mapping[str, tuple[int, int, int]] = {}
     text: str = ""
@@ -139,12 +139,12 @@ def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
         "name": run.name,
         "kit": kit,
         "image": run.image.hex(),
-        "readings": _by_number(names, run.senses.readings),
+        "readings": _by_number(names, run.inputs.readings),
         **({"slow": _by_number(names, run.slow)} if run.slow else {}),
-        "seed": run.senses.seed,
+        "seed": run.inputs.seed,
         "begin": begin,
         "every": list(every_ms),
-        "until": run.senses.max_ms,
+        "until": run.inputs.max_ms,
         **({"needs": run.needs} if run.needs else {}),
         "answer": answer,
     }
@@ -158,7 +158,7 @@ class SlowRobot(TracedRobot):
     """A robot whose slow sensors are not always ready."""
 
     def __init__(self, run: Run) -> None:
-        super().__init__(run.kit, lists_of(run.kit, run.senses))
+        super().__init__(run.kit, lists_of(run.kit, run.inputs))
         self.slow = run.slow
         self.was_slow = False  # in this call
 
@@ -185,7 +185,7 @@ def answer_of(
     begin, every_ms = run.when
     every = chain(every_ms, repeat(every_ms[-1]))
     robot = SlowRobot(run)
-    machine = machine_of(code, robot, len(run.kit.readings), run.senses.seed, begin)
+    machine = machine_of(code, robot, len(run.kit.readings), run.inputs.seed, begin)
     calls = 0  # at the same time
     while calls < CALLS:
         robot.was_slow = False
@@ -200,11 +200,11 @@ def answer_of(
             wake_ms = max(machine.wake_ms - begin, robot.now_ms + robot.was_slow)
             each_ms = next(every)
             wake_ms = -(-wake_ms // each_ms) * each_ms
-            if wake_ms <= run.senses.max_ms:
+            if wake_ms <= run.inputs.max_ms:
                 calls = calls + 1 if wake_ms == robot.now_ms else 0
                 robot.now_ms = wake_ms
                 continue
-            robot.now_ms = run.senses.max_ms
+            robot.now_ms = run.inputs.max_ms
             robot.say("LIMIT", (), "LIMIT")
         return [str(event) for event in robot.events]
     return None
@@ -252,13 +252,13 @@ def takes_time(run: Run) -> bool:
 def times() -> Iterator[Run]:
     """Return runs that are called late, by as much as a clock catches up or not, or after weeks."""
     beyond = Senses({"DISTANCE": [50_000] * 6 + [9_000]}, 2**33)
-    until = "F(0.1, 80) UNTIL(DISTANCE < 10)"
+    move_until = "F(0.1, 80) UNTIL(DISTANCE < 10)"
     for name, text, when, senses in (
         ("20 ms late", "W(0.001); F(0.1, 80)", (0, (21, 1)), Senses()),
         ("21 ms late", "W(0.001); F(0.1, 80)", (0, (22, 1)), Senses()),
-        ("UNTIL begins 20 ms late", f"W(0.001); {until}", (0, (21, 1)), FAR),
-        ("UNTIL begins 21 ms late", f"W(0.001); {until}", (0, (22, 1)), FAR),
-        ("UNTIL is checked late", until, (0, (30, 61, 1)), FAR),
+        ("UNTIL begins 20 ms late", f"W(0.001); {move_until}", (0, (21, 1)), FAR),
+        ("UNTIL begins 21 ms late", f"W(0.001); {move_until}", (0, (22, 1)), FAR),
+        ("UNTIL is checked late", move_until, (0, (30, 61, 1)), FAR),
         ("UNTIL past 2^32 ms", "F(FOREVER, 80) UNTIL(DISTANCE < 10); W(0.1)",
          (0, (ROUND_MS, ROUND_MS - 20, 90, 1)), beyond),
         ("UNTIL past 2^32 ms, and now wraps", "W(FOREVER) UNTIL(DISTANCE < 10); W(0.1)",
@@ -401,18 +401,18 @@ def change_byte(image: bytes, at: int, value: int) -> bytes:
 def arithmetic() -> Iterator[Run]:
     """Return operations on the edges of numbers: what faults ends a run, the rest shares one."""
     for op in map(BY_NAME.__getitem__, CALCULATIONS):
-        shown = "SHOW_YES_NO" if op.code in range(0x20, 0x29) else "SHOW"
-        together = b""
+        show_op = "SHOW_YES_NO" if op.code in range(0x20, 0x29) else "SHOW"
+        joined_code = b""
         for values in product(EDGES, repeat=op.pops):
-            code = b"".join(map(push32, values)) + bytes([op.code, BY_NAME[shown].code])
+            code = b"".join(map(push32, values)) + bytes([op.code, BY_NAME[show_op].code])
             run = Run(title(op, values), TINIBOT, pack("SI", 0, code))
             answer = answer_of(run)
             assert answer is not None
             if answer[-1].endswith("DONE"):
-                together += code
+                joined_code += code
             else:
                 yield run
-        yield Run(f"arithmetic: {op.name}", TINIBOT, pack("SI", 0, together))
+        yield Run(f"arithmetic: {op.name}", TINIBOT, pack("SI", 0, joined_code))
 
 
 def push32(value: int) -> bytes:

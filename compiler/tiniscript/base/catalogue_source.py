@@ -209,10 +209,10 @@ def load(path: Path) -> Catalogue:
     """Read the English texts of a file. What is wrong in it is a problem."""
     catalogue = Catalogue()
     text, catalogue.problems = decode_file(path)
-    read, _, problems = rows(text)
+    catalogue_rows, _, problems = rows(text)
     catalogue.problems += problems
     keys, firsts = set[str](), dict[tuple[str, str], Entry]()
-    for row in read:
+    for row in catalogue_rows:
         notes = [row.table] * (bool(row.table) and not row.key.startswith(row.table))
         entries = []
         for item in row.value if isinstance(row.value, list) else [row.value]:

@@ -54,7 +54,7 @@ def settings_folder() -> Path:
     return user_config_path("tiniscript", appauthor=False)
 
 
-def _linux_folder(variable: str, usual: str) -> Path | None:
+def _linux_folder(variable: str, usual_folder: str) -> Path | None:
     """Return a folder of ours as Linux has it, or None.
 
     Nearly everywhere on Linux one of two variables says it: importing platformdirs takes as long as
@@ -62,8 +62,8 @@ def _linux_folder(variable: str, usual: str) -> Path | None:
     """
     if sys.platform not in ("linux", "emscripten") or "ANDROID_ROOT" in os.environ:
         return None
-    chosen = os.environ.get(variable)
-    folder = Path(chosen) if chosen else Path(os.environ.get("HOME", "")) / usual
+    configured = os.environ.get(variable)
+    folder = Path(configured) if configured else Path(os.environ.get("HOME", "")) / usual_folder
     return folder / "tiniscript" if folder.is_absolute() else None
 
 
@@ -128,18 +128,18 @@ def _refuse_foreign_links(path: Path) -> None:
     """
     if sys.platform == "win32":
         return
-    here, rest = Path(path.anchor or "."), list(path.parts[1 if path.anchor else 0 :])
+    current, rest = Path(path.anchor or "."), list(path.parts[1 if path.anchor else 0 :])
     followed = 0
     while rest:
-        step = here / rest.pop(0)
+        step = current / rest.pop(0)
         try:
             link = step.lstat()
         except OSError:  # nothing is there, so nothing leads away
             return
         if not stat.S_ISLNK(link.st_mode):
-            here = step
+            current = step
             continue
-        folder = here.stat()
+        folder = current.stat()
         is_shared = folder.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
         if is_shared and link.st_uid not in (os.geteuid(), folder.st_uid, 0):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
@@ -147,7 +147,7 @@ def _refuse_foreign_links(path: Path) -> None:
         if followed > MOST_LINKS:
             return  # what opens it says so
         target = step.readlink()
-        here = Path(target.anchor) if target.anchor else here
+        current = Path(target.anchor) if target.anchor else current
         rest = [*target.parts[1 if target.anchor else 0 :], *rest]
 
 

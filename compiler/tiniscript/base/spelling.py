@@ -13,8 +13,8 @@ from functools import cache
 from tiniscript.base.languages import languages, table
 
 
-def nearest(word: str, known: Iterable[str]) -> str | None:
-    """Return the word among `known` that a slip of the finger away is `word`, or None.
+def nearest(word: str, candidates: Iterable[str]) -> str | None:
+    """Return the word among `candidates` that a slip of the finger away is `word`, or None.
 
     A slip is a letter that is wrong, missing, doubled or exchanged with the next: one in short
     words, two in longer ones. A wrong suggestion is worse than none, so in a word of three
@@ -22,11 +22,13 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     """
     if not 2 < len(word) <= 40:
         return None
-    allowed = 1 if len(word) <= 5 else 2
-    best, its_edits = None, allowed + 1
+    most_edits = 1 if len(word) <= 5 else 2
+    best, its_edits = None, most_edits + 1
     letters = set(word)
-    for other in known:
-        is_far = abs(len(other) - len(word)) > allowed or len(letters.difference(other)) > allowed
+    for other in candidates:
+        is_far = (
+            abs(len(other) - len(word)) > most_edits or len(letters.difference(other)) > most_edits
+        )
         if len(other) > 1 and not is_far:
             edits = _edits(word, other)
             if edits == 1 and len(word) <= 3 and len(other) == len(word):
@@ -36,9 +38,9 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     return best
 
 
-def is_slip(word: str, known: str) -> bool:
+def is_slip(word: str, intended: str) -> bool:
     """Whether a word is one slip away from another, which may be short: its place says the rest."""
-    return len(word) > 1 and abs(len(word) - len(known)) < 2 and _edits(word, known) == 1
+    return len(word) > 1 and abs(len(word) - len(intended)) < 2 and _edits(word, intended) == 1
 
 
 def _edits(one: str, other: str) -> int:

@@ -133,8 +133,8 @@ def unpack(data: bytes, capabilities: int = ALL_NEEDS) -> Image:
         raise ImageRefused("TRUNCATED")
     isa = data[2], data[3]
     if isa[0] != ISA_MAJOR or isa[1] > ISA_MINOR:
-        theirs, ours = f"{isa[0]}.{isa[1]}", f"{ISA_MAJOR}.{ISA_MINOR}"
-        raise ImageRefused("OTHER_VERSION", theirs=theirs, ours=ours)
+        image_version, own_version = f"{isa[0]}.{isa[1]}", f"{ISA_MAJOR}.{ISA_MINOR}"
+        raise ImageRefused("OTHER_VERSION", theirs=image_version, ours=own_version)
     if len(data) < HEADER_BYTES:
         raise ImageRefused("TRUNCATED")
     values = struct_unpack(_LAYOUT, data[:HEADER_BYTES])

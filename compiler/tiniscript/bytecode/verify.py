@@ -143,7 +143,7 @@ class _Routine:
 class _Verifier:
     def __init__(self, code: bytes, sensors: int, actuators: int, needs: int) -> None:
         self.code = code
-        self.allowed = needs
+        self.allowed_needs = needs
         self.devices = {"sensor": sensors, "actuator": actuators}
         self.at = 0  # where the instruction that is looked at begins
         self.after = 0  # where the next one begins
@@ -203,10 +203,10 @@ class _Verifier:
 
     def opcode(self) -> Op:
         op = op_at(self.code, self.at)
-        if self.code[self.at] == ESCAPE and self.allowed & NEEDS_GO:
+        if self.code[self.at] == ESCAPE and self.allowed_needs & NEEDS_GO:
             if self.at + 1 == len(self.code):
                 self.refuse("CUT_OPERAND")
-        if op is None or op.needs & ~self.allowed:
+        if op is None or op.needs & ~self.allowed_needs:
             self.refuse("UNKNOWN_OPCODE")
         self.needs |= op.needs
         self.after = self.at + op.size
@@ -273,12 +273,12 @@ class _Verifier:
         """Open a block that ends at `end`, or 0: unknown yet."""
         if end > len(self.code):
             self.refuse("BAD_TARGET")
-        around = self.blocks[-1] if self.blocks else None
-        if around is not None and around.end:
+        enclosing = self.blocks[-1] if self.blocks else None
+        if enclosing is not None and enclosing.end:
             # the end of a loop lies after what closes it
-            if end > around.end - (around.kind != _IF):
+            if end > enclosing.end - (enclosing.kind != _IF):
                 self.refuse("BAD_TARGET")
-            if kind == _IF and end == around.end:
+            if kind == _IF and end == enclosing.end:
                 return  # it shares the block around it
         if sum(_NEST_WORDS[block.kind] for block in self.blocks) + _NEST_WORDS[kind] > NEST_WORDS:
             self.refuse("TOO_DEEP")

@@ -18,7 +18,7 @@ from tiniscript.base.languages import WrongTexts
 from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import language_of, say, say_aside, text
-from tiniscript.cli.texts.options import LANGUAGE, chosen
+from tiniscript.cli.texts.options import LANGUAGE, command_of
 from tiniscript.cli.texts.verbs import VERBS
 
 EXIT_OF_CLOSED_PIPE = 141  # 128 and the number of SIGPIPE
@@ -143,7 +143,7 @@ def _verb(arguments: list[str], language: str) -> int:
             from tiniscript.cli.verbless import is_help, refuse
 
             name = "help" if is_help(name) else refuse(name, arguments[1:], language)
-        command, words = chosen(name, arguments[1:])
+        command, words = command_of(name, arguments[1:])
         options = Options(command, language).read(words)
         if options is None:
             return 0

@@ -63,8 +63,8 @@ def firmware(
         return result
     if sources is None:
         raise CommandError(2, "flash_no_sources")
-    with _show_build(robot, options, language) as look:
-        data = building.build(sources, robot, look, has_breakpoints)
+    with _show_build(robot, options, language) as on_progress:
+        data = building.build(sources, robot, on_progress, has_breakpoints)
         title = ready.title_of(robot, has_breakpoints)
         return ready.keep(title, robot.board.chip, sources.digest(robot, has_breakpoints), data)
 
@@ -89,8 +89,8 @@ def _ready(robot: Robot, sources: Sources | None, has_breakpoints: bool = False)
     if robot.name not in robots.names():
         return None
     files = {(file.title, file.board): file for file in ready.files()}
-    own = ready.title_of(robot, has_breakpoints)
-    for title in (own,) if has_breakpoints else (own, robot.name):
+    own_title = ready.title_of(robot, has_breakpoints)
+    for title in (own_title,) if has_breakpoints else (own_title, robot.name):
         if (title, robot.board.chip) in files:
             return files[title, robot.board.chip]
     return None
@@ -117,7 +117,7 @@ def _show_build(
     progress = Progress(language, 100)
     fetched = ""
 
-    def look(build_progress: StepProgress) -> None:
+    def show_progress(build_progress: StepProgress) -> None:
         nonlocal fetched
         if build_progress.phase in (WITHOUT_TASKS, WITHOUT_REMOTE):
             progress.end()
@@ -132,7 +132,7 @@ def _show_build(
         progress.draw(build_progress.percent)
 
     try:
-        yield look
+        yield show_progress
     except building.CannotBuild as why:
         raise _failure(why, values) from None
     except OSError as why:

@@ -138,15 +138,15 @@ def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str
     """Yield the rows of options; those for a virtual robot only have a heading of their own."""
     rows: dict[bool, list[Row]] = {False: [], True: []}
     last: list[Row] = []
-    is_apart = any(option.name == "virtual" for option in table)
+    has_virtual_section = any(option.name == "virtual" for option in table)
     for option in table:
         row = signature(option, language), option.help(language)
         if option.verbs in ("*", "tsc"):
             last.append(row)
         else:
-            rows[option.virtual and is_apart].append(row)
-    together = [*rows[False], *rows[True], *last]
-    left = _left_width(together, width * 3 // 10)
+            rows[option.virtual and has_virtual_section].append(row)
+    all_rows = [*rows[False], *rows[True], *last]
+    left = _left_width(all_rows, width * 3 // 10)
     yield from _columns(rows[False], left, width)
     if rows[True]:
         yield ""
@@ -164,8 +164,8 @@ def _left_width(rows: Iterable[Row], most: int) -> int:
 def _columns(rows: Iterable[Row], left: int, width: int) -> Iterator[str]:
     """Yield two columns; what is too long for the first one has a line of its own."""
     indent = " " * (left + 4)
-    for command, does in rows:
-        lines = _wrap(does, width - len(indent))
+    for command, summary in rows:
+        lines = _wrap(summary, width - len(indent))
         if len(command) > left:
             yield f"  {command}"
         else:

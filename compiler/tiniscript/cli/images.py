@@ -16,7 +16,7 @@ from tiniscript.library.source_map import Map
 from tiniscript.robots.profile import Robot
 
 
-class Ready(NamedTuple):
+class ReadyProgram(NamedTuple):
     """`places` is None if the text is unknown."""
 
     image: Image
@@ -32,10 +32,10 @@ class OtherRobot(Exception):
         self.compiled = compiled
 
 
-def ready(
+def ready_program(
     program_input: inputs.Input, robot: Robot, language: str, is_strict: bool = False,
     may_choose_robot: bool = False,
-) -> Ready | None:  # fmt: skip
+) -> ReadyProgram | None:  # fmt: skip
     """Return the program of an input, or None if it has mistakes, which are printed.
 
     `is_strict`: a program that is too large for the robot, or has what the robot lacks,
@@ -49,7 +49,7 @@ def ready(
             raise CommandError(
                 1, lacks, robot=robot.name, file=inputs.printable_name(program_input.name)
             )
-        return Ready(image, len(program_input.data), source_map.recall(image.checksum))
+        return ReadyProgram(image, len(program_input.data), source_map.recall(image.checksum))
     compiled = compiling.compile_input(program_input, robot, is_strict)
     if may_choose_robot and not compiled.is_right:
         if is_other_robots(compiled.diagnostics):
@@ -61,7 +61,7 @@ def ready(
         return None
     image = image_of(compiled, robot)
     places = source_map.map_of_compiled(compiled)
-    return Ready(image, len(compiled.image), places)
+    return ReadyProgram(image, len(compiled.image), places)
 
 
 def _read(program_input: inputs.Input) -> Image:
@@ -78,12 +78,12 @@ def _check(program_input: inputs.Input, image: Image, robot: Robot) -> None:
     try:
         check(image, robot.kit)
     except (ImageRefused, Refused) as refused:
-        is_other = refused.name == "NO_SUCH_DEVICE" and image.devices  # it has fewer
-        if refused.name == "OTHER_KIT" or is_other:
+        lacks_devices = refused.name == "NO_SUCH_DEVICE" and image.devices  # it has fewer
+        if refused.name == "OTHER_KIT" or lacks_devices:
             other = find_robot_for(image, robot)
-            theirs = "FILE" if other is None else other.name
+            other_name = "FILE" if other is None else other.name
             raise CommandError(
-                1, "image_OTHER_KIT", file=file, robot=robot.name, theirs=theirs
+                1, "image_OTHER_KIT", file=file, robot=robot.name, theirs=other_name
             ) from None
         assert isinstance(refused, Refused)
         values = {"name": refused.name, "number": str(refused.number)}
@@ -96,9 +96,9 @@ def robot_for(program_input: inputs.Input, robot: Robot) -> Robot:
     return find_robot_for(_read(program_input), robot) or robot
 
 
-def keep_map(ready: Ready) -> None:
+def keep_map(program: ReadyProgram) -> None:
     """Keep a program's source map for other commands, if it has one."""
-    if ready.places is not None:
-        image = ready.image
+    if program.places is not None:
+        image = program.image
         packed = pack(image.start, image.devices, image.code, needs=image.needs)
-        source_map.remember(packed, ready.places)
+        source_map.remember(packed, program.places)

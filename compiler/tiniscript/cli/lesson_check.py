@@ -262,10 +262,10 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
         )
         for mark in marks
     ]
-    wide = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
+    widths = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
     columns = get_terminal_size().columns if sys.stdout.isatty() else 0
     for name, verdict, shown_sentence in rows:
-        cells = f"{set_cell_size(name, wide[0])}  {set_cell_size(verdict, wide[1])}  "
+        cells = f"{set_cell_size(name, widths[0])}  {set_cell_size(verdict, widths[1])}  "
         room = columns - cell_len(cells) - 1
         if not columns or cell_len(shown_sentence) <= room:
             print(f"{cells}{shown_sentence}".rstrip())
@@ -276,11 +276,11 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
         for part in textwrap.wrap(shown_sentence, max(room, LEAST_COLUMNS)):
             print(f"{cells}{part}")
             cells = " " * cell_len(cells)
-    passed = sum(mark.verdict == PASSED for mark in marks)
+    passed_count = sum(mark.verdict == PASSED for mark in marks)
     count = text("lesson_count", language)
     number = inputs.printable_name(options.number)
     programs = sum(mark.verdict != NO_PROGRAM for mark in marks)
-    print(count.format(passed=passed, all=programs, number=number))
+    print(count.format(passed=passed_count, all=programs, number=number))
 
 
 def _first_error(mark: Mark) -> str:

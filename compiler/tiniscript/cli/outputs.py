@@ -15,11 +15,11 @@ from tiniscript.library.compiling import Compiled
 MOST_DIAGNOSTICS = 20  # diagnostics that are printed; a person mends the first ones first
 
 
-def write(path: Path, data: bytes, how: str, mode: int | None = None) -> None:
+def write(path: Path, data: bytes, error_key: str, mode: int | None = None) -> None:
     """Write a file, all of it or nothing: the old file stays until the new one is whole.
 
-    `mode` is what its permissions become. Raises CommandError, which says `how`, where that is
-    not possible.
+    `mode` is what its permissions become. Raises CommandError with the sentence of `error_key`
+    where that is not possible.
     """
     from tiniscript.base import files
 
@@ -28,7 +28,7 @@ def write(path: Path, data: bytes, how: str, mode: int | None = None) -> None:
     except (OSError, ValueError, RuntimeError) as why:  # RuntimeError: a link to itself
         if isinstance(why, BrokenPipeError):
             raise
-        raise unwritable_error(how, printable_name(str(path)), why) from None
+        raise unwritable_error(error_key, printable_name(str(path)), why) from None
 
 
 def write_output(name: str | None, data: bytes) -> bool:

@@ -36,8 +36,10 @@ def build(options: Namespace, language: str) -> None:
     parts = missing_parts()
     has_node = NODE not in parts
     if not has_node and install_advice.install_command(install_advice.STUDIO) is None:
-        how = install_advice.command(install_advice.STUDIO)
-        raise CommandError(2, "studio_no_node", oldest=str(building.OLDEST_NODE), how=how)
+        install_command = install_advice.command(install_advice.STUDIO)
+        raise CommandError(
+            2, "studio_no_node", oldest=str(building.OLDEST_NODE), how=install_command
+        )
     missing = text("studio_missing", language)
     fetching.ask_to_fetch(missing, parts, building.MINUTES, options, language)
     if not has_node:

@@ -20,7 +20,7 @@ from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.options import chosen, options_of
+from tiniscript.cli.texts.options import command_of, options_of
 from tiniscript.cli.texts.verbs import (
     COMMANDS,
     FORMER_COMMANDS,
@@ -46,10 +46,10 @@ def _present_command(command: str, words: list[str], language: str) -> str:
     """Return what is typed for a command that was a verb: with the words after it, if they fit."""
     head = STEPS[command].head if command in STEPS else command
     for item in (head, command_words(command)):
-        verb, *more = [*item.split(), *words]
-        present, rest = chosen(verb, more)
-        if present == command and Options(command, language).fits(rest):
-            return shlex.join([verb, *more])
+        verb, *all_words = [*item.split(), *words]
+        present, rest = command_of(verb, all_words)
+        if present == command and Options(command, language).accepts(rest):
+            return shlex.join([verb, *all_words])
     from tiniscript.cli.help import begins
 
     return begins(command, language)

@@ -91,13 +91,13 @@ def _far_form(item: Item) -> tuple[Item, ...]:
     if far is not None:
         return (item._replace(op=far),)
     *variable, number = item.operands
-    says = [
+    parts = [
         *(_shortest_op("PUSH_VAR", each) for each in variable),
         _push(number * 1000),
         (BY_NAME[item.op.name.rpartition("_")[2]], ()),
     ]
     return (
-        *(Item(*each, None, item.span) for each in says),
+        *(Item(*each, None, item.span) for each in parts),
         Item(BY_NAME["IF_FAR"], (), item.to, item.span),
     )
 
@@ -133,51 +133,51 @@ def pushes_in_one_byte(term: Term, variable: int) -> bool:
     return variable < SHORTS and _push(term.value)[0].size == 1
 
 
-def push(out: Emitter, term: Term) -> None:
+def push(emitter: Emitter, term: Term) -> None:
     """Add the instruction for a term that is not a binary operator."""
     op, value = term
     if op == "NUMBER":
         instruction, operands = _push(value)
-        out.items.append(Item(instruction, operands, None, out.span))
+        emitter.items.append(Item(instruction, operands, None, emitter.span))
     elif op == "YES_NO":
-        out.add("PUSH_TRUE" if value else "PUSH_FALSE")
+        emitter.add("PUSH_TRUE" if value else "PUSH_FALSE")
     elif op == "VARIABLE":
-        out.add("PUSH_VAR", value)
+        emitter.add("PUSH_VAR", value)
     elif op == "SENSOR":
-        span = out.span
-        out.add("PUSH_READ" if out.take_back_read(value) else "PUSH_SENSOR", value)
-        out.span = span
+        span = emitter.span
+        emitter.add("PUSH_READ" if emitter.take_back_read(value) else "PUSH_SENSOR", value)
+        emitter.span = span
     else:
-        out.add(op)
+        emitter.add(op)
 
 
-def add_value(out: Emitter, expression: Expression) -> None:
+def add_value(emitter: Emitter, expression: Expression) -> None:
     """Add instructions that leave the value of `expression` on the stack."""
     joins: list[int | None] = []
     for k, term in enumerate(expression):
         if term.op in _LEFT_OPS:
             end = _matching_index(expression, range(k + 1, len(expression)), _LEFT_OPS, _JOIN_OPS)
             right = expression[k + 1 : end]
-            if not out.plain and is_safe(right) and len(right) <= _MAX_EAGER_TERMS:
+            if not emitter.plain and is_safe(right) and len(right) <= _MAX_EAGER_TERMS:
                 joins.append(None)
             else:
-                joins.append(out.new_label())
-                out.add("AND_THEN" if term.op == "AND_LEFT" else "OR_ELSE", to=joins[-1])
+                joins.append(emitter.new_label())
+                emitter.add("AND_THEN" if term.op == "AND_LEFT" else "OR_ELSE", to=joins[-1])
         elif term.op in _JOIN_OPS:
             join = joins.pop()
             if join is None:
-                out.add(term.op)
+                emitter.add(term.op)
             else:
-                out.mark(join)
+                emitter.mark(join)
         else:
-            push(out, term)
+            push(emitter, term)
 
 
-def emit_unless(out: Emitter, condition: Expression, otherwise: int) -> None:
-    """Add branches to the label `otherwise` that are taken where `condition` is FALSE."""
-    if out.plain:
-        add_value(out, condition)
-        out.add("IF", to=otherwise)
+def emit_unless(emitter: Emitter, condition: Expression, target: int) -> None:
+    """Add branches to the label `target` that are taken where `condition` is FALSE."""
+    if emitter.plain:
+        add_value(emitter, condition)
+        emitter.add("IF", to=target)
         return
     # where a part of it begins and ends, and whether its being TRUE branches
     pending = [(0, len(condition), False)]
@@ -191,34 +191,34 @@ def emit_unless(out: Emitter, condition: Expression, otherwise: int) -> None:
             pending.append((split + 1, end - 1, when))
             pending.append((start, split, when))
         else:
-            _emit_branch(out, condition[start:end], when, otherwise)
+            _emit_branch(emitter, condition[start:end], when, target)
 
 
-def emit_until(out: Emitter, condition: Expression) -> None:
+def emit_until(emitter: Emitter, condition: Expression) -> None:
     """Add instructions that end a watched move where `condition` is TRUE."""
-    compared = None if out.plain else _comparison_to_constant(condition)
-    if compared is None:
-        add_value(out, condition)
-        out.add("UNTIL")
+    comparison = None if emitter.plain else _comparison_to_constant(condition)
+    if comparison is None:
+        add_value(emitter, condition)
+        emitter.add("UNTIL")
     else:
-        add_value(out, compared.value)
-        out.add(f"UNTIL{compared.bits}_{compared.comparator}", compared.number)
+        add_value(emitter, comparison.value)
+        emitter.add(f"UNTIL{comparison.bits}_{comparison.comparator}", comparison.number)
 
 
-def _emit_branch(out: Emitter, expression: Expression, when: bool, to: int) -> None:
-    compared = _comparison_to_constant(expression)
-    if compared is None:
-        add_value(out, expression)
-        out.add("IF_NOT" if when else "IF", to=to)
+def _emit_branch(emitter: Emitter, expression: Expression, when: bool, to: int) -> None:
+    comparison = _comparison_to_constant(expression)
+    if comparison is None:
+        add_value(emitter, expression)
+        emitter.add("IF_NOT" if when else "IF", to=to)
         return
-    value, bits, comparator, number = compared
+    value, bits, comparator, number = comparison
     if when:
         comparator = NEGATED[comparator]
     if len(value) == 1 and value[0].op == "VARIABLE":
-        out.add(f"IF_VAR{bits}_{comparator}", value[0].value, number, to=to)
+        emitter.add(f"IF_VAR{bits}_{comparator}", value[0].value, number, to=to)
     else:
-        add_value(out, value)
-        out.add(f"IF{bits}_{comparator}", number, to=to)
+        add_value(emitter, value)
+        emitter.add(f"IF{bits}_{comparator}", number, to=to)
 
 
 class _Compared(NamedTuple):

@@ -32,10 +32,10 @@ class Verdict(NamedTuple):
     detail: str = ""
 
 
-def compare(name: str, want: Sequence[str], got: Sequence[str]) -> Verdict:
+def compare(name: str, wanted_rows: Sequence[str], rows_got: Sequence[str]) -> Verdict:
     """Return the first line that differs."""
-    for number in range(max(len(want), len(got))):
-        pair = [rows[number] if number < len(rows) else None for rows in (want, got)]
+    for number in range(max(len(wanted_rows), len(rows_got))):
+        pair = [rows[number] if number < len(rows) else None for rows in (wanted_rows, rows_got)]
         if pair[0] != pair[1]:
             return Verdict(name, DIFFERS, number + 1, pair[0], pair[1])
     return Verdict(name, AGREES)
@@ -57,7 +57,7 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
             yield Verdict(case.name, LACKS)
             continue
         try:
-            got = ask(case.request(), sum(len(row) + 2 for row in case.answer))
+            answer = ask(case.request(), sum(len(row) + 2 for row in case.answer))
         except Problem as problem:
             verdict = compare(case.name, case.answer, problem.rows)
             yield verdict._replace(what=problem.kind, detail=problem.detail)
@@ -68,9 +68,9 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
         else:
             answers += 1
             if case.needs and case.needs not in lacks:
-                refuses = list(got) in LACKING_ANSWERS and list(got) != list(case.answer)
+                refuses = list(answer) in LACKING_ANSWERS and list(answer) != list(case.answer)
                 lacks[case.needs] = refuses
                 if refuses:
                     yield Verdict(case.name, LACKS)
                     continue
-            yield compare(case.name, case.answer, got)
+            yield compare(case.name, case.answer, answer)

@@ -34,9 +34,9 @@ class Problem(Exception):
     """No answer. `what` is hang, crash, flood or more; `detail` is the exit code or what it wrote;
     `rows` are the lines that came before."""
 
-    def __init__(self, what: str, detail: str, rows: tuple[str, ...]) -> None:
-        super().__init__(what)
-        self.kind = what
+    def __init__(self, kind: str, detail: str, rows: tuple[str, ...]) -> None:
+        super().__init__(kind)
+        self.kind = kind
         self.detail = detail
         self.rows = rows
 
@@ -67,13 +67,13 @@ class MachineProcess:
 
         A process that has answered before may have ended since: then a new one is asked.
         """
-        most = expected_bytes + SPARE_BYTES
+        most_bytes = expected_bytes + SPARE_BYTES
         if self._answers:
             with contextlib.suppress(_ProcessEnded):
-                return self._query(request, most)
+                return self._query(request, most_bytes)
             self.close()
         try:
-            return self._query(request, most)
+            return self._query(request, most_bytes)
         except _ProcessEnded as ended:
             exit_code = ended.code
         self._fail("crash", str(exit_code), [])
@@ -153,7 +153,7 @@ class MachineProcess:
                 pipe.write(request)
                 pipe.flush()
 
-    def _query(self, request: str, most: int) -> tuple[str, ...]:
+    def _query(self, request: str, most_bytes: int) -> tuple[str, ...]:
         if self._process is None:
             self._process = self._start()
         self._requests.put(request.encode())
@@ -165,9 +165,9 @@ class MachineProcess:
             for number, line in enumerate(lines, 1):
                 rows.append(line.decode("utf-8", "replace").removesuffix("\r"))
                 if is_last(rows[-1]):
-                    more = b"\n".join([*lines[number:], self._rest])
-                    if more:
-                        self._fail("more", more.decode("utf-8", "replace"), rows)
+                    extra = b"\n".join([*lines[number:], self._rest])
+                    if extra:
+                        self._fail("more", extra.decode("utf-8", "replace"), rows)
                     self._answers += 1
                     return tuple(rows)
             try:
@@ -182,7 +182,7 @@ class MachineProcess:
                 raise _ProcessEnded(exit_code)
             count += len(data)
             self._rest += data
-            if count > most:
+            if count > most_bytes:
                 self._fail("flood", "", rows)
 
     def _exit_code(self) -> int | None:

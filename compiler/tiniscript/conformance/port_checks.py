@@ -56,7 +56,7 @@ def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
     silent = 0
     for check in checks:
         try:
-            ready(robot)
+            make_ready(robot)
             yield compare(check.name, check.wanted, check.found(robot))
             silent = 0
         except Silent as why:
@@ -66,7 +66,7 @@ def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
                 return
 
 
-def ready(robot: WireRobot) -> None:
+def make_ready(robot: WireRobot) -> None:
     """Leave nothing of the check before: no run, no latch, no event."""
     state = robot.ask("PING").values.get("state")
     if state == STATES.index("RUNNING"):
@@ -139,11 +139,11 @@ def send_image(robot: WireRobot, image: bytes, mode: int) -> Answer:
     """Bring an image in pieces, as it is; return the first answer that is not OK, or the last."""
     rest = image[HEADER_BYTES + 4 :]
     answer = announce(robot, image, mode)
-    most = PAYLOAD_BYTES - 2
-    for offset in range(0, len(rest), most):
+    most_bytes = PAYLOAD_BYTES - 2
+    for offset in range(0, len(rest), most_bytes):
         if answer.status:
             return answer
-        piece = rest[offset : offset + most]
+        piece = rest[offset : offset + most_bytes]
         answer = robot.ask("DATA", {"offset": offset, "bytes": piece})
     if answer.status:
         return answer
@@ -204,9 +204,9 @@ def _check_hello(robot: WireRobot) -> tuple[str, ...]:
     isa = f"isa {number('isa_major')}.{number('isa_minor')}"
     epoch = robot.epoch
     robot.hello()
-    again = "the same session" if robot.epoch == epoch else "another session"
+    session_text = "the same session" if robot.epoch == epoch else "another session"
     frames = "frames of 63 bytes" if large else "smaller frames"
-    return (f"link {number('major')}", isa, frames, f"the same nonce again: {again}")
+    return (f"link {number('major')}", isa, frames, f"the same nonce again: {session_text}")
 
 
 def _check_damaged_frame(robot: WireRobot) -> tuple[str, ...]:
@@ -225,7 +225,7 @@ def _check_repeated_request(robot: WireRobot) -> tuple[str, ...]:
     epoch = robot.epoch
     first = robot.ask_frame(number, payload)
     robot.wait(EVENT_S, "DONE")
-    second = robot.again(number, payload, epoch=epoch)
+    second = robot.repeat(number, payload, epoch=epoch)
     robot.wait(0.4)
     second_answer = "the same answer" if first.payload == second.payload else answer_text(second)
     return (

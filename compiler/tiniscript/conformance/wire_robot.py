@@ -96,9 +96,9 @@ class WireRobot:
     ) -> Answer:  # fmt: skip
         """The same of any message; `epoch` is another one than the robot's."""
         self._seq = (self._seq + 1) & 0xFF
-        return self.again(number, payload, tries, message, epoch)
+        return self.repeat(number, payload, tries, message, epoch)
 
-    def again(
+    def repeat(
         self, number: int, payload: bytes, tries: int = TRIES, message: str = "",
         epoch: int | None = None,
     ) -> Answer:  # fmt: skip

@@ -241,19 +241,19 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """
     result = []
     mistaken = set()
-    seen = set()
-    meant = {
+    keys_seen = set()
+    named_starts = {
         diagnostic.span.start for diagnostic in diagnostics if diagnostic.code is UNKNOWN_WORD or (
         diagnostic.code is UNKNOWN_NAME and diagnostic.values.get("near")
     )}  # fmt: skip
     for diagnostic in diagnostics:
         key = (diagnostic.code, diagnostic.span)
         start = diagnostic.span.start
-        if diagnostic.code is BAD_NAME and start in meant:
+        if diagnostic.code is BAD_NAME and start in named_starts:
             continue  # `Bebé(1, 440)`: the word goes, with its accent
-        if key in seen or (diagnostic.is_mistake and start in mistaken):
+        if key in keys_seen or (diagnostic.is_mistake and start in mistaken):
             continue
-        seen.add(key)
+        keys_seen.add(key)
         result.append(diagnostic)
         if diagnostic.is_mistake:
             mistaken.add(start)

@@ -71,11 +71,16 @@ def repair_program(text: str, check: Check) -> Fixed:
     steps = _steps(diagnostics)
     while left > 0 and (repairs := next(steps, None)):
         edits = [_tidied(edit, text) for repair in repairs for edit in repair]
-        changed = apply_edits(text, edits)
-        after = check(changed)
+        changed_text = apply_edits(text, edits)
+        diagnostics_after = check(changed_text)
         left -= 1
-        if is_better(after, diagnostics, edits):
-            text, diagnostics, count, steps = changed, after, count + len(repairs), _steps(after)
+        if is_better(diagnostics_after, diagnostics, edits):
+            text, diagnostics, count, steps = (
+                changed_text,
+                diagnostics_after,
+                count + len(repairs),
+                _steps(diagnostics_after),
+            )
     return Fixed(text, count, diagnostics)
 
 
@@ -106,12 +111,12 @@ def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
         for item in diagnostics[: codes.ENOUGH]
         if item.repair and item.repair.is_sure
     ]
-    together: list[tuple[Edit, ...]] = []
+    separate_repairs: list[tuple[Edit, ...]] = []
     for edits in sure_repairs:
-        if not any(overlap(edits, other) for other in together):
-            together.append(edits)
-    if len(together) > 1:
-        yield together
+        if not any(overlap(edits, other) for other in separate_repairs):
+            separate_repairs.append(edits)
+    if len(separate_repairs) > 1:
+        yield separate_repairs
     yield from ([edits] for edits in sure_repairs)
 
 
@@ -158,14 +163,15 @@ def drop_wrong_offers(
         offers = [
             edits_of(diagnostic) or [] if diagnostic.is_mistake else [] for diagnostic in result
         ]
-        joined: list[Edit] = []
+        joined_edits: list[Edit] = []
         for edits in offers:
-            joined += edits if not overlap(edits, joined) else []
-        in_all = _InPlace(text, joined, check)
+            joined_edits += edits if not overlap(edits, joined_edits) else []
+        in_all = _InPlace(text, joined_edits, check)
+        joined_set = set(joined_edits)
         suspects = [
             k for k, edits in enumerate(offers)
             if result[k].is_mistake and (edits or result[k].values.get("fix"))
-            and not (edits and set(edits) <= set(joined) and in_all.is_right(result[k], edits))
+            and not (edits and set(edits) <= joined_set and in_all.is_right(result[k], edits))
         ]  # fmt: skip
         lines: dict[tuple[Code, str], bool] = {}  # of those that name no changes: each once
         for k in suspects[:left]:
@@ -188,18 +194,20 @@ def _covered_by_offer(
     diagnostics: Sequence[Diagnostic], offers: Sequence[list[Edit]], k: int, text: str
 ) -> set[str]:
     """Return codes and words of mistakes that may be in what the diagnostic `k` offers."""
-    others = set() if offers[k] else {codes.NEVER_ENDS.number}  # a header is shown without its end
+    codes_and_words = (
+        set() if offers[k] else {codes.NEVER_ENDS.number}
+    )  # a header is shown without its end
     if diagnostics[k].code is codes.RESERVED:  # `S = S + 1`, by whatever name
-        others.add(codes.USED_BEFORE_SET.number)
+        codes_and_words.add(codes.USED_BEFORE_SET.number)
     for item, edits in zip(diagnostics, offers, strict=True):
         if item is not diagnostics[k]:
-            others |= {text[slice(*item.span)].upper()} - {""}
+            codes_and_words |= {text[slice(*item.span)].upper()} - {""}
             if overlap(edits, offers[k]):
                 # their ends are in one place
-                others |= {item.code.number, codes.WRONG_END.number, codes.NOT_OPEN.number}
+                codes_and_words |= {item.code.number, codes.WRONG_END.number, codes.NOT_OPEN.number}
             elif item.is_mistake and not edits and item.span.start < diagnostics[k].span.start:
-                others.add(codes.NOT_OPEN.number)  # its header may be what nobody can read
-    return others
+                codes_and_words.add(codes.NOT_OPEN.number)  # its header may be what nobody can read
+    return codes_and_words
 
 
 def _shown_edits(diagnostic: Diagnostic, text: str) -> Iterator[list[Edit]]:
@@ -224,22 +232,26 @@ class _InPlace:
         self.mistakes = [diagnostic for diagnostic in check(self.text) if diagnostic.is_mistake]
 
     def is_right(
-        self, diagnostic: Diagnostic, own_edits: Sequence[Edit], others: Set[str] = frozenset()
+        self,
+        diagnostic: Diagnostic,
+        own_edits: Sequence[Edit],
+        codes_and_words: Set[str] = frozenset(),
     ) -> bool:
-        """Whether no mistake begins in what is offered, but of a code or a word of `others`."""
-        shift, shown = 0, []
+        """Whether no mistake begins in what is offered, but one of `codes_and_words`."""
+        shift, spans = 0, []
         for edit in self.edits:
             start = edit.span.start + shift
-            shown += [Span(start, start + len(edit.text))] if edit in own_edits else []
+            spans += [Span(start, start + len(edit.text))] if edit in own_edits else []
             shift += len(edit.text) - (edit.span.end - edit.span.start)
         text = next(filter(None, map(diagnostic.values.get, _SHOWN_GAPS)), "")
-        begin = self.text.find(text, max(0, shown[0].start - len(text)))
-        if begin in range(shown[-1].end):
-            shown.append(Span(begin, begin + len(text)))
+        begin = self.text.find(text, max(0, spans[0].start - len(text)))
+        if begin in range(spans[-1].end):
+            spans.append(Span(begin, begin + len(text)))
         return all(
-            mistake.code.number in others or self._is_in_words(others, mistake.span.start)
+            mistake.code.number in codes_and_words
+            or self._is_in_words(codes_and_words, mistake.span.start)
             for mistake in self.mistakes
-            if any(start <= mistake.span.start < end for start, end in shown)
+            if any(start <= mistake.span.start < end for start, end in spans)
         )
 
     def _is_in_words(self, words: Set[str], place: int) -> bool:

@@ -158,13 +158,13 @@ def _other_link(reply: Reply[SentReply]) -> Finding:
 
 def _version_findings(hello: HelloReply) -> list[Finding]:
     """Compare versions: what a newer robot has more does no harm."""
-    theirs, ours = (hello.isa_major, hello.isa_minor), (ISA_MAJOR, ISA_MINOR)
+    robot_isa, own_isa = (hello.isa_major, hello.isa_minor), (ISA_MAJOR, ISA_MINOR)
     is_newer = hello.isa_major > ISA_MAJOR or hello.major > MAJOR
-    if not is_newer and theirs >= ours and (hello.major, hello.minor) >= (MAJOR, MINOR):
+    if not is_newer and robot_isa >= own_isa and (hello.major, hello.minor) >= (MAJOR, MINOR):
         return []
     values = {
-        "theirs": f"{hello.major}.{hello.minor} / {theirs[0]}.{theirs[1]}",
-        "ours": f"{MAJOR}.{MINOR} / {ours[0]}.{ours[1]}",
+        "theirs": f"{hello.major}.{hello.minor} / {robot_isa[0]}.{robot_isa[1]}",
+        "ours": f"{MAJOR}.{MINOR} / {own_isa[0]}.{own_isa[1]}",
     }
     return [sure("firmware_newer" if is_newer else "firmware_older", **values)]
 
@@ -211,7 +211,7 @@ def _link_findings(
     damaged_count = 0
     if after is not None:
         pairs = zip(_error_counts(before), _error_counts(after), strict=True)
-        damaged_count = sum((now - then) & 0xFF for then, now in pairs)
+        damaged_count = sum((count_now - count_before) & 0xFF for count_before, count_now in pairs)
     values = {"missed": str(missed), "n": str(expected.pings), "damaged": str(damaged_count)}
     expected.note({"good": str(len(trips_ms)), **values})
     lost = []
@@ -255,13 +255,13 @@ def _watch_restarts(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Rest
     nonce, is_running = hello.nonce, hello.state == STATE_RUNNING
     for _ in range(max(LOOKS, watch_ms // LOOK_MS)):
         robot.pause(LOOK_MS)
-        now = values_of(robot.hello())
-        if now is None:
+        hello_now = values_of(robot.hello())
+        if hello_now is None:
             continue
-        if now.nonce != nonce:
-            restarts.append(Restart(is_running, row_name(RESETS, now.reset)))
-            nonce = now.nonce
-        is_running = now.state == STATE_RUNNING
+        if hello_now.nonce != nonce:
+            restarts.append(Restart(is_running, row_name(RESETS, hello_now.reset)))
+            nonce = hello_now.nonce
+        is_running = hello_now.state == STATE_RUNNING
     return restarts
 
 

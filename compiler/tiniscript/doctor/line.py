@@ -44,13 +44,13 @@ def find_bootloader(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootload
         wire.set_baud(line.baud)
         wire.reset_board()
         answer_bytes = wire.receive(BLINK_MS, BLINK_MS)
-        is_there = False
+        has_answered = False
         for _ in range(TRIES):
             wire.send(greeting)
             answer_bytes += wire.receive(ANSWER_MS)
-            if is_there := answer in answer_bytes:
+            if has_answered := answer in answer_bytes:
                 break
-        if is_there:
+        if has_answered:
             wire.receive(BOOTLOADER_MS, BOOTLOADER_MS)
             return line, _greet(wire, greeting, answer)
         hear(answer_bytes)
@@ -93,16 +93,16 @@ def diagnose_line(
     reply = robot.hello(HELLO_TRIES)
     if reply is not None:
         return examine(robot, reply, expected, on_step=on_step)
-    heard = before + robot.heard
-    if _is_error(heard):
+    received = before + robot.heard
+    if _is_error(received):
         return [sure("module_set_up", baud=str(line.baud))]
-    others = _Others(wire, RADIO_PROBE_MS if line.is_radio else PROBE_MS)
-    finding = others.find(heard, robot.spoken, partial(_identify_echo, wire, line, expected))
+    strangers = _Strangers(wire, RADIO_PROBE_MS if line.is_radio else PROBE_MS)
+    finding = strangers.find(received, robot.spoken, partial(_identify_echo, wire, line, expected))
     if finding is not None:
         return [finding]
     if line.is_radio:
-        return [others.best_finding() or _diagnose_radio(heard)]
-    return _diagnose_cable(wire, line, expected, heard, others, on_step)
+        return [strangers.best_finding() or _diagnose_radio(received)]
+    return _diagnose_cable(wire, line, expected, received, strangers, on_step)
 
 
 def _wire_robot(wire: Wire, line: Line, expected: Expectations) -> WireRobot:
@@ -110,18 +110,18 @@ def _wire_robot(wire: Wire, line: Line, expected: Expectations) -> WireRobot:
     return WireRobot(wire, line.nonce, kit, RADIO_MS if line.is_radio else CABLE_MS)
 
 
-def _is_echo(heard: bytes, spoken: bytes) -> bool:
+def _is_echo(received: bytes, sent: bytes) -> bool:
     """Whether at least one whole frame that was sent came back."""
-    frames = [part for part in spoken.split(b"\0") if part]
-    return any(frame in heard for frame in frames)
+    frames = [part for part in sent.split(b"\0") if part]
+    return any(frame in received for frame in frames)
 
 
-def _is_error(heard: bytes) -> bool:
+def _is_error(received: bytes) -> bool:
     """Whether a module in its set-up mode complains."""
-    return b"ERROR:(" in heard or b"ERROR=" in heard
+    return b"ERROR:(" in received or b"ERROR=" in received
 
 
-class _Others:
+class _Strangers:
     """Looks for boards that are not ours in what is heard. What is sure is told at once; of the
     rest the best is kept until nothing else is found."""
 
@@ -129,28 +129,28 @@ class _Others:
         self._wire, self._wait_ms = wire, wait_ms
         self._kept: list[Finding] = []
 
-    def find(self, heard: bytes, spoken: bytes, echo: Callable[[], Finding]) -> Finding | None:
+    def find(self, received: bytes, sent: bytes, echo: Callable[[], Finding]) -> Finding | None:
         """Return what is surely there. `echo` returns what it is that sends back what is sent, and
         says nothing else."""
-        finding = self.look(heard)
-        is_echo = _is_echo(heard, spoken)
+        finding = self.look(received)
+        is_echo = _is_echo(received, sent)
         if finding is None and not (is_echo and self.best_finding() is None):
-            finding = self.ask(heard, not is_echo)
+            finding = self.ask(received, not is_echo)
         if finding is None and is_echo:
-            text = _text_beside(heard, spoken)
+            text = _text_beside(received, sent)
             finding = sure(ECHO_SKETCH, said=text) if text else echo()
         return finding
 
-    def look(self, heard: bytes) -> Finding | None:
+    def look(self, received: bytes) -> Finding | None:
         """Return what has surely sent these bytes, by its row or as a robot that does not hear."""
-        if foreign.is_robot(heard):
+        if foreign.is_robot(received):
             return probably("one_way")
-        board = foreign.identify_board(heard)
+        board = foreign.identify_board(received)
         return (
             None if board is not None and board.name in foreign.GENERAL_ROWS else self._judge(board)
         )
 
-    def ask(self, heard: bytes, may_be_text: bool) -> Finding | None:
+    def ask(self, received: bytes, may_be_text: bool) -> Finding | None:
         """Send the probes, and return what surely answers, or is surely text without them.
 
         Each answer is looked at by itself: one who says again what it gets must not be taken for a
@@ -160,22 +160,22 @@ class _Others:
             if row.probe:
                 self._wire.send(row.probe)
                 finding = self._judge(
-                    foreign.identify_board(heard + self._wire.receive(self._wait_ms))
+                    foreign.identify_board(received + self._wire.receive(self._wait_ms))
                 )
                 if finding is not None:
                     return finding
         if (best := self.best_finding()) is not None and best.cause == "at_firmware":
             self._wire.send(foreign.AT_VERSION_QUESTION)
             finding = self._judge(
-                foreign.identify_board(heard + self._wire.receive(dialects.ANSWER_MS))
+                foreign.identify_board(received + self._wire.receive(dialects.ANSWER_MS))
             )
             if finding is not None:
                 return finding
-        return self._judge(foreign.identify_stranger(heard)) if may_be_text else None
+        return self._judge(foreign.identify_stranger(received)) if may_be_text else None
 
-    def settle(self, heard: bytes) -> Finding | None:
+    def settle(self, received: bytes) -> Finding | None:
         """Return what has sent these bytes, where no question would help."""
-        board = foreign.identify_board(heard)
+        board = foreign.identify_board(received)
         return None if board is None else self._judge(board)
 
     def best_finding(self) -> Finding | None:
@@ -209,11 +209,11 @@ def _identify_echo_of_one_speed(wire: Wire, baud: int) -> Finding:
     return _find_module(wire, (baud,)) or sure(ECHO_SKETCH, said="")
 
 
-def _text_beside(heard: bytes, spoken: bytes) -> str:
+def _text_beside(received: bytes, sent: bytes) -> str:
     """Return the text that came with what was sent and came back, if any did."""
-    for frame in spoken.split(b"\0"):
-        heard = heard.replace(frame, b"") if frame else heard
-    return foreign.readable_line(heard.replace(b"\0", b""))
+    for frame in sent.split(b"\0"):
+        received = received.replace(frame, b"") if frame else received
+    return foreign.readable_line(received.replace(b"\0", b""))
 
 
 def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
@@ -230,36 +230,36 @@ def _find_module(wire: Wire, bauds: tuple[int, ...]) -> Finding | None:
     return sure(cause, baud=str(module.baud), module=module.dialect.name)
 
 
-def _diagnose_radio(heard: bytes) -> Finding:
+def _diagnose_radio(received: bytes) -> Finding:
     """The module has answered, for its port is open: what is behind it?"""
-    if len(heard) >= LEAST_BYTES:
-        return probably("module_baud", n=str(len(heard)))
+    if len(received) >= LEAST_BYTES:
+        return probably("module_baud", n=str(len(received)))
     return probably("crossed")
 
 
 def _diagnose_cable(
-    wire: Wire, line: Line, expected: Expectations, heard: bytes, others: _Others,
+    wire: Wire, line: Line, expected: Expectations, received: bytes, strangers: _Strangers,
     on_step: Callable[[str], None],
 ) -> list[Finding]:  # fmt: skip
-    garbage = len(heard)
+    garbage = len(received)
     for baud in BAUDS:
         if baud == line.baud:
             continue
         on_step("bauds")
         wire.set_baud(baud)
-        more = wire.receive(LISTEN_MS)
+        received_later = wire.receive(LISTEN_MS)
         robot = _wire_robot(wire, line, expected)
         reply = robot.hello(1)
         if reply is not None:
             finding = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
             rest = examine(robot, reply, expected, on_step=on_step)
             return [finding, *(finding for finding in rest if finding.cause != "fine")]
-        more += robot.heard
-        alone = partial(_identify_echo_of_one_speed, wire, baud)
-        other_finding = others.find(more, robot.spoken, alone)
+        received_later += robot.heard
+        identify_echo = partial(_identify_echo_of_one_speed, wire, baud)
+        other_finding = strangers.find(received_later, robot.spoken, identify_echo)
         if other_finding is not None:
             return [other_finding]
-        garbage = max(garbage, len(more))
+        garbage = max(garbage, len(received_later))
     on_step("module")
     other_finding = _find_module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))))
     if other_finding is not None:
@@ -267,15 +267,15 @@ def _diagnose_cable(
     on_step("bootloader")
     booted: list[bytes] = []
     found_bootloader = find_bootloader(wire, booted.append)
-    for said in booted:
-        other_finding = others.look(said) or others.settle(said)
+    for boot_text in booted:
+        other_finding = strangers.look(boot_text) or strangers.settle(boot_text)
         if other_finding is not None:
             return [other_finding]
     if found_bootloader is not None:
         board, is_alone = found_bootloader
         return [sure("bootloader_only", board=board.name) if is_alone
-                else others.best_finding() or probably("other_sketch", said="")]  # fmt: skip
-    best_finding = others.best_finding()
+                else strangers.best_finding() or probably("other_sketch", said="")]  # fmt: skip
+    best_finding = strangers.best_finding()
     return [
         best_finding
         or (probably("garbled", n=str(garbage)) if garbage >= LEAST_BYTES else probably("silent"))

@@ -30,12 +30,12 @@ def _query(system: System, data_type: str) -> list[dict[str, Any]] | None:
 
 def _adapters(devices: list[dict[str, Any]], has_port: bool) -> Iterator[Adapter]:
     """Yield the adapters. Which port is whose is not told: a USB port is taken for all of them."""
-    waiting = list(devices)
-    while waiting:
-        device = waiting.pop()
+    pending_devices = list(devices)
+    while pending_devices:
+        device = pending_devices.pop()
         inside = device.get("_items")
         if isinstance(inside, list):
-            waiting += [item for item in inside if isinstance(item, dict)]
+            pending_devices += [item for item in inside if isinstance(item, dict)]
         vendor, product = (
             str(device.get(key, "")).split(" ")[0].lower().removeprefix("0x")
             for key in ("vendor_id", "product_id")

@@ -92,18 +92,29 @@ def _bundled_avrdudes(home: Path) -> list[Path]:
 
 def write(
     command: list[str],
-    to: Bootloader,
+    bootloader: Bootloader,
     port: str,
     firmware: Path,
-    look: Callable[[StepProgress | None], None],
+    on_progress: Callable[[StepProgress | None], None],
 ) -> WriteResult:
-    """Write a firmware, read it back, and compare. `look` is called periodically."""
-    words = [*command, "-c", to.programmer, "-p", to.part, "-P", port, "-b", str(to.baud), "-D"]
+    """Write a firmware, read it back, and compare. `on_progress` is called periodically."""
+    words = [
+        *command,
+        "-c",
+        bootloader.programmer,
+        "-p",
+        bootloader.part,
+        "-P",
+        port,
+        "-b",
+        str(bootloader.baud),
+        "-D",
+    ]
     words += ["-U", f"flash:w:{firmware}:i"]
     try:
-        exit_code, output = children.run(words, None, _Watch(look), leave_s=LEAVE_S)
+        exit_code, output = children.run(words, None, _Watch(on_progress), leave_s=LEAVE_S)
     except _Ended as over:
-        return over.ended
+        return over.result
     except subprocess.TimeoutExpired:
         return WriteResult(ENDLESS)
     except children.CannotStart as why:
@@ -114,22 +125,22 @@ def write(
 class _Ended(Exception):
     """It is not waited for any longer."""
 
-    def __init__(self, how: str) -> None:
-        super().__init__(how)
-        self.ended = WriteResult(how)
+    def __init__(self, outcome: str) -> None:
+        super().__init__(outcome)
+        self.result = WriteResult(outcome)
 
 
 class _Watch:
     """Looks at its whole output again and again. Raises _Over."""
 
-    def __init__(self, look: Callable[[StepProgress | None], None]) -> None:
-        self._look = look
+    def __init__(self, on_progress: Callable[[StepProgress | None], None]) -> None:
+        self._on_progress = on_progress
         self._said = ""
         self._began_s = self._heard_s = monotonic()
 
     def __call__(self, output: str) -> None:
         now_s, progress = monotonic(), parse_progress(output)
-        self._look(progress)
+        self._on_progress(progress)
         if output != self._said:
             self._said, self._heard_s = output, now_s
         if now_s - self._began_s >= WHOLE_S or len(output) > MOST_BYTES:
@@ -162,11 +173,11 @@ def outcome(exit_code: int, output: str) -> WriteResult:
     if exit_code == 0:
         return WriteResult(DONE)
     began_to_write = parse_progress(output) is not None
-    for how, pattern in _CAUSES:
+    for outcome_name, pattern in _CAUSES:
         if re.search(pattern, output, re.IGNORECASE):
-            if began_to_write and how != DIFFERS:
+            if began_to_write and outcome_name != DIFFERS:
                 return WriteResult(BROKEN_OFF)
-            return WriteResult(how)
+            return WriteResult(outcome_name)
     rows = [row.strip() for row in output.splitlines() if row.strip() and "done." not in row]
     if began_to_write:
         return WriteResult(BROKEN_OFF)

@@ -171,7 +171,7 @@ class _Project:
     def hex_file(self) -> Path:
         return self.folder / ".pio" / "build" / self.environment / "firmware.hex"
 
-    def run(self, look: Callable[[StepProgress], None], *words: str) -> tuple[int, str]:
+    def run(self, on_progress: Callable[[StepProgress], None], *words: str) -> tuple[int, str]:
         """Run PlatformIO; return its exit code, and what it has said.
 
         It runs in the folder: Python finds modules where it begins, and not in a pupil's.
@@ -179,13 +179,13 @@ class _Project:
 
         def look_at(output: str) -> None:
             if progress := parse_progress(output, self.files):
-                look(progress)
+                on_progress(progress)
 
         command = [*self.command, self.environment, *words]
         return children.run(command, self.folder, look_at, _environment())
 
-    def build(self, look: Callable[[StepProgress], None], is_hex: bool) -> None:
-        code, log = self.run(look)
+    def build(self, on_progress: Callable[[StepProgress], None], is_hex: bool) -> None:
+        code, log = self.run(on_progress)
         if too_large := _TOO_LARGE.search(log):
             raise CannotBuild(CannotBuild.TOO_LARGE, "{} > {}".format(*too_large.groups()), log)
         if code != 0 or (is_hex and not is_whole(self.hex_file)):
@@ -201,28 +201,28 @@ def can_have_breakpoints(robot: Robot) -> bool:
 
 
 def build(
-    made_from: Sources, robot: Robot, look: Callable[[StepProgress], None],
+    made_from: Sources, robot: Robot, on_progress: Callable[[StepProgress], None],
     has_breakpoints: bool = False,
 ) -> bytes:  # fmt: skip
-    """Return the firmware of a robot for its board, an Intel HEX file. `look` is called often.
+    """Return the firmware of a robot for its board, an Intel HEX file.
 
-    Raises CannotBuild, and OSError where there is no room to build.
+    `on_progress` is called often. Raises CannotBuild, and OSError where there is no room to build.
     """
     with _folder() as folder:
         project = _Project(made_from, robot, folder, has_breakpoints)
         try:
-            project.build(look, is_hex=True)
+            project.build(on_progress, is_hex=True)
         except CannotBuild as why:
             if why.why != CannotBuild.TOO_LARGE or project.environment not in SMALLER_FIRMWARE:
                 raise
             project.environment, less = SMALLER_FIRMWARE[project.environment]
-            look(StepProgress(less, 0))
-            project.build(look, is_hex=True)
+            on_progress(StepProgress(less, 0))
+            project.build(on_progress, is_hex=True)
         return project.hex_file.read_bytes()
 
 
 def upload(
-    made_from: Sources, robot: Robot, port: str | None, look: Callable[[StepProgress], None]
+    made_from: Sources, robot: Robot, port: str | None, on_progress: Callable[[StepProgress], None]
 ) -> None:
     """Build the firmware of a robot with an ESP32, and write it to the board on a port, if any.
 
@@ -230,10 +230,10 @@ def upload(
     """
     with _folder() as folder:
         project = _Project(made_from, robot, folder)
-        project.build(look, is_hex=False)
+        project.build(on_progress, is_hex=False)
         if port is None:
             return
-        code, log = project.run(look, "-t", "upload", "--upload-port", port)
+        code, log = project.run(on_progress, "-t", "upload", "--upload-port", port)
         if code != 0:
             why = children.reason(log) or f"exit code {code}"
             raise CannotBuild(CannotBuild.NOT_WRITTEN, why, log)

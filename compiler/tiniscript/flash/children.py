@@ -93,13 +93,13 @@ def _hold_interrupt() -> Iterator[Callable[[], None]]:
     if current_thread() is not main_thread():
         yield lambda: None
         return
-    pressed: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
+    interrupts: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: interrupts.append(number))
 
     def let_through() -> None:
         signal.signal(signal.SIGINT, before)
-        if pressed:
-            pressed.clear()
+        if interrupts:
+            interrupts.clear()
             signal.raise_signal(signal.SIGINT)
 
     try:

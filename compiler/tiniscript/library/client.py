@@ -169,11 +169,13 @@ class Client:
         with self._convert_loss():
             return self.line.begin(with_limit)
 
-    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
+    def wait(
+        self, request: PendingRequest[T], on_wait: Callable[[], None] | None = None
+    ) -> Reply[T]:
         def watch() -> None:
             self._heed()
-            if look is not None:
-                look()
+            if on_wait is not None:
+                on_wait()
 
         with self._convert_loss():
             return self.line.wait(request, watch)
@@ -197,23 +199,23 @@ class Client:
 
     def send_program(
         self, image: Image, runs: bool, saves: bool, is_detached: bool,
-        draw: Callable[[int], None] = lambda done_bytes: None, profile: Robot | None = None,
+        on_progress: Callable[[int], None] = lambda done_bytes: None, profile: Robot | None = None,
     ) -> Reply[ReceiptReply]:  # fmt: skip
         """Send a program to the robot that was verified for `profile`, by default that of the
         client; return the reply.
 
-        It is refused before any byte is sent where the robot has another kit. `draw` gets the
-        number of code bytes that have arrived.
+        It is refused before any byte is sent where the robot has another kit. `on_progress` gets
+        the number of code bytes that have arrived.
         """
         profile = profile or self.profile
-        refused = refusal(image, profile, self.device_info)
-        if refused is not None:
-            return refused
+        refused_reply = refusal(image, profile, self.device_info)
+        if refused_reply is not None:
+            return refused_reply
         kit = profile.kit.fingerprint
         request = self.begin_request(
             lambda session: session.upload(image, runs, saves, is_detached, kit)
         )
-        return self.wait(request, lambda: draw(request.done_bytes))
+        return self.wait(request, lambda: on_progress(request.done_bytes))
 
     def stop(self, limit_s: float | None = None) -> bool:
         """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the wait.

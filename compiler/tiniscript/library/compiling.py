@@ -100,12 +100,12 @@ def _kit_in(text: str, kit: Kit) -> Kit:
 
 def check_size(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
     """Return `compiled` with a message if the robot's memory is too small."""
-    over = len(compiled.code) - robot.board.program_bytes
-    if over <= 0:
+    excess_bytes = len(compiled.code) - robot.board.program_bytes
+    if excess_bytes <= 0:
         return compiled
     code = codes.BOARD_TOO_SMALL if is_mistake else codes.BOARD_MAY_BE_TOO_SMALL
     values = {"robot": robot.name, "limit": str(robot.board.program_bytes),
-              "code": str(len(compiled.code)), "over": str(over)}  # fmt: skip
+              "code": str(len(compiled.code)), "over": str(excess_bytes)}  # fmt: skip
     end = len(compiled.source.text)
     diagnostic = codes.Diagnostic(code, Span(end, end), values)
     return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
@@ -130,8 +130,8 @@ def fit_to_robot(compiled: Compiled, robot: Robot) -> Compiled:
     )
     lacking = [
         codes.Diagnostic(code, span, {"robot": robot.name})
-        for code, need, span in needed
-        if span is not None and lacks(need, robot)
+        for code, missing, span in needed
+        if span is not None and lacks(missing, robot)
     ]
     if asks_remote and not has_remote(robot):
         lacking.append(_remote_missing(compiled, robot))
@@ -179,9 +179,9 @@ def _compile(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     program = optimize_program(program) if optimize else program
     lowered = lower(program)
     if len(lowered.code) > CODE_BYTES:
-        over = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
+        values = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
         place = Span(len(text), len(text))
-        diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, place, over)
+        diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, place, values)
         return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
     verdict = verify(lowered.code, len(kit.readings), len(kit.actuators))
     devices = kit.hash_of_used(verdict.uses)
@@ -208,9 +208,9 @@ def compile_source(
     text = text_of(data, name)
     if not isinstance(text, str):
         return text
-    unknown = None if is_chosen else unknown_robot(text)
-    if unknown is not None:  # which words there are nobody knows
-        return Compiled(Source(text, name), [unknown])
+    unknown_robot_diagnostic = None if is_chosen else unknown_robot(text)
+    if unknown_robot_diagnostic is not None:  # which words there are nobody knows
+        return Compiled(Source(text, name), [unknown_robot_diagnostic])
     result = compile_text(text, robot.kit, name, optimize)
     if not result.is_right:
         return add_robot_hints(result, robot, is_chosen) if names_robots else result

@@ -121,14 +121,16 @@ class RobotConnection:
         the robot has the program; `wait` waits for its end. Raises ProgramError, RobotError.
         """
         self._check_open()
-        ready = self._ready(program)
-        if ready.start == "PING":
+        ready_program = self._ready(program)
+        if ready_program.start == "PING":
             raise UsageError("ping_program", self.language)
-        reply = self._client.send_program(ready._image, run, save, detached, profile=ready._profile)
+        reply = self._client.send_program(
+            ready_program._image, run, save, detached, profile=ready_program._profile
+        )
         if reply.status:
             raise self._client.failure(reply)
         self._saving = Saving(reply.values) if save else None
-        return self._begin_run(reply.values, run and ready.start == "SI", detached)
+        return self._begin_run(reply.values, run and ready_program.start == "SI", detached)
 
     def live(self, line: str) -> Receipt:
         """Run a line once, at most 55 bytes of code, or 42 for a robot that seals; the stored
@@ -138,14 +140,14 @@ class RobotConnection:
         line to the next. Raises ProgramError, RobotError.
         """
         self._check_open()
-        ready = self._ready(line)
-        if ready.start != "SI":
-            reason = "live_button" if ready.start == "SB" else "ping_program"
+        ready_program = self._ready(line)
+        if ready_program.start != "SI":
+            reason = "live_button" if ready_program.start == "SB" else "ping_program"
             raise UsageError(reason, self.language)
-        image, kit = ready._image, ready._profile.kit.fingerprint
-        refused = refusal(image, ready._profile, self._client.device_info)
-        if refused is not None:
-            raise self._client.failure(refused)
+        image, kit = ready_program._image, ready_program._profile.kit.fingerprint
+        refused_reply = refusal(image, ready_program._profile, self._client.device_info)
+        if refused_reply is not None:
+            raise self._client.failure(refused_reply)
         reply = self._client.request(
             lambda session: session.live(image.code, kit if image.devices else 0)
         )
@@ -240,8 +242,10 @@ class RobotConnection:
             if key not in REMOTE_KEYS:
                 values = {"found": printable(repr(key)), "known": ", ".join(REMOTE_KEYS)}
                 raise UsageError("bad_key", self.language, values)
-        held = pressed_of(keys, x, y)
-        reply = self._client.wait(self._client.begin_request(lambda session: session.press(*held)))
+        pressed = pressed_of(keys, x, y)
+        reply = self._client.wait(
+            self._client.begin_request(lambda session: session.press(*pressed))
+        )
         if reply.status not in (OK, CANCELLED, LOST):
             raise self._client.failure(reply)
 

@@ -167,9 +167,9 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
     if failure.reason == errors.MISSING:
         from tiniscript.link import ports
 
-        known = ", ".join(item.port for item in ports.list_ports())
-        if known:
-            reason, values["known"] = "port_missing_but", printable_name(known)
+        ports_text = ", ".join(item.port for item in ports.list_ports())
+        if ports_text:
+            reason, values["known"] = "port_missing_but", printable_name(ports_text)
     return RobotError(reason, language, values)
 
 

@@ -195,11 +195,11 @@ def remarks(places: Map | None, language: Language) -> dict[int, str]:
         return result
     for place in places.places:
         line = places.line(place.line)
-        shown = line.strip()
-        if len(shown) > MOST_REMARK_CHARACTERS:  # a long line: only its instruction
+        code_shown = line.strip()
+        if len(code_shown) > MOST_REMARK_CHARACTERS:  # a long line: only its instruction
             end = place.end_column - 1 if place.end_line == place.line else len(line)
-            shown = line[place.column - 1 : end][:MOST_REMARK_CHARACTERS]
-        values = {"line": str(place.line), "shown": printable(shown.replace("\t", " "))}
+            code_shown = line[place.column - 1 : end][:MOST_REMARK_CHARACTERS]
+        values = {"line": str(place.line), "shown": printable(code_shown.replace("\t", " "))}
         result[place.offset] = sentence("line", language, values)
     return result
 
@@ -227,7 +227,7 @@ def _program(
     diagnostics = tuple(diagnostics_of(compiled, language))
     if not compiled.is_right:
         texts = [as_text(message(diagnostic, compiled.source, language), compiled.source, language)
-                for diagnostic in compiled.diagnostics]  # fmt: skip
+                 for diagnostic in compiled.diagnostics]  # fmt: skip
         error = ProgramError("mistakes", language, sentence_text="\n".join(texts))
         error.diagnostics = diagnostics
         raise error

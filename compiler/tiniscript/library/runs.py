@@ -92,8 +92,8 @@ def run(
     no time passes, `seed` is that of RANDOM. Raises ProgramError for mistakes, UsageError for wrong
     arguments. A fault raises nothing: `ending` reports it.
     """
-    ready = program_of(program, robot, language)
-    profile, image = ready._profile, ready._image
+    ready_program = program_of(program, robot, language)
+    profile, image = ready_program._profile, ready_program._image
     max_ms = round(checked_number("max_time", max_time, 0, LONGEST_S, language) * 1000)
     check_whole_number("max_steps", max_steps, 0, MOST_STEPS, language)
     check_whole_number("seed", seed, 1, LARGEST_SEED, language)
@@ -107,12 +107,14 @@ def run(
         except (ImportError, OSError, RuntimeError) as why:
             from tiniscript.library import install_advice
 
-            how = install_advice.command(install_advice.VIRTUAL)
-            raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None
+            install_command = install_advice.command(install_advice.VIRTUAL)
+            raise UsageError(
+                "no_wasmtime", language, {"why": str(why), "how": install_command}
+            ) from None
     return _trace(
         iter_actions(image, profile, lists, max_ms, max_steps, seed, machine_of),
         profile.kit,
-        ready._map,
+        ready_program._map,
     )
 
 
@@ -150,13 +152,13 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
     for name, readings in sensors.items():
         number = numbers.get(str(name).upper())
         if number is None:
-            known = ", ".join(sensor.name for sensor in robot.kit.sensors) or sentence(
+            sensors_text = ", ".join(sensor.name for sensor in robot.kit.sensors) or sentence(
                 "no_sensors", language, {}
             )
-            values = {"robot": robot.name, "found": printable(str(name), 60), "known": known}
+            values = {"robot": robot.name, "found": printable(str(name), 60), "known": sensors_text}
             raise UsageError("no_sensor", language, values)
-        several = readings if isinstance(readings, Iterable) else [readings]
-        result = [] if isinstance(several, str | bytes) else list(several)
+        reading_list = readings if isinstance(readings, Iterable) else [readings]
+        result = [] if isinstance(reading_list, str | bytes) else list(reading_list)
         if not result:
             raise UsageError("bad_readings", language, {"name": devices[number].name})
         lists[number] = [_reading(devices[number], item, language) for item in result]
@@ -219,8 +221,12 @@ def _reading(device: Device, given_value: object, language: Language) -> int:
     if value is None or not device.low <= value <= device.high:
         low, high = device.text(device.low), device.text(device.high)
         key = "range_yes_no" if device.is_yes_no else "range"
-        allowed = sentence(key, language, {"low": low, "high": high})
-        values = {"found": printable(repr(given_value), 60), "name": device.name, "range": allowed}
+        range_text = sentence(key, language, {"low": low, "high": high})
+        values = {
+            "found": printable(repr(given_value), 60),
+            "name": device.name,
+            "range": range_text,
+        }
         raise UsageError("bad_reading", language, values)
     return value
 

@@ -60,8 +60,8 @@ class Finder:
     those of others are in the cache. A run keeps the text that its program had when it began, or
     when it was first heard of: another one may have the same code."""
 
-    def __init__(self, own: Mapping[int, Map] | None = None) -> None:
-        self._own = {} if own is None else own
+    def __init__(self, own_maps: Mapping[int, Map] | None = None) -> None:
+        self._own = {} if own_maps is None else own_maps
         self._runs: dict[int, tuple[int, Map]] = {}  # its program, which comes round again
         self._shows: tuple[Map, Shows] | None = None
 

@@ -44,10 +44,10 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
     if reader.one_too_many is not None:
         values = {"level": level.name, "limit": str(MOST_BRACKETS)}
         diagnostics.append(Diagnostic(codes.LEVEL_BRACKETS, reader.one_too_many, values))
-    for need in reader.needs:
-        if need.bytes > level.room:
+    for need_of_bytes in reader.needs:
+        if need_of_bytes.bytes > level.room:
             diagnostics.append(
-                _too_many(codes.LEVEL_ROOM, need.span, level, reader.most, level.room)
+                _too_many(codes.LEVEL_ROOM, need_of_bytes.span, level, reader.most, level.room)
             )
             break
     return diagnostics

@@ -21,10 +21,10 @@ def is_amount(*words: str) -> bool:
     return any(lexicon_meaning(plain(word), "amount") for word in words)
 
 
-def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, str]:
+def with_number(text: str, span: Span, own_names: Container[str] = ()) -> dict[str, str]:
     """Return how the call around a value is written with numbers, nothing where there is none.
 
-    All its values in words get one, but for the program's `own` names. `DISTANCE < poco` and
+    All its values in words get one, but for the program's `own_names` names. `DISTANCE < poco` and
     `X = mucho` are shown alone.
     """
     before = text[max(0, span.start - _NEAR) : span.start]
@@ -44,7 +44,7 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
     if is_asked or not any(is_amount(*value.split()) for value in values):
         return {}
     for k, (value, argument) in enumerate(zip(values, word.arguments, strict=False)):
-        words = [word for word in plain(value).split() if word not in own]
+        words = [word for word in plain(value).split() if word not in own_names]
         texts = [
             lexicon_meaning(word, "power")[0] for word in words if lexicon_meaning(word, "power")
         ]

@@ -75,8 +75,8 @@ def _is_behind(item: Item, reading: Reading) -> bool:
     before = [entry.kind for entry in items if entry.start < item.start][-1:]
     if item.word not in _ASKING or before != ["do"] or item.end >= len(tokens):
         return False
-    apart, after = tokens[item.start - 1], tokens[item.end]
-    return apart.source is None and after.text == ";" and after.source is not None
+    bracket_before, after = tokens[item.start - 1], tokens[item.end]
+    return bracket_before.source is None and after.text == ";" and after.source is not None
 
 
 class Matching:
@@ -188,10 +188,12 @@ class Matching:
         if self.open or not self.line.is_when or self.item.word != "IF":
             return False
         line, part = next(self.parts(), (self.k, self.item))
-        ended = ENDED.get(part.word)
+        ended_word = ENDED.get(part.word)
         if not _REMOTE.isdisjoint(texts(self.line.reading.tokens[slice(*self.item[2:4])])):
-            return part.kind != "end" or ended != "IF"
-        return part.kind == "end" and (ended == "WHEN" or (line != self.k and ended != "IF"))
+            return part.kind != "end" or ended_word != "IF"
+        return part.kind == "end" and (
+            ended_word == "WHEN" or (line != self.k and ended_word != "IF")
+        )
 
     def is_end_of_do(self) -> bool:
         """Whether a WHILE ends the block that a DO has begun: then it leaves that."""
@@ -243,11 +245,11 @@ class Matching:
         outer = sum(block.word == "IF" for block in self.open[:-1])
         rest = [it for _, it in self.flat[self.place + 1 : self.place + LONGEST]]
         ends = sum(it.kind == "end" and it.word in (ANY_END, "ENDIF", "END_IF") for it in rest)
-        is_early = ends - sum(it.kind == "open" and it.word == "IF" for it in rest) > outer
-        if is_early:
+        is_too_early = ends - sum(it.kind == "open" and it.word == "IF" for it in rest) > outer
+        if is_too_early:
             is_parted = item.start > 0 and self.line.reading.tokens[item.start - 1].text == ";"
             self.edit_tokens(item.start - is_parted, 1 + is_parted, [])
-        return is_early
+        return is_too_early
 
     def bare_end(self) -> bool:
         """`FIN` ends the innermost block; one too many is dropped."""
@@ -256,8 +258,8 @@ class Matching:
                 return False
             before = self.line.reading.tokens[self.item.start - 1]
             is_behind = not self.after.kind and before.text == ";" and before.source is not None
-            is_alone = len(self.line.reading.items or ()) == 1 or is_behind
-            self.is_sure = self.is_sure and is_alone and len(self.flat) > 2
+            is_only_item = len(self.line.reading.items or ()) == 1 or is_behind
+            self.is_sure = self.is_sure and is_only_item and len(self.flat) > 2
             self.edit(1)
         elif self.open[-1].word:
             self.edit(1, self.open.pop().end)
@@ -266,28 +268,28 @@ class Matching:
         return True
 
     def end(self) -> bool:
-        want, k = ENDED[self.item.word], self.k
-        if self.open and self.open[-1].word not in ("", want):
+        expected_word, k = ENDED[self.item.word], self.k
+        if self.open and self.open[-1].word not in ("", expected_word):
             words = [block.word for block in self.open]
             block = self.open[-1]
             is_inside = (len(words) > 1 and block.line == k) or bool(block.body)
-            if want not in words:
+            if expected_word not in words:
                 self.edit(1, self.open.pop().end)
-                is_told = bool(self.line.reading.steps) or block.is_translated
-                self.is_sure = self.is_sure and is_told
+                is_changed = bool(self.line.reading.steps) or block.is_translated
+                self.is_sure = self.is_sure and is_changed
                 return True
             comes = next((it for _, it in self.parts() if it.kind == "end"), None)
             if comes and ENDED.get(comes.word) == block.word:  # the two ends are swapped
                 self.is_sure = False
-                del self.open[len(words) - 1 - words[::-1].index(want)]
+                del self.open[len(words) - 1 - words[::-1].index(expected_word)]
                 return True
             if is_inside:
                 self.open.pop()
                 is_here = block.line == k and (block.is_endless or not self.is_parted(block))
-                is_told = (block.is_begun or is_here) and not block.is_behind
-                self.is_sure = self.is_sure and is_told
+                is_changed = (block.is_begun or is_here) and not block.is_behind
+                self.is_sure = self.is_sure and is_changed
                 self.edit(0, block.end, ";")
-        if self.open and self.open[-1].word == want:
+        if self.open and self.open[-1].word == expected_word:
             block = self.open.pop()
             self.is_sure = self.is_sure and not block.has_brace and self.line.is_do <= block.is_do
             if block.is_endless and self.open and self.open[-1].last is None:

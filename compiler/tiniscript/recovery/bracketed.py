@@ -34,8 +34,8 @@ def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> 
     `is_offered`: where it is a question, that is asked; else it is named as lost.
     """
     values = diagnostic.values
-    is_said = diagnostic.repair or any(values.get(gap) for gap in _SAID)
-    if diagnostic.code not in (codes.NO_BRACKETS_HERE, codes.NOT_CALLABLE) or is_said:
+    has_other_advice = diagnostic.repair or any(values.get(gap) for gap in _SAID)
+    if diagnostic.code not in (codes.NO_BRACKETS_HERE, codes.NOT_CALLABLE) or has_other_advice:
         return diagnostic
     at = text.find("(", diagnostic.span.start)
     inside = _INSIDE.match(text, at) if at >= 0 else None
@@ -44,9 +44,9 @@ def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> 
     content, word = inside[1].strip(), values.get("word", "").upper()
     names = Names([lexemes(content)], kit)
     is_asked = bool(_ASKED.search(content)) or any(map(names.is_yes_no, texts(lexemes(content))))
-    asks = _ASKS.get(word, "") if is_asked else ""
-    if asks and is_offered:
-        return diagnostic._replace(values={**values, "fix": asks.format(what=content)})
+    question_form = _ASKS.get(word, "") if is_asked else ""
+    if question_form and is_offered:
+        return diagnostic._replace(values={**values, "fix": question_form.format(what=content)})
     return diagnostic if is_offered else diagnostic._replace(values={**values, "lost": content})
 
 
@@ -60,30 +60,33 @@ def answered(diagnostic: Diagnostic, text: str) -> Diagnostic:
     match = next((it for it in _BEHIND_ELSE.finditer(text) if it.start() <= start < it.end()), None)
     if match is None or diagnostic.code not in _OF_ELSE:
         return diagnostic
-    before, asked = _asked_before(text[: match.start()]), without_note(match[1])[0].strip(" ;:\t")
-    if not before or _roughly(negated(lexemes(before))) != _roughly(lexemes(asked)):
+    before, question = (
+        _asked_before(text[: match.start()]),
+        without_note(match[1])[0].strip(" ;:\t"),
+    )
+    if not before or _roughly(negated(lexemes(before))) != _roughly(lexemes(question)):
         return diagnostic
-    end = match.start(1) + match[1].index(asked) + len(asked)
+    end = match.start(1) + match[1].index(question) + len(question)
     repair = Repair((Edit(Span(match.start(), end), "ELSE"),), False)
-    inside = asked[1:-1] if asked.startswith("(") else asked
+    inside = question[1:-1] if question.startswith("(") else question
     values = {"fix": "ELSE", "rival": f"ELSEIF({inside.strip()})", "lost": ""}
     return diagnostic._replace(values={**diagnostic.values, **values}, repair=repair)
 
 
 def _asked_before(text: str) -> str:
     """Return what the innermost IF that is open asks last."""
-    asked: list[str] = []
+    questions: list[str] = []
     for line in text.split("\n"):
         body = without_note(line)[0]
         for match in _HEAD.finditer(body):
             word = match[1].upper()
             if word == "IF":
-                asked.append(match[2] or "")
-            elif asked and word == "ELSEIF":
-                asked[-1] = ""  # it is asked only where another answer is no
-            elif asked and word.startswith("END"):
-                asked.pop()
-    return asked[-1] if asked else ""
+                questions.append(match[2] or "")
+            elif questions and word == "ELSEIF":
+                questions[-1] = ""  # it is asked only where another answer is no
+            elif questions and word.startswith("END"):
+                questions.pop()
+    return questions[-1] if questions else ""
 
 
 def _roughly(tokens: Sequence[Lexeme]) -> tuple[str, ...]:

@@ -71,10 +71,10 @@ def misplaced_values(source: Source) -> list[Diagnostic]:
     """Return what is told of calls whose values are in another form."""
     diagnostics = []
     start = 0
-    taught = {match[1].upper() for match in _DEF.finditer(source.text)}
+    def_names = {match[1].upper() for match in _DEF.finditer(source.text)}
     for line in source.text.split("\n"):
         for call in _calls(without_note(line)[0], start):
-            if call.word.text in taught:
+            if call.word.text in def_names:
                 continue  # its values may be those of the DEF
             readings = (
                 _points(call),
@@ -98,10 +98,10 @@ def run_on(source: Source, names: Names) -> list[Diagnostic]:
         for piece in _PIECE.finditer(without_note(line)[0]):
             calls = _only_calls(piece[0])
             words = [plain(call["call"].partition("(")[0].strip()) for call in calls]
-            known = [word if names.is_name(word) else names.meant(word) for word in words]
+            words_meant = [word if names.is_name(word) else names.meant(word) for word in words]
             near = {*words, *(names.meant(word, NEAR) for word in words)}  # `Antil(LINE_R)`
-            are_calls = {*known} <= {*CALLED, *words, ""} and not near & {*ASKING, "UNTIL"}
-            if len(calls) > 1 and are_calls and not all(known):
+            are_calls = {*words_meant} <= {*CALLED, *words, ""} and not near & {*ASKING, "UNTIL"}
+            if len(calls) > 1 and are_calls and not all(words_meant):
                 begin = start + piece.start()
                 first, last = calls[0].start("call"), calls[-1].end()
                 ends = [(it.end(), other.start("call")) for it, other in pairwise(calls)]
@@ -175,17 +175,17 @@ def _unit_apart(call: _Call) -> Diagnostic | None:
 
 def _thousands(call: _Call) -> Diagnostic | None:
     """`BEEP(1, 1,000)`: a comma parts thousands, where nothing that has decimals goes."""
-    wanted, number_match = call.word.arguments, _THOUSANDS.search(call.text)
-    if number_match is None or len(call.values) <= len(wanted):
+    arguments, number_match = call.word.arguments, _THOUSANDS.search(call.text)
+    if number_match is None or len(call.values) <= len(arguments):
         return None
-    joined = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
-    inside = joined.partition("(")[2].rpartition(")")[0]
+    joined_text = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
+    inside = joined_text.partition("(")[2].rpartition(")")[0]
     values = _split_values(inside)
     is_of_time = any(
         argument.unit == "s" and value not in call.values
-        for argument, value in zip(wanted, values, strict=False)
+        for argument, value in zip(arguments, values, strict=False)
     )
-    if len(values) != len(wanted) or is_of_time:
+    if len(values) != len(arguments) or is_of_time:
         return None
     fix = call.with_values(values)
     return _call_diagnostic(call, codes.BAD_NUMBER, fix, True, found=number_match[0])
@@ -196,8 +196,8 @@ def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
     if call.word.text != "M" or len(call.values) != len(call.word.arguments) + 1:
         return None
     values = [_PERCENT.sub("", value) for value in call.values]
-    parted = [(values[-1], values[:-1]), (values[0], values[1:])]
-    candidates = [(_seconds(time), powers) for time, powers in parted if _are_powers(powers)]
+    splits = [(values[-1], values[:-1]), (values[0], values[1:])]
+    candidates = [(_seconds(time), powers) for time, powers in splits if _are_powers(powers)]
     seconds, powers = next((each for each in candidates if each[0]), ("", []))
     if not seconds:
         return None
@@ -249,9 +249,9 @@ def likely_word(word: str, text: str) -> str:
     if not values or len(numbers) != len(values):
         return ""
     is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
-    short, heard = expand_short(word), "" if lexicon_concept(word) else heard_as(word) or ""
-    if heard in CALLED:
-        result = heard
+    short, similar_word = expand_short(word), "" if lexicon_concept(word) else heard_as(word) or ""
+    if similar_word in CALLED:
+        result = similar_word
     elif is_tone:
         result = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
     elif len(short) == 1:
@@ -266,10 +266,10 @@ def usage_with(word: str, number: str) -> str:
 
     So much of a turn is degrees; of a way it may be a power.
     """
-    known = WORDS.get(word)
+    word_row = WORDS.get(word)
     is_long = float(number) >= LONG_S
-    if known is None or not known.is_call or (is_long and word not in ("L", "R")):
+    if word_row is None or not word_row.is_call or (is_long and word not in ("L", "R")):
         return ""
-    names = [argument.name for argument in known.arguments][1:]
+    names = [argument.name for argument in word_row.arguments][1:]
     unit = f" {UNIT_OF[word]}" if is_long else ""
-    return f"{word}({', '.join((number + unit, *names))})" if known.role.lasts else ""
+    return f"{word}({', '.join((number + unit, *names))})" if word_row.role.lasts else ""

@@ -90,13 +90,13 @@ def _uses_of_a_list(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Di
 def _units_of_an_unknown_word(
     diagnostics: Sequence[Diagnostic], source: Source
 ) -> Iterator[Diagnostic]:
-    unknown = [
+    unknown_places = [
         diagnostic.span.start for diagnostic in diagnostics if diagnostic.code in _OF_ITS_WORD
     ]
     units = [diagnostic for diagnostic in diagnostics if diagnostic.code is codes.UNIT_PLACE]
-    for diagnostic in units[:_MANY] if unknown else ():
+    for diagnostic in units[:_MANY] if unknown_places else ():
         start, end = instruction_at(diagnostic.span, source)
-        if any(start <= place < end for place in unknown):
+        if any(start <= place < end for place in unknown_places):
             yield diagnostic
 
 
@@ -104,14 +104,14 @@ def _ends_of_a_question_after(
     diagnostics: Sequence[Diagnostic], source: Source
 ) -> Iterator[Diagnostic]:
     """That a move without end needs an UNTIL: `F(FOREVER, 60) WHILE(DISTANCE > 9)`."""
-    asked = [
+    question_places = [
         diagnostic.span.start
         for diagnostic in diagnostics
         if diagnostic.code is codes.QUESTION_AFTER
     ]
     for diagnostic in diagnostics:
         start = diagnostic.span.start
-        after = (source.text[start:place] for place in asked if start < place)
+        after = (source.text[start:place] for place in question_places if start < place)
         if diagnostic.code is codes.FOREVER_NEEDS_UNTIL and any(
             not {*it} & {*";\r\n"} for it in after
         ):

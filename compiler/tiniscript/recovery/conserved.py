@@ -110,7 +110,7 @@ class Amount(NamedTuple):
 
     value: float
     unit: str
-    written: str
+    source_text: str
     line: int
 
 
@@ -150,9 +150,9 @@ def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[D
         it for it in diagnostics if it.repair and it.repair.is_sure and it.repair.edits
     ]
     lost = _losses_of_sure_repairs(sure_diagnostics, text, kit)
-    shown = [it for it in diagnostics if id(it) not in lost and "lost" not in it.values
-             and not (it.repair and it.repair.is_sure) and edits_of(it)]  # fmt: skip
-    losses = zip(shown, _losses(shown, text, kit), strict=True)
+    shown_diagnostics = [it for it in diagnostics if id(it) not in lost and "lost" not in it.values
+                         and not (it.repair and it.repair.is_sure) and edits_of(it)]  # fmt: skip
+    losses = zip(shown_diagnostics, _losses(shown_diagnostics, text, kit), strict=True)
     left_out = {
         id(it): unmentioned
         for it, loss in losses
@@ -281,16 +281,18 @@ def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[
     the power or the pitch that a call lacks. Where the text has that number, or where the message
     shows an example anyway, nothing changes.
     """
-    written: set[float] | None = None
+    written_numbers: set[float] | None = None
     result = []
     for diagnostic in diagnostics:
         fix = diagnostic.values.get("fix", "")
         samples = [] if diagnostic.values.get("example") else _samples(fix)
         if samples and len(_NUMBER.findall(fix)) <= _count_numbers(diagnostic, text):
             samples = [it for it in samples if it[1] == _NEAR]  # one each, in words or nearly so
-        if samples and written is None:
-            written = {it.value for it in _words_of_right(text, kit).amounts}
-        samples_text = ", ".join(item for number, item in samples if number not in (written or ()))
+        if samples and written_numbers is None:
+            written_numbers = {it.value for it in _words_of_right(text, kit).amounts}
+        samples_text = ", ".join(
+            item for number, item in samples if number not in (written_numbers or ())
+        )
         gap = "samples" if ", " in samples_text else "sample"
         values = {**diagnostic.values, gap: samples_text} if samples_text else diagnostic.values
         result.append(diagnostic._replace(values=values))
@@ -330,15 +332,15 @@ def _with_losses(diagnostic: Diagnostic, lost: Sequence[str]) -> Diagnostic:
 class _Said:
     """What a text says, in words of any language; `others` are all words of the repaired one."""
 
-    def __init__(self, text: str, others: frozenset[str], kit: Kit, is_right: bool) -> None:
+    def __init__(self, text: str, other_words: frozenset[str], kit: Kit, is_right: bool) -> None:
         self.is_right = is_right  # as far as it is repaired
-        self.others = others
+        self.other_words = other_words
         parts = [without_note(line.translate(PLAIN_SIGNS)) for line in text.split("\n")]
         self.notes = Counter(self._all_lines([note for _, note in parts]))
         self.body = self._without_frame("\n".join(body for body, _ in parts))
         lines = [lexemes(self._apart(line)) for line in self.body.split("\n")]
         self.names = Names(lines, kit)
-        self.tokens = [lexeme for line in lines for lexeme in (*self._joined(line), _END)]
+        self.tokens = [lexeme for line in lines for lexeme in (*self._join_words(line), _END)]
         self.lines = [0, *accumulate(lexeme is _END for lexeme in self.tokens)]
         self._meanings: dict[str, set[str]] = {}
         self._parts = {row[-1] for row in self.names.rows}  # of `mi velocidad`
@@ -375,10 +377,10 @@ class _Said:
             alone = rf"(?i)(?<![\d)] )(?<!\d){part}(?!\d)(?=\s*[a-z])"
             line = re.sub(alone, f"0{decimals}", line)
         return _GLUED.sub(
-            lambda it: it[0] if it[0].upper() in self.others else f"{it[1]} {it[2]} ", line
+            lambda it: it[0] if it[0].upper() in self.other_words else f"{it[1]} {it[2]} ", line
         )
 
-    def _joined(self, line: list[Lexeme]) -> list[Lexeme]:
+    def _join_words(self, line: list[Lexeme]) -> list[Lexeme]:
         """Return a line in which words are one that the language, or the repair, has as one."""
         joined_lexemes: list[Lexeme] = []
         for token in line:
@@ -389,7 +391,7 @@ class _Said:
                 else last
             )
             one = f"{before.text}_{token.text}"
-            if before.kind is token.kind is WORD and one in self.others:
+            if before.kind is token.kind is WORD and one in self.other_words:
                 joined_lexemes[joined_lexemes.index(before, -2 if before is not last else -1) :] = [
                     token._replace(text=one)
                 ]
@@ -397,8 +399,8 @@ class _Said:
                 joined_lexemes[-1] = token._replace(text="ELSEIF")
             else:
                 joined_lexemes.append(token)
-        while joined := one_word(joined_lexemes, self.names):
-            joined_lexemes = joined[0]
+        while joined_line := one_word(joined_lexemes, self.names):
+            joined_lexemes = joined_line[0]
         return joined_lexemes
 
     # -- what each word is -----------------------------------------------------------------------
@@ -435,8 +437,14 @@ class _Said:
             elif token is _END:
                 open_brackets = [False]
             if (value := self._number(token)) is not None:
-                is_said = bool(lexicon_meaning(before.text, "leaves", "by")) and before.kind is WORD
-                k = k + 1 if is_said or self._is_yes(k) else self._add_amount(k, value, slots[k])
+                is_amount_word = (
+                    bool(lexicon_meaning(before.text, "leaves", "by")) and before.kind is WORD
+                )
+                k = (
+                    k + 1
+                    if is_amount_word or self._is_yes(k)
+                    else self._add_amount(k, value, slots[k])
+                )
                 continue
             if token.kind is WORD and not self._is_label(k):
                 self._take_word(k, len(open_brackets) > 1)
@@ -459,7 +467,7 @@ class _Said:
             self.loose.append((lexicon_meaning(token.text, "unit")[0], token.source or token.text))
             return
         word = self._word(token)
-        around = {before.text, after.text}
+        neighbours = {before.text, after.text}
         is_part = token.text in self._parts
         is_sign = token.text == "X" and before.kind is NUMBER and after.kind in (NUMBER, WORD)
         is_joint = (
@@ -467,18 +475,20 @@ class _Said:
             and not is_in_brackets
             and bool(self._possible_words(after) & _DRIVES)
         )
-        is_again = (word == "IF" and before.text in ("AND", "OR")) or (
+        is_repetition = (word == "IF" and before.text in ("AND", "OR")) or (
             word == "OR" and before.text in _SENSES
         )
-        is_again |= after.text == "." and self._next_lexeme(k + 1).kind is WORD  # `random.randint`
-        is_again |= word in MOVES and after.kind is WORD and word == self._word(after)
-        is_equal = any(text in ("=", "==") or lexicon_meaning(text, "is") for text in around)
+        is_repetition |= (
+            after.text == "." and self._next_lexeme(k + 1).kind is WORD
+        )  # `random.randint`
+        is_repetition |= word in MOVES and after.kind is WORD and word == self._word(after)
+        is_equal = any(text in ("=", "==") or lexicon_meaning(text, "is") for text in neighbours)
         is_needless = (word == "TRUE" and is_equal and is_in_brackets) or (
-            word == "TIME" and not around & _SENSES.keys()
+            word == "TIME" and not neighbours & _SENSES.keys()
         )
         self.meant.update(self._possible_words(token))
         self.strange += token.text not in WORDS and not self.names.is_name(token.text)
-        if is_part or is_sign or is_joint or is_again or is_needless:
+        if is_part or is_sign or is_joint or is_repetition or is_needless:
             return
         if word in _COUNTED or (word and word not in WORDS):
             self.words[word] += 1
@@ -517,10 +527,10 @@ class _Said:
         text = f"{'-' if is_minus else ''}{token.source or token.text}"
         while token.kind is WORD and value % 10 == 0:  # `ochenta y cinco`
             at = k + 1 + bool(lexicon_meaning(self._next_lexeme(k).text, "and"))
-            more = self._number(self.tokens[at]) if at < len(self.tokens) else None
-            if more is None or more >= (100 if value % 100 == 0 else 10):
+            next_number = self._number(self.tokens[at]) if at < len(self.tokens) else None
+            if next_number is None or next_number >= (100 if value % 100 == 0 else 10):
                 break
-            value, k = value + more, at
+            value, k = value + next_number, at
         unit = slot if self.is_right else ""
         if unit_and_scale := self._unit_after(k):
             unit, scale = unit_and_scale
@@ -546,9 +556,9 @@ class _Said:
             return "%", 1000
         text = lexicon_meaning(token.text, "unit")
         is_letter = len(token.text) == 1 and token.kind is WORD
-        is_apart = is_letter and token.space != "" and next_one not in (",", ")")
+        is_separate = is_letter and token.space != "" and next_one not in (",", ")")
         is_order = is_letter and token.source == token.text and token.space != ""
-        if not text or (is_apart and is_order) or self.names.is_name(token.text):
+        if not text or (is_separate and is_order) or self.names.is_name(token.text):
             return None
         return text[0] if text[0] in _COUNTED_UNITS else "", float(text[1])
 
@@ -560,27 +570,29 @@ class _Said:
             self._next_lexeme(k),
         )
         texts = {item.kind for item in lexicon().get(token.text, ())}
-        is_behind = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
-        is_unit = texts == {"unit"} or ("unit" in texts and (is_behind or token.text in WAYS))
-        is_free = not self.names.is_name(token.text) and after.kind is not NUMBER
-        if not is_unit or not is_free or (len(token.text) == 1 and not is_behind):
+        is_last_argument = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
+        is_unit = texts == {"unit"} or (
+            "unit" in texts and (is_last_argument or token.text in WAYS)
+        )
+        is_unbound = not self.names.is_name(token.text) and after.kind is not NUMBER
+        if not is_unit or not is_unbound or (len(token.text) == 1 and not is_last_argument):
             return False
         return lexicon_meaning(token.text, "unit")[0] in _UNITS
 
     def _slots(self) -> list[str]:
         """Return the unit that a value at each token has by its place, "" for none."""
         slots = [""] * len(self.tokens)
-        around: list[list[str]] = [[""]]
+        units_by_depth: list[list[str]] = [[""]]
         for k, token in enumerate(self.tokens):
             if token.text == "(":
-                around.append(self._arguments(k) or [around[-1][0]])
-            elif token.text == ")" and len(around) > 1:
-                around.pop()
-            elif token.text == "," and len(around[-1]) > 1:
-                around[-1] = around[-1][1:]
+                units_by_depth.append(self._arguments(k) or [units_by_depth[-1][0]])
+            elif token.text == ")" and len(units_by_depth) > 1:
+                units_by_depth.pop()
+            elif token.text == "," and len(units_by_depth[-1]) > 1:
+                units_by_depth[-1] = units_by_depth[-1][1:]
             elif token is _END:
-                around = [[""]]
-            slots[k] = around[-1][0]
+                units_by_depth = [[""]]
+            slots[k] = units_by_depth[-1][0]
         counts = Counter(token.text for token in self.tokens)
         triples = zip(self.tokens, self.tokens[1:], self.tokens[2:], strict=False)
         for k, (one, sign, other) in enumerate(triples):
@@ -637,9 +649,9 @@ class _Said:
             is_no = token.text in ("NOT", "!") or bool(lexicon_meaning(token.text, *_NEGATES))
             if not is_no or self.names.is_name(token.text):
                 continue
-            around = self.tokens[max(0, k - 4) : k]
+            lexemes_before = self.tokens[max(0, k - 4) : k]
             if lexicon_meaning(token.text, "unless") or any(
-                self._possible_words(it) & ASKING for it in around
+                self._possible_words(it) & ASKING for it in lexemes_before
             ):
                 negations.append(token.source or token.text)
         return negations
@@ -652,9 +664,9 @@ class _Said:
             self.tokens, self.tokens[1:], self.tokens[2:], after, strict=False
         ):
             is_value = one.text == ")" or self._is_read(one)
-            is_other = self._is_read(inner if other.text == "(" else other)
+            is_other_value = self._is_read(inner if other.text == "(" else other)
             is_plain = one.kind is NUMBER and other.kind is NUMBER
-            if sign.text in SUMS and is_value and is_other and not is_plain:
+            if sign.text in SUMS and is_value and is_other_value and not is_plain:
                 sums[sign.text] += 1
         return sums
 
@@ -691,9 +703,9 @@ class _Said:
 
 
 @lru_cache(2)
-def _words_of_wrong(text: str, others: frozenset[str], kit: Kit) -> _Said:
+def _words_of_wrong(text: str, other_words: frozenset[str], kit: Kit) -> _Said:
     text = apply_edits(text, note_edits(text))
-    return _Said(apply_edits(text, key_edits(text, kit)), others, kit, is_right=False)
+    return _Said(apply_edits(text, key_edits(text, kit)), other_words, kit, is_right=False)
 
 
 @lru_cache(2)
@@ -708,17 +720,17 @@ def _words_of(text: str) -> frozenset[str]:
 def _amounts(before: _Said, after: _Said) -> Iterator[str]:
     """Give the numbers that are gone, or have another sign or unit."""
     left, lost = _Stock(after.amounts), _Stock(before.amounts)
-    read: list[float] = []  # the parts of the run that was read last, which is one number
+    read_parts: list[float] = []  # the parts of the run that was read last, which is one number
     for value, parts in _runs(before.body):
-        is_one = parts is not read and left.has([value]) and lost.has(parts)
-        if is_one and not left.has(parts):
-            read = parts
+        is_one_number = parts is not read_parts and left.has([value]) and lost.has(parts)
+        if is_one_number and not left.has(parts):
+            read_parts = parts
             left.take([value])
             lost.take(parts)
     lost_amounts, new_amounts = lost.all(), left.all()
     for is_near in (True, False):  # first what stays in its line: another line's 50 is no 50 %
         lost_amounts, new_amounts = _apart(lost_amounts, new_amounts, is_near)
-    yield from (amount.written for amount in lost_amounts)
+    yield from (amount.source_text for amount in lost_amounts)
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
     units |= {after.units.get(token.text, "") for token in after.tokens}
     loose = Counter(after.loose)
@@ -759,7 +771,9 @@ def _apart(
     matched_positions: set[int] = set()
     for amount in before:
         scale = LAP if amount.unit == "turns" else 1
-        keys = {(_thousandths(amount.value * by), amount.line * is_near) for by in (1, scale)}
+        keys = {
+            (_thousandths(amount.value * factor), amount.line * is_near) for factor in (1, scale)
+        }
         fitting = [
             positions
             for key in keys
@@ -767,11 +781,11 @@ def _apart(
             if positions and _is_same(amount, after[positions[0]])
         ]
         if fitting:
-            own = min(
+            nearest = min(
                 fitting,
                 key=lambda positions: (after[positions[0]].unit != amount.unit, positions[0]),
             )
-            matched_positions.add(own.popleft())
+            matched_positions.add(nearest.popleft())
         else:
             lost.append(amount)
     return lost, [amount for k, amount in enumerate(after) if k not in matched_positions]
@@ -831,14 +845,16 @@ def _words(before: _Said, after: _Said) -> Iterator[str]:
 
 def _questions(before: _Said, after: _Said) -> Iterator[str]:
     """Give the comparisons that are gone, or turned round, and branches that nothing is in."""
-    asked = _senses(before) - (after.notes - before.notes)
+    lost_senses = _senses(before) - (after.notes - before.notes)
     left = _senses(after)
     turners = ({word: item.words[word] for word in _TURNERS} for item in (before, after))
     negated = (before.negations, after.negations)
     may_turn = bool(negated[0] or negated[1]) or len({str(turner) for turner in turners}) > 1
-    if asked.total() > left.total() or (asked - left and not may_turn):
-        yield from (asked - left) or asked
-    elif asked == left and len(negated[0]) > len(negated[1]):  # nothing is turned round instead
+    if lost_senses.total() > left.total() or (lost_senses - left and not may_turn):
+        yield from (lost_senses - left) or lost_senses
+    elif lost_senses == left and len(negated[0]) > len(
+        negated[1]
+    ):  # nothing is turned round instead
         yield negated[0][0]
     if after.empty() > before.empty():
         yield "ELSE"
@@ -856,8 +872,8 @@ def _senses(words_said: _Said) -> Counter[str]:
             in_call = in_call[:-1] or [False]
         elif sign is _END:
             in_call = [False]
-        is_between = one.kind in (WORD, NUMBER) or one.text == ")"
-        is_between &= other.kind in (WORD, NUMBER) or other.text in ("(", "-", "+")
-        if sign.text in _SENSES and is_between and not in_call[-1] and one.text not in CALLED:
+        is_comparison = one.kind in (WORD, NUMBER) or one.text == ")"
+        is_comparison &= other.kind in (WORD, NUMBER) or other.text in ("(", "-", "+")
+        if sign.text in _SENSES and is_comparison and not in_call[-1] and one.text not in CALLED:
             senses[_SENSES[sign.text]] += 1
     return senses

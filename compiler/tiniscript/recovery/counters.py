@@ -31,7 +31,7 @@ class _Counter(NamedTuple):
     """
 
     start: int
-    begun: int
+    name_start: int
     end: int
     name: str
     first: int
@@ -50,9 +50,9 @@ def counters(source: Source) -> list[Diagnostic]:
     words = Counter(token.text for row in rows for token in row)
     ends = Counter(b.text for row in rows for a, b in pairwise(row) if _is_end(a, b, b.text))
     start = 0
-    for row, own, line in zip(rows, headers_by_row, source.text.split("\n"), strict=True):
+    for row, headers, line in zip(rows, headers_by_row, source.text.split("\n"), strict=True):
         spans = _counter_spans(row, start)
-        for item in own:
+        for item in headers:
             in_header = [it.text for it in row[item.start : item.end]].count(item.name)
             is_used = words[item.name] > in_header + ends[item.name]
             header = row[item.start : item.end]
@@ -62,7 +62,7 @@ def counters(source: Source) -> list[Diagnostic]:
                 diagnostics.append(
                     _counter_diagnostic(
                         span,
-                        _spans_text(source, spans[item.start : item.begun]),
+                        _spans_text(source, spans[item.start : item.name_start]),
                         "LOOP",
                         _loop(item, is_used),
                     )
@@ -116,9 +116,9 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
         return None
     rest = _Rest(row, start + 1)
     is_open = rest.take("(")
-    while rest.says("each", "every", "declare"):
+    while rest.means("each", "every", "declare"):
         rest.k += 1
-    begun, name = rest.k, rest.text()
+    name_start, name = rest.k, rest.text()
     if name in WORDS or not name.isidentifier() or lexicon_concept(name):
         return None
     rest.k += 1
@@ -128,40 +128,40 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
         numbers = [rest.number()]
         numbers += [rest.number()] if rest.take(",") else []
         step = rest.number() if rest.take(",") else step
-        first, behind = (0, *numbers)[-2:]
+        first, bound = (0, *numbers)[-2:]
         is_whole = rest.take(")")
-    elif rest.take("=", ":=") or rest.says("from", "to"):
-        rest.k += rest.says("from", "to")
+    elif rest.take("=", ":=") or rest.means("from", "to"):
+        rest.k += rest.means("from", "to")
         first = rest.number()
         if rest.take(";"):
             is_whole = rest.take(name)
             is_closed = rest.text() == "<="
             is_whole &= rest.take("<", "<=")
-            behind = _plus(rest.number(), int(is_closed))
+            bound = _plus(rest.number(), int(is_closed))
             is_whole &= rest.take(";") and rest.take(name)
             is_more = rest.text() == "+" and rest.text(1) == "="
             rest.k += 2 * is_more
             step = rest.number() if is_more or rest.take("+=") else step
             is_whole &= is_more or step != 1 or rest.take("++")
         else:
-            is_whole = rest.says("to", "until")
-            while rest.says("to", "until"):
+            is_whole = rest.means("to", "until")
+            while rest.means("to", "until"):
                 rest.k += 1
-            behind = _plus(rest.number(), 1)
+            bound = _plus(rest.number(), 1)
             if lexicon_meaning(rest.text(), "unit")[:1] == ("steps",):
                 rest.k += 1
                 step = rest.number()
     else:
         return None
     is_whole = is_whole and (not is_open or rest.take(")"))
-    rest.k += rest.text() == ":" or rest.says("do")
-    if not is_whole or first is None or behind is None or behind <= first or not step:
+    rest.k += rest.text() == ":" or rest.means("do")
+    if not is_whole or first is None or bound is None or bound <= first or not step:
         return None
-    return _Counter(start, begun, rest.k, name, first, -((first - behind) // step), step)
+    return _Counter(start, name_start, rest.k, name, first, -((first - bound) // step), step)
 
 
-def _plus(number: int | None, more: int) -> int | None:
-    return None if number is None else number + more
+def _plus(number: int | None, increment: int) -> int | None:
+    return None if number is None else number + increment
 
 
 class _Rest:
@@ -171,10 +171,10 @@ class _Rest:
         self.row = row
         self.k = k
 
-    def text(self, ahead: int = 0) -> str:
-        return self.row[self.k + ahead].text if self.k + ahead < len(self.row) else ""
+    def text(self, offset: int = 0) -> str:
+        return self.row[self.k + offset].text if self.k + offset < len(self.row) else ""
 
-    def says(self, *kinds: str) -> bool:
+    def means(self, *kinds: str) -> bool:
         is_word = self.k < len(self.row) and self.row[self.k].kind is WORD
         return is_word and bool(lexicon_meaning(self.text(), *kinds))
 

@@ -30,7 +30,7 @@ _ONCE = _WITH_LINES | {
 def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     """Return diagnostics without those that follow from others, or say the same as one before."""
     diagnostics = without_consequences(diagnostics, source)
-    meant = {
+    words_meant = {
         it.values.get("found")
         for it in diagnostics
         if it.values.get("near") or it.values.get("first")
@@ -43,12 +43,18 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
     for diagnostic in diagnostics:
         code, values = diagnostic.code, diagnostic.values
         key: object = diagnostic.span
-        is_alone = source[diagnostic.span].upper() == values.get("word")
-        if code is codes.MISSING_OPEN and is_alone and (values.get("fix") or values.get("example")):
+        is_bare_word = source[diagnostic.span].upper() == values.get("word")
+        if (
+            code is codes.MISSING_OPEN
+            and is_bare_word
+            and (values.get("fix") or values.get("example"))
+        ):
             key = ""  # a word that has values
         elif code in _UNKNOWN and not (diagnostic.repair or values.get("near")):
             code, key = codes.UNKNOWN_WORD, (values.get("found") or values["name"]).upper()
-        elif code in _ONCE and not (code is codes.UNKNOWN_NAME and values.get("found") in meant):
+        elif code in _ONCE and not (
+            code is codes.UNKNOWN_NAME and values.get("found") in words_meant
+        ):
             names = _ONCE[code]
             key = tuple(
                 values.get(name, "").upper() for name in (values if names is None else names)
@@ -97,10 +103,15 @@ def _merge_diagnostics(group: Sequence[Diagnostic], source: Source) -> Diagnosti
         )
         values = {**first.values, "words": words, "fix": "", "example": "; ".join(calls)}
         return first._replace(values=values, place=None, repair=None)
-    here, *lines = (str(source.position(diagnostic.span.start)[0]) for diagnostic in group)
-    lines = [line for line in dict.fromkeys(lines) if line != here]
-    gaps = {"line": "".join(lines[:1]), "lines": ", ".join(lines) if len(lines) > 1 else "",
-            "times": "" if lines else str(len(group))}  # fmt: skip
+    first_line, *other_lines = (
+        str(source.position(diagnostic.span.start)[0]) for diagnostic in group
+    )
+    other_lines = [line for line in dict.fromkeys(other_lines) if line != first_line]
+    gaps = {
+        "line": "".join(other_lines[:1]),
+        "lines": ", ".join(other_lines) if len(other_lines) > 1 else "",
+        "times": "" if other_lines else str(len(group)),
+    }
     edits = tuple(
         edit for diagnostic in group if diagnostic.repair for edit in diagnostic.repair.edits
     )

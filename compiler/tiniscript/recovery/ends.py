@@ -37,7 +37,7 @@ def possible_places(tokens: Sequence[Lexeme]) -> list[str]:
     return places[-1:] if is_endless else places
 
 
-def shown(places: Sequence[str]) -> str:
+def places_text(places: Sequence[str]) -> str:
     """Return places for a message, nothing for one alone: that is no guess."""
     if len(places) < 2:
         return ""

@@ -40,9 +40,9 @@ def given_back(source: Source) -> tuple[list[Diagnostic], list[Edit]]:
     returned: set[str] = set()
     result = _RESULT if _RESULT not in names_in(text) else next(numbered_names(text, _RESULT))
     for name, word, value in _returns(tokens, {*calls}):
-        used = calls.get(name, [])
+        calls_of_name = calls.get(name, [])
         values = {"word": name, "back": text[slice(*value)]}
-        values |= {"call": text[slice(*used[0])]} if used else {}
+        values |= {"call": text[slice(*calls_of_name[0])]} if calls_of_name else {}
         edits.append(Edit(Span(word.start, value.start), f"{result} = "))
         if name not in returned:
             diagnostics.append(Diagnostic(codes.NO_VALUE, word.span, values))
@@ -88,10 +88,10 @@ def _until_end(tokens: Sequence[Token], k: int) -> Iterator[Token]:
         yield token
 
 
-def _returns(tokens: Sequence[Token], used: set[str]) -> Iterator[tuple[str, Token, Span]]:
+def _returns(tokens: Sequence[Token], names_used: set[str]) -> Iterator[tuple[str, Token, Span]]:
     """Yield each RETURN with a value in a DEF: the name of that, the word, and the value.
 
-    So is a sum alone, `N * 2`, in one that is `used` as a value.
+    So is a sum alone, `N * 2`, in one that is `names_used` as a value.
     """
     name, begins = "", True
     for k, token in enumerate(tokens):
@@ -103,7 +103,7 @@ def _returns(tokens: Sequence[Token], used: set[str]) -> Iterator[tuple[str, Tok
             value = [*_until_end(tokens, k + 1)]
             if value:
                 yield name, token, Span(value[0].start, value[-1].end)
-        elif begins and name in used and token.kind in (WORD, NUMBER, "("):
+        elif begins and name in names_used and token.kind in (WORD, NUMBER, "("):
             value = [*_until_end(tokens, k)]
             kinds = {each.kind for each in value}
             if len(value) > 2 and value[1].kind != "(" and kinds <= _OF_SUMS and kinds & _SUMS:

@@ -53,10 +53,12 @@ def _in_lines(text: str) -> Iterator[Span]:
     start, is_open = 0, False
     for line in text.split("\n"):
         body = without_note(line)[0]
-        depth = read = 0  # of brackets, up to where they are counted
+        depth = counted_to = 0  # of brackets, up to where they are counted
         for place in _PLACE.finditer(body):
-            depth += body.count("(", read, place.start()) - body.count(")", read, place.start())
-            read = place.start()
+            depth += body.count("(", counted_to, place.start()) - body.count(
+                ")", counted_to, place.start()
+            )
+            counted_to = place.start()
             label = _LABEL.match(body, place.end())
             if label and not is_open and depth <= 0 and _is_label(label, text):
                 yield Span(start + label.start(), start + label.end())

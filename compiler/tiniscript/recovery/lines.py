@@ -76,7 +76,7 @@ class Reading(NamedTuple):
     is_new_line: bool
     items: Sequence[Item] | None = None
 
-    def changed(
+    def with_change(
         self, tokens: list[Lexeme], cost: float, code: Code, is_sure: bool = True,
         is_new_line: bool = False,
     ) -> Reading:  # fmt: skip
@@ -89,7 +89,7 @@ class Reading(NamedTuple):
         return texts(self.tokens)
 
     @property
-    def said(self) -> str:
+    def text_read(self) -> str:
         """The tokens without those that change nothing: separators, brackets around one value."""
         text = " ".join(item for item in self.text if item != ";")
         while (bare := _NEEDLESS.sub(r"\1\2", text)) != text:
@@ -119,17 +119,19 @@ def _normalized(token: Lexeme) -> tuple[str, str]:
 def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] | Failure:
     items: list[Item] = []
     start = 0
-    around = [";", *(text for _, text in tokens), BRACES[1], ";"]
-    for k, (before, text, after) in enumerate(zip(around, around[1:], around[2:], strict=False)):
-        is_apart = {before, after} <= {";", "|", *BRACES}
-        is_end = is_apart and bool(lexicon_meaning(text, "end")) and not names.is_name(text)
+    padded_texts = [";", *(text for _, text in tokens), BRACES[1], ";"]
+    for k, (before, text, after) in enumerate(
+        zip(padded_texts, padded_texts[1:], padded_texts[2:], strict=False)
+    ):
+        is_separate = {before, after} <= {";", "|", *BRACES}
+        is_end = is_separate and bool(lexicon_meaning(text, "end")) and not names.is_name(text)
         if text not in BRACES and not is_end:
             continue
         part = outline(tokens[start:k], names.read_as)
         if isinstance(part, Failure):
             return Failure(part.start + start, part.at + start)
-        if joined := _joined_names(tokens[start:k]):
-            return Failure(start, joined + start)
+        if joined_name := _joined_names(tokens[start:k]):
+            return Failure(start, joined_name + start)
         items += [item._replace(start=item.start + start, end=item.end + start) for item in part]
         if k < len(tokens):
             items.append(Item("end" if is_end else text, ANY_END if is_end else text, k, k + 1))
@@ -186,9 +188,10 @@ class _Search:
                 for reading in readings_found
                 if reading.items and reading.cost < readings_found[0].cost + SLIP_MARGIN
             ]
-            is_alone = len({reading.said for reading in readings_found}) == 1
+            is_only_reading = len({reading.text_read for reading in readings_found}) == 1
             readings = [
-                reading._replace(is_sure=reading.is_sure and is_alone) for reading in readings_found
+                reading._replace(is_sure=reading.is_sure and is_only_reading)
+                for reading in readings_found
             ]
         return readings
 
@@ -196,16 +199,16 @@ class _Search:
         """Return up to RIVALS right readings, the cheapest first, after `states` lines at most."""
         order = count()
         heap = [(first.cost, next(order), first)]
-        seen: set[tuple[str, ...]] = set()
+        texts_seen: set[tuple[str, ...]] = set()
         readings: list[Reading] = []
-        while heap and len(seen) < states:
+        while heap and len(texts_seen) < states:
             cost, _, reading = heapq.heappop(heap)
             if readings and (cost > readings[0].cost + FARTHEST or len(readings) >= RIVALS):
                 break
             text = reading.text
-            if text in seen:
+            if text in texts_seen:
                 continue
-            seen.add(text)
+            texts_seen.add(text)
             items = right(reading.tokens, self.names)
             if not isinstance(items, Failure):
                 if not self.says_twice(reading, items, first):
@@ -235,7 +238,7 @@ class _Search:
             if one is not None:
                 tokens, is_name = one
                 code = codes.NAME_WITH_SPACE if is_name else codes.OTHER_LANGUAGE
-                reading = reading.changed(tokens, 1.0 if is_name else 0.5, code)
+                reading = reading.with_change(tokens, 1.0 if is_name else 0.5, code)
                 continue
             after = next(self._apply_patterns(reading, None), None)
             if after is None:
@@ -251,7 +254,7 @@ class _Search:
     def _apply_patterns(self, reading: Reading, failure: Failure | None) -> Iterator[Reading]:
         """Make the rows that touch a place; for none those that come before all others."""
         line = rewrites.Encoded(reading.tokens, self.names)
-        for row in rewrites.tried(line, is_first=failure is None):
+        for row in rewrites.rows_to_try(line, is_first=failure is None):
             for match in line.matches(row.pattern):
                 start, end = line.span(match)
                 if failure and not _is_near(failure, start, end):
@@ -259,7 +262,9 @@ class _Search:
                 tokens = line.rewritten(row, match)
                 if tokens is not None:
                     is_new = ";" in row.becomes
-                    yield reading.changed(tokens, row.cost, row.code, not row.is_offered, is_new)
+                    yield reading.with_change(
+                        tokens, row.cost, row.code, not row.is_offered, is_new
+                    )
                     break
 
     def _fill_slots(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
@@ -273,15 +278,15 @@ class _Search:
             if call is None or call.times or texts(call.tokens) == texts(words):
                 continue
             line = [*tokens[:start], *call.tokens, *tokens[end:]]
-            yield reading.changed(line, call.cost, _code_of_call(words), call.is_sure)
+            yield reading.with_change(line, call.cost, _code_of_call(words), call.is_sure)
 
     def _translate_word(self, reading: Reading, failure: Failure) -> Iterator[Reading]:
         """Translate the first word that is none of the language."""
-        tokens, around = reading.tokens, ("", *reading.text, "")
+        tokens, padded_texts = reading.tokens, ("", *reading.text, "")
         for k, token in enumerate(tokens[: failure.at + 2]):
             if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
                 continue
-            is_function = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
+            is_function = padded_texts[k] in ("(", ",", *SIGNS) and padded_texts[k + 2] == "("
             is_misspelt = is_function and not lexicon_concept(token.text)
             suggestion = nearest(token.text, FUNCTIONS) if is_misspelt else None
             guess = (Meaning(suggestion, KNOWN),) if suggestion else ()
@@ -290,11 +295,16 @@ class _Search:
                 continue
             for concept, cost in meanings:
                 cost = NEAR if token.text[-1].isdigit() else cost
-                if concept == "TIME" and k > 1 and around[k] == "(" and around[k - 1] in CALLED:
+                if (
+                    concept == "TIME"
+                    and k > 1
+                    and padded_texts[k] == "("
+                    and padded_texts[k - 1] in CALLED
+                ):
                     continue  # for the first value of a call: `F(tiempo, 80)`
                 is_sure = cost < 2 and concept != "TIME"
                 line = [*tokens[:k], made(concept)._replace(space=token.space), *tokens[k + 1 :]]
-                yield reading.changed(line, cost, codes.OTHER_LANGUAGE, is_sure)
+                yield reading.with_change(line, cost, codes.OTHER_LANGUAGE, is_sure)
             if meanings:
                 break
 
@@ -304,24 +314,24 @@ class _Search:
         for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, at + 2))):
             head, rest = tokens[:k], tokens[k + 1 :]
             for sign, code in rows.MISSING.items():
-                yield reading.changed([*head, made(sign), *tokens[k:]], rows.MISSING_COST, code)
+                yield reading.with_change([*head, made(sign), *tokens[k:]], rows.MISSING_COST, code)
             if k == len(tokens):
                 continue
             token = tokens[k]
             is_sign, is_bracket = token.kind not in (WORD, NUMBER), token.text in ("(", ")")
-            around = texts((*head[-1:], *rest[:1]))
+            neighbours = texts((*head[-1:], *rest[:1]))
             for sign in rows.CONFUSED.get(token.text, ""):
                 code = codes.MISSING_SEPARATOR if sign == ";" else codes.OTHER_CALL
                 line = [*head, made(sign), *rest]
-                yield reading.changed(line, rows.CONFUSED_COST, code, sign not in around)
+                yield reading.with_change(line, rows.CONFUSED_COST, code, sign not in neighbours)
             is_kept = _CALCULATES & {token.text, *texts(rest[:1])} or _is_group(tokens, k)
             if is_sign and not is_kept and category(token.text[0]) != "Sm":
                 code = codes.EXTRA_CLOSE if token.text == ")" else codes.OTHER_CALL
-                yield reading.changed([*head, *rest], rows.EXTRA_COST, code, is_bracket)
+                yield reading.with_change([*head, *rest], rows.EXTRA_COST, code, is_bracket)
             if rest and (is_bracket or rest[0].text in ("(", ")")):
                 if not is_sign or rest[0].kind in (WORD, NUMBER):
                     line = [*head, rest[0], token, *rest[1:]]
-                    yield reading.changed(line, rows.SWAPPED_COST, codes.MISSING_OPEN)
+                    yield reading.with_change(line, rows.SWAPPED_COST, codes.MISSING_OPEN)
 
 
 def _is_group(tokens: Sequence[Lexeme], k: int) -> bool:

@@ -45,9 +45,9 @@ def turtle(source: Source, kit: Kit) -> list[Diagnostic]:
         pieces = _pieces(without_note(line)[0], start)
         while pieces:
             ends = range(min(len(pieces), _MOST), 0, -1)
-            tried = ((end, [token for piece in pieces[:end] for token in piece]) for end in ends)
+            attempts = ((end, [token for piece in pieces[:end] for token in piece]) for end in ends)
             ends_and_diagnostics = (
-                (end, _diagnostic(tokens, source, names)) for end, tokens in tried
+                (end, _diagnostic(tokens, source, names)) for end, tokens in attempts
             )
             end, diagnostic = next((it for it in ends_and_diagnostics if it[1]), (1, None))
             diagnostics += [diagnostic] if diagnostic else []
@@ -64,16 +64,16 @@ def _taught(source: Source) -> list[Diagnostic]:
     start = 0
     for line in source.text.split("\n"):
         body = without_note(line)[0]
-        taught, alone = _TAUGHT.fullmatch(body), _ALONE.fullmatch(body)
-        if taught and lexicon_meaning(plain(taught["to"]), "teach"):
-            span = Span(start + taught.start("to"), start + taught.end("name"))
-            name = plain(taught["name"])
+        definition, lone_word = _TAUGHT.fullmatch(body), _ALONE.fullmatch(body)
+        if definition and lexicon_meaning(plain(definition["to"]), "teach"):
+            span = Span(start + definition.start("to"), start + definition.end("name"))
+            name = plain(definition["name"])
             fix = f"DEF {name}" if name.isidentifier() and name not in WORDS else ""
-            head = _taught_part(source, span, taught["to"], fix) if fix else None
+            head = _taught_part(source, span, definition["to"], fix) if fix else None
             is_empty = True
-        elif head and alone and lexicon_meaning(plain(alone[1]), "end"):
-            span = Span(start + alone.start(1), start + alone.end(1))
-            end = _taught_part(source, span, alone[1], BLOCK_ENDS["DEF"])
+        elif head and lone_word and lexicon_meaning(plain(lone_word[1]), "end"):
+            span = Span(start + lone_word.start(1), start + lone_word.end(1))
+            end = _taught_part(source, span, lone_word[1], BLOCK_ENDS["DEF"])
             diagnostics += [] if is_empty else [head, end]  # `para todo` stops
             head = None
         else:
@@ -143,8 +143,8 @@ class _Reader:
             word, after = self.tokens[k], self.tokens[k + 1 : k + 2]
             if word.kind != "word" or not after or after[0].kind != "number":
                 return [], k
-            meant = self._meant(word.text)
-            if meant == "LOOP" and depth < _DEEPEST and self._sign(k + 2) == "[":
+            order = self._meant(word.text)
+            if order == "LOOP" and depth < _DEEPEST and self._sign(k + 2) == "[":
                 self.is_bracketed = True
                 inside, end = self.orders(k + 3, depth + 1)
                 if not inside or self._sign(end) != "]":
@@ -152,7 +152,7 @@ class _Reader:
                 result += [f"LOOP({after[0].text})", *inside, BLOCK_ENDS["LOOP"]]
                 k = end + 1
                 continue
-            move = self._move(meant, after[0].text)
+            move = self._move(order, after[0].text)
             if not move:
                 return [], k
             result.append(move)

@@ -168,9 +168,10 @@ def meanings(word: str) -> tuple[Meaning, ...]:
     parts = word.split("_")
     if (
         len(parts) > 1
-        and (bare := [part for part in parts if not lexicon_meaning(part, "sensing")]) != parts
+        and (kept_parts := [part for part in parts if not lexicon_meaning(part, "sensing")])
+        != parts
     ):
-        return meanings("_".join(bare))  # `SENSOR_LUZ_DERECHA`
+        return meanings("_".join(kept_parts))  # `SENSOR_LUZ_DERECHA`
     if found := _sensor_with_side(parts):
         return (Meaning(found, KNOWN),)
     near = _speller().find_near_miss(word)
@@ -196,11 +197,11 @@ def _sensor_with_side(parts: Sequence[str]) -> str:
     glued = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
     pairs = [tuple(parts)] if len(parts) == 2 else glued if len(parts) == 1 else []
     for stem, side in (*pairs, *(pair[::-1] for pair in pairs)):
-        named = next((it.value for it in lexicon().get(stem, ()) if it.kind == "stem"), "")
-        ways = ("X", "Y") if named == "PAD" else ("L", "R")
+        sensor_stem = next((it.value for it in lexicon().get(stem, ()) if it.kind == "stem"), "")
+        ways = ("X", "Y") if sensor_stem == "PAD" else ("L", "R")
         way = side if side in ways else lexicon_concept(side)
-        if named and way in ways:
-            return f"{named}_{way}"
+        if sensor_stem and way in ways:
+            return f"{sensor_stem}_{way}"
     return ""
 
 
@@ -217,12 +218,16 @@ def _in_two_words(word: str) -> str | None:
         texts = {half if half == "STOP" else lexicon_concept(half) or "" for half in long}
         turns = [half for half in halves if lexicon_meaning(half, "turn")]
         with_frame = halves if len(halves[1]) > 3 else halves[:1]  # `irAdelante`, and no GOAL
-        beside = [*turns, *(half for half in with_frame if lexicon_meaning(half, "filler"))]
-        meant = texts - {"", "M", "F"} or texts - {"", "M"}
-        is_framed = bool(texts & {"F", "M"} or beside) or len({*map(lexicon_concept, halves)}) == 1
-        is_all = all(half in beside or half == "STOP" or lexicon_concept(half) for half in halves)
-        if len(meant) == 1 and is_framed and is_all:
-            only = next(iter(meant))
+        filler_words = [*turns, *(half for half in with_frame if lexicon_meaning(half, "filler"))]
+        commands = texts - {"", "M", "F"} or texts - {"", "M"}
+        is_framed = (
+            bool(texts & {"F", "M"} or filler_words) or len({*map(lexicon_concept, halves)}) == 1
+        )
+        is_all = all(
+            half in filler_words or half == "STOP" or lexicon_concept(half) for half in halves
+        )
+        if len(commands) == 1 and is_framed and is_all:
+            only = next(iter(commands))
             if only == "STOP" and any(lexicon_meaning(half, "engine") for half in halves):
                 return "S"
             if only in (("L", "R") if turns else ("F", "B", "L", "R", "S", "STOP", "BEEP")):
@@ -251,10 +256,10 @@ class _OfLine(NamedTuple):
 
 @lru_cache(REMEMBERED)
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
-    begun, counted, left = _block_counts(line)
+    block_starts, counted_starts, left = _block_counts(line)
     of_line = _OfLine(
-        set(), set(), set(), set(), {}, set(), begun, _standalone_words(line),
-        _compared_words(line), counted, left, _given(line),
+        set(), set(), set(), set(), {}, set(), block_starts, _standalone_words(line),
+        _compared_words(line), counted_starts, left, _given(line),
     )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
@@ -272,8 +277,8 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         if is_def and after.kind is WORD and after.text not in WORDS:
             if not lexicon_meaning(after.text, "main") and lexicon_concept(after.text) != "START":
                 of_line.defs.add(after.text)
-                if bare := _bare_values(line[at:]):
-                    of_line.pairs.add((after.text, *bare))
+                if bare_values := _bare_values(line[at:]):
+                    of_line.pairs.add((after.text, *bare_values))
                 end = closed(line, at)
                 names_given = texts(line[at + 1 : end - 1 : 2]) if end else _logo_names(line[at:])
                 if all(item.isidentifier() and item not in WORDS for item in names_given):
@@ -284,7 +289,7 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         row, names = _name_in_words(head, "="), of_line.variables
     if row:
         of_line.rows.add(row)
-        names.add(joined(row))
+        names.add(joined_name(row))
     return of_line
 
 
@@ -322,13 +327,13 @@ def _standalone_words(line: tuple[Lexeme, ...]) -> set[str]:
 def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
     """Return words that are compared with a number, as nothing but a value is."""
     rows = [*zip(line, line[1:], line[2:], line[3:], strict=False)]
-    alone = {
+    lone_words = {
         name.text
         for head, before, name, after in rows
         if (before.text, after.text) == ("(", ")") and name.kind is head.kind is WORD
         if name.text not in lexicon() and (lexicon_concept(head.text) or head.text) in ASKING
     }
-    return alone | {
+    return lone_words | {
         name.text
         for before, one, sign, other in rows
         for name, number in ((one, other), (other, one))
@@ -347,8 +352,10 @@ def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
             break
         if not row and (lexicon_meaning(text, "count") or (token.kind is NUMBER and not is_glued)):
             break
-        is_other = text in WORDS or lexicon_meaning(text, "declare") or lexicon_meaning(text, "set")
-        if token.kind is WORD and is_other and len(row) != 1:
+        is_reserved = (
+            text in WORDS or lexicon_meaning(text, "declare") or lexicon_meaning(text, "set")
+        )
+        if token.kind is WORD and is_reserved and len(row) != 1:
             break
         row.append(text)
     ends = tokens[len(row)].text if len(tokens) > len(row) else ";"
@@ -390,14 +397,16 @@ class Names:
         self.usual = {unit: text for unit, text in units_and_numbers if units.count(unit) == 1}
         self.called = frozenset(self.defs & {word for line in of_lines for word in line.called})
         counts = {name: len(self.parameters.get(name, ())) for name in self.defs}
-        alone = {name for name, count in counts.items() if not count}
+        defs_without_values = {name for name, count in counts.items() if not count}
         calls = {*counts.items(), *((name, 1) for name in self.actuators)}
-        values, instructions = self.sensors | self.variables, self.sensors | alone
+        values, instructions = self.sensors | self.variables, self.sensors | defs_without_values
         self.known = KnownNames(frozenset(values), instructions, frozenset(calls))
         # What nobody knows, and is compared, is no reason not to read what is around it.
-        compared = {name for line in of_lines for name in line.compared if name not in WORDS}
-        meant = {name: self.meant(name, NEAR) for name in compared - values}
-        self.strange = {name for name, concept in meant.items() if not concept or concept in CALLED}
+        compared_names = {name for line in of_lines for name in line.compared if name not in WORDS}
+        word_of_name = {name: self.meant(name, NEAR) for name in compared_names - values}
+        self.strange = {
+            name for name, concept in word_of_name.items() if not concept or concept in CALLED
+        }
         self.read_as = self.known._replace(values=frozenset(values | self.strange))
         words = (frozenset(item) for item in (self.defs, self.in_brackets, self.rows))
         self._content = (
@@ -458,18 +467,18 @@ class Names:
         sensors = [name for name in self.sensors if name.endswith(f"_{side}")]
         return sensors[0] if len(sensors) == 1 and side in ("L", "R") else ""
 
-    def meant(self, word: str, most: int = MISSPELT) -> str:
+    def meant(self, word: str, most_cost: int = MISSPELT) -> str:
         """Return the word of the language that a word means, "" for none or a less likely one."""
         if word in WORDS and word != "SI":
             return word
         result = self.meanings(word)
-        return result[0].concept if result and result[0].cost <= most else ""
+        return result[0].concept if result and result[0].cost <= most_cost else ""
 
     def has(self, concept: str) -> bool:
         """Whether a concept is a device of the kit, or the end of any block."""
         return concept in self.sensors or concept in self.actuators or concept == SOME_END
 
-    def takes(self, word: str) -> bool:
+    def takes_values(self, word: str) -> bool:
         """Whether a word is an instruction with values in brackets."""
         return word in CALLED or word in self.actuators or bool(self.parameters.get(word))
 
@@ -498,13 +507,13 @@ class Names:
 
     def _classes_of_word(self, text: str) -> list[str]:
         texts = [meaning.kind for meaning in lexicon().get(text, ())]
-        is_own = text in self.variables or text in self.defs
-        classes = [item for item in texts if item.islower() and not is_own]
+        is_own_name = text in self.variables or text in self.defs
+        classes = [item for item in texts if item.islower() and not is_own_name]
         if text not in WORDS:
             classes += [_CLASSES[item] for item in lexicon().get(text, ()) if item in _CLASSES]
-        classes += ["@unit"] if "unit" in texts and text not in WORDS and not is_own else []
-        classes += ["@cross"] if text == "X" and not is_own else []
-        if "unit" not in texts and text not in WORDS and not is_own:
+        classes += ["@unit"] if "unit" in texts and text not in WORDS and not is_own_name else []
+        classes += ["@cross"] if text == "X" and not is_own_name else []
+        if "unit" not in texts and text not in WORDS and not is_own_name:
             classes += [f"@like_{way}" for way in WAYS if is_slip(text, way)]
         meant = [meaning.concept for meaning in self.meanings(text) if meaning.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
@@ -517,12 +526,12 @@ class Names:
             classes += ["@measured"] if {word, text} & self.asked.keys() else []
             classes += [] if self.is_yes_no(word) or self.is_yes_no(text) else ["@amount"]
         if text in self.defs:
-            own = ["@defw", "@callw"] if self.takes(text) else ["@step", "@close"]
+            own = ["@defw", "@callw"] if self.takes_values(text) else ["@step", "@close"]
             classes += ["@def", "@start", "@startm", *own]
         is_device = word in self.actuators or text in self.actuators
         if (word in DONE or is_device) and (not is_name or is_device):
             classes += ["@start", *(["@startm"] if word != "BEEP" else [])]
-            classes += ["@callw"] if self.takes(word or text) else ["@close"]
+            classes += ["@callw"] if self.takes_values(word or text) else ["@close"]
             classes += ["@device"] if is_device else []
         if word in STARTS and not is_name:
             classes.append("@start")
@@ -540,8 +549,8 @@ class Names:
 def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
     """Return what a line says of orders that begin blocks, and how many headers lack an end."""
     block_of_word: dict[str, str] = {}
-    counted: list[str] = []
-    left = 0
+    counted_starts: list[str] = []
+    open_headers = 0
     for k, (one, other) in enumerate(pairwise([made(";"), *line])):
         pair = [one.text, other.text] if lexicon_meaning(one.text, "end") else [other.text]
         block = ENDED.get(lexicon_concept("_".join(pair)) or "", "")
@@ -550,13 +559,13 @@ def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], 
             block_of_word[word] = block
         is_called = k + 1 < len(line) and line[k + 1].text == "("
         if is_called and lexicon_meaning(other.text, "count") and lexicon_concept(other.text):
-            counted.append(other.text)
-        left += (lexicon_concept(other.text) or other.text) in BLOCK_ENDS
-        left -= bool(lexicon_meaning(other.text, "end") or other.text in ENDED)
-    return block_of_word, counted, left
+            counted_starts.append(other.text)
+        open_headers += (lexicon_concept(other.text) or other.text) in BLOCK_ENDS
+        open_headers -= bool(lexicon_meaning(other.text, "end") or other.text in ENDED)
+    return block_of_word, counted_starts, open_headers
 
 
-def joined(row: Iterable[str]) -> str:
+def joined_name(row: Iterable[str]) -> str:
     parts = [item for item in row if item != "-"]
     if parts[0][0].isdecimal():  # `2PASOS`
         return "".join((*parts[1:], parts[0]))

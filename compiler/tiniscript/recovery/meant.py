@@ -36,23 +36,23 @@ def meant_in(
 
     `is_sure`: by all of it surely; else by the lines that are read.
     """
-    meant = recovery.sure() if is_sure else recovery.best()
-    if meant is None:
+    candidate = recovery.sure() if is_sure else recovery.best()
+    if candidate is None:
         return []
     text = recovery.program
     sentence = source.text
-    message = explained(sentence, meant)
-    if not message and meant.is_whole:
+    message = explained(sentence, candidate)
+    if not message and candidate.is_whole:
         misplaced = [each for each in diagnostics if each.code in rows.MISPLACED]
         said_of_it = misplaced or [each for each in diagnostics if each.is_mistake]
         return [
-            _moved_lines_diagnostic(each, sentence, meant, recovery.kit) for each in said_of_it
+            _moved_lines_diagnostic(each, sentence, candidate, recovery.kit) for each in said_of_it
         ][:1]
     if not message:
         return []
-    told_of = [(each, _diagnostic(each, meant, diagnostics)) for each in message]
-    is_part = is_sure or not meant.is_whole  # what is read of a part gives up nothing
-    if is_part and difference(text, meant.text, recovery.kit).lost:
+    told_of = [(each, _diagnostic(each, candidate, diagnostics)) for each in message]
+    is_part = is_sure or not candidate.is_whole  # what is read of a part gives up nothing
+    if is_part and difference(text, candidate.text, recovery.kit).lost:
         is_kept_of = (
             [] if is_sure else keeps_all([own for _, own in told_of], source.text, recovery.kit)
         )
@@ -73,8 +73,8 @@ def _with_carried_unit(diagnostic: Diagnostic, text: str) -> Diagnostic:
     way = _unit_word(unit[0]) if unit else ""
     uses = [*_move_pattern(set_to[1], way).finditer(text)] if set_to and way else []
     uses = uses or [
-        use
-        for head, use, _ in _in_bodies(text, text)
+        unit_match
+        for head, unit_match, _ in _in_bodies(text, text)
         if diagnostic.code is codes.UNIT
         and diagnostic.span.start < head.end
         and diagnostic.span.end > head.start
@@ -118,17 +118,17 @@ def _diagnostic(
     explanation: Explanation, candidate: Candidate, diagnostics: Sequence[Diagnostic]
 ) -> Diagnostic:
     """Return an explanation as a diagnostic; as the checker has it where that counts the values."""
-    is_said = (
+    is_explained = (
         explanation.code is not codes.ASKED_AFTER or "BREAK" in candidate.text.upper()
     )  # how often
     is_sure = candidate.is_applied or (candidate.is_whole and explanation.is_sure)
-    repair = Repair(tuple(explanation.edits), is_said and is_sure)
+    repair = Repair(tuple(explanation.edits), is_explained and is_sure)
     if not candidate.has_sure_blocks and "FOREVER" not in explanation.fix:
         explanation.whole = ""  # where it ends is a guess
     code, values = _in_words(explanation)
-    asked = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
-    counted = (each for each in diagnostics if each.code is asked)
-    for each in counted if asked in _AS_CHECKED else ():
+    checker_code = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
+    checker_diagnostics = (each for each in diagnostics if each.code is checker_code)
+    for each in checker_diagnostics if checker_code in _AS_CHECKED else ():
         if explanation.place.start <= each.span.start < explanation.place.end:
             values = {**each.values, "fix": explanation.fix}
             return Diagnostic(each.code, each.span, values, explanation.place, repair)
@@ -194,19 +194,24 @@ def _move_pattern(name: str, way: str) -> re.Pattern[str]:
     return re.compile(rf"(?i)\b(?:{moves})\s*\(\s*{name}(?P<unit>)\s*,[^();\n]*\)")
 
 
-def _in_bodies(written: str, meant: str) -> Iterator[tuple[Span, re.Match[str], str]]:
+def _in_bodies(written_text: str, meant_text: str) -> Iterator[tuple[Span, re.Match[str], str]]:
     """Give where a name has a unit in the brackets of a DEF, and the moves that take it, each."""
-    for head in _HEAD.finditer(written):
-        body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant)
-        for match in _VALUE.finditer(written, head.start("values"), head.end()):
+    for head in _HEAD.finditer(written_text):
+        body = re.search(rf"(?is)\bDEF\s+{head[1]}\b.*?(?:\bEND_?DEF\b|\Z)", meant_text)
+        for match in _VALUE.finditer(written_text, head.start("values"), head.end()):
             way = _unit_word(match[2])
             for use in (
-                _move_pattern(match[1], way).finditer(meant, *body.span()) if body and way else ()
+                _move_pattern(match[1], way).finditer(meant_text, *body.span())
+                if body and way
+                else ()
             ):
                 yield Span(*match.span()), use, way
 
 
-def _with_units(written: str, meant: str) -> str:
+def _with_units(written_text: str, meant_text: str) -> str:
     """Return a program in whose DEFs the moves have the units that stood at their values."""
-    edits = [Edit(Span(*it.span("unit")), f" {way}") for _, it, way in _in_bodies(written, meant)]
-    return apply_edits(meant, edits)
+    edits = [
+        Edit(Span(*it.span("unit")), f" {way}")
+        for _, it, way in _in_bodies(written_text, meant_text)
+    ]
+    return apply_edits(meant_text, edits)

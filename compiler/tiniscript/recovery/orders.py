@@ -66,17 +66,19 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
         or lexicon_meaning(after.text, "the")
         or not lexicon_meaning(after.text, "idle")
     ]  # `o robô` is no OR
-    meant = ["", *(names.meant(word.text) for word in words[1:])]
-    asks = next((k for k, each in enumerate(meant) if each in ("IF", "WHEN")), 0)
-    if asks:
-        return _orders_with_condition(orders(words[:asks], names), words[asks:], names)
+    words_meant = ["", *(names.meant(word.text) for word in words[1:])]
+    question_at = next((k for k, each in enumerate(words_meant) if each in ("IF", "WHEN")), 0)
+    if question_at:
+        return _orders_with_condition(
+            orders(words[:question_at], names), words[question_at:], names
+        )
     joins = "" if any(word.text == "(" for word in words) else ",."  # `gira(2, 80)` is one
     groups = groupby(
         words, key=lambda it: it.text in (*joins,) or bool(lexicon_meaning(it.text, "then"))
     )
-    for is_between, group in groups:
+    for is_joint, group in groups:
         part = list(group)
-        if is_between or (
+        if is_joint or (
             not result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in part)
         ):
             continue  # `Hola robot, …`
@@ -98,12 +100,12 @@ def _orders_with_condition(
     first: list[Order], words: Sequence[Lexeme], names: Names
 ) -> list[Order]:
     """Return orders and the condition after them; a move that it stops is watched meanwhile."""
-    asked = block(words, names, is_open=False)
-    if not asked and [order.word for order in first[-1:]] in (["S"], ["STOP"]):
+    question = block(words, names, is_open=False)
+    if not question and [order.word for order in first[-1:]] in (["S"], ["STOP"]):
         return _stopped_when(first[:-1], words, names)
-    if not first or not asked:
+    if not first or not question:
         return []
-    header, stop, *rest = asked.split(";")
+    header, stop, *rest = question.split(";")
     number = any(word.kind is NUMBER for word in words)
     samples = () if number else (f"{NEAR_CM} cm",)
     if stop in ("S", "STOP") and first[-1].word in MOVES and "UNTIL" not in first[-1].text:
@@ -111,7 +113,7 @@ def _orders_with_condition(
         stopped = move._replace(text=f"{move.text} UNTIL{header[2:]}", samples=made_of)
         left = [Order("IF", ";".join((header, *rest)), ())] if len(rest) > 1 else []
         return [*first[:-1], stopped, *left]
-    return [*first, Order("IF", asked, samples)]
+    return [*first, Order("IF", question, samples)]
 
 
 def _stopped_when(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
@@ -128,8 +130,8 @@ def _stopped_when(first: list[Order], words: Sequence[Lexeme], names: Names) -> 
 
 def _orders(words: list[Lexeme], names: Names) -> list[Order]:
     """Return the orders between two words that join, of which each begins with its own."""
-    if whole := _order(words, names):
-        return [whole]
+    if order := _order(words, names):
+        return [order]
     for k in range(2, len(words) - 1):
         first = _order(words[:k], names) if _begins_order(words[k], names) else None
         if first and first.word == "BEEP" and lexicon_meaning(words[k].text, "note"):
@@ -158,8 +160,8 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
             pause = filled([made("W"), *words[1:]], names, has_until=False)
             return Order("S", f"{first};{laid_out(pause.tokens)}", ()) if pause else None
     call = filled(words, names, has_until=False, is_order=True)
-    is_free = call is None and any(lexicon_meaning(lexeme.text, "turn") for lexeme in words)
-    if is_free:
+    is_free_turn = call is None and any(lexicon_meaning(lexeme.text, "turn") for lexeme in words)
+    if is_free_turn:
         unturned = [lexeme for lexeme in words if not lexicon_meaning(lexeme.text, "turn")]
         call = filled([made("R"), *unturned], names, has_until=False, is_order=True)
     if call is None:
@@ -168,7 +170,7 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
     if call.times:
         pause_s = f"W({call.tokens[2].text});" if word == "BEEP" else ""
         text = f"LOOP({call.times});{text};{pause_s}{BLOCK_ENDS['LOOP']}"
-    return Order(word, text, call.samples, is_free, bool(call.times))
+    return Order(word, text, call.samples, is_free_turn, bool(call.times))
 
 
 def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
@@ -194,8 +196,10 @@ def _parse_condition(
         return exact, ()
     text = (worded(words, names) if is_ahead else None) or {}
     condition = text.get("asked") or text.get("question", "")
-    is_other = any(names.meant(it.text) in _ASIDE or it.text in COMPARISONS for it in words)
-    if is_other or not condition.startswith("DISTANCE"):
+    has_other_question = any(
+        names.meant(it.text) in _ASIDE or it.text in COMPARISONS for it in words
+    )
+    if has_other_question or not condition.startswith("DISTANCE"):
         return "", ()
     return condition, () if "asked" in text else (f"{NEAR_CM} cm",)
 

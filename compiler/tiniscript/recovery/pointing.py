@@ -19,12 +19,12 @@ _WAYS = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)  # without a place they ask f
 def pointed(diagnostic: Diagnostic, source: Source) -> Diagnostic:
     """Return a diagnostic at what it names, and with the place that it had for what to try."""
     code, span, place = diagnostic.code, diagnostic.span, diagnostic.place
-    named = diagnostic.values.get("found", "").strip()
-    if not named or code in _COUNTED or not names_found(diagnostic):
+    found_text = diagnostic.values.get("found", "").strip()
+    if not found_text or code in _COUNTED or not names_found(diagnostic):
         return diagnostic
-    if _normalized(source[span]) == _normalized(named):
+    if _normalized(source[span]) == _normalized(found_text):
         return diagnostic
-    result = _nearest(named, span, source)
+    result = _nearest(found_text, span, source)
     if result is None:
         return diagnostic
     if place is None and code not in _WAYS:
@@ -36,16 +36,18 @@ def _normalized(text: str) -> str:
     return " ".join(plain(text).split())
 
 
-def _nearest(named: str, span: Span, source: Source) -> Span | None:
-    """Return where `named` stands in the lines of a place: in it, or else nearest to it."""
+def _nearest(found_text: str, span: Span, source: Source) -> Span | None:
+    """Return where `found_text` stands in the lines of a place: in it, or else nearest to it."""
     text = source.text
     begin = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
     line_end = re.compile(r"[\r\n]|\Z").search(text, max(span.start, span.end))
     assert line_end is not None  # each text has an end
     part = _unaccented(text[begin : line_end.start()])
-    words = r"\s*".join(map(re.escape, _unaccented(named).split()))
-    head = r"(?<!\w)" if named[0].isdigit() else r"(?<![^\W\d])" * named[0].isalpha()  # V of 2V
-    tail = r"(?!\w)" * named[-1].isalnum()
+    words = r"\s*".join(map(re.escape, _unaccented(found_text).split()))
+    head = (
+        r"(?<!\w)" if found_text[0].isdigit() else r"(?<![^\W\d])" * found_text[0].isalpha()
+    )  # V of 2V
+    tail = r"(?!\w)" * found_text[-1].isalnum()
     word_matches = [*re.finditer(f"{head}{words}{tail}", part)] or [*re.finditer(words, part)]
     places = (Span(begin + match.start(), begin + match.end()) for match in word_matches)
     return min(places, key=lambda it: _distance(it, span), default=None)

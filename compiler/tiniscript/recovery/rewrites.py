@@ -24,7 +24,7 @@ from tiniscript.recovery.meanings import (
     Lexeme,
     Names,
     closed,
-    joined,
+    joined_name,
     made,
     number_text,
     texts,
@@ -101,13 +101,13 @@ def of_tokens() -> tuple[Row, ...]:
 
 
 @cache
-def _index_of(is_first: bool) -> Places:
+def _index_of(is_first: bool) -> RowIndex:
     return places({k: row.pattern for k, row in enumerate(of_tokens()) if row.is_first is is_first})
 
 
-def tried(line: Encoded, is_first: bool) -> Iterator[Row]:
+def rows_to_try(line: Encoded, is_first: bool) -> Iterator[Row]:
     """Give the rows that may match a line, in the order of the table."""
-    return (of_tokens()[k] for k in line.tried(_index_of(is_first)))
+    return (of_tokens()[k] for k in line.candidate_rows(_index_of(is_first)))
 
 
 @cache
@@ -115,12 +115,12 @@ def of_signs() -> tuple[SignRow, ...]:
     return tuple(
         SignRow(
             re.compile(_anchored(pattern), re.I),
-            becomes[1:-1],
+            replacement[1:-1],
             CODES[code],
             how == "offered",
             _texts(it),
         )
-        for pattern, becomes, code, how, it in cells(rows.SIGNS)
+        for pattern, replacement, code, how, it in cells(rows.SIGNS)
     )
 
 
@@ -202,10 +202,10 @@ def _token(labels: Sequence[str]) -> str:
     return rf"\x01[^\x02]*\|(?:{'|'.join(map(re.escape, labels))})\|[^\x02]*\x02"
 
 
-Places = Mapping[str, Sequence[int]]
+RowIndex = Mapping[str, Sequence[int]]
 
 
-def places(patterns: Mapping[int, Pattern]) -> Places:
+def places(patterns: Mapping[int, Pattern]) -> RowIndex:
     """Return where the patterns of a table stand that only lines with a label match.
 
     It is the label that the fewest patterns need, "" for one that any line may match.
@@ -242,7 +242,7 @@ class Encoded:
                 return iter(())
         return pattern.of_labels.finditer(self.text)
 
-    def tried(self, table: Places) -> list[int]:
+    def candidate_rows(self, table: RowIndex) -> list[int]:
         """Return where the patterns of a table stand that the line may match, in their order."""
         return sorted({k for label in self._labels & table.keys() for k in table[label]})
 
@@ -286,8 +286,8 @@ class Encoded:
             return [self.translated(lexeme) for lexeme in captured(part[1])]
         if part[0] != "@":
             return [made(part.strip("'"))]
-        function, *named = part[1:].split(":")
-        place = _Place(self, [captured(item) for item in named], self.span(match)[0])
+        function, *names = part[1:].split(":")
+        place = _Place(self, [captured(item) for item in names], self.span(match)[0])
         return _FUNCTIONS[function](place)
 
     def translated(self, token: Lexeme) -> Lexeme:
@@ -329,15 +329,20 @@ def _end_of(place: _Place) -> _Made:
 
 def _decimal(place: _Place) -> _Made:
     """`1,5` is 1.5 where nobody takes it for two values."""
-    (whole,), (comma,), (rest,) = place.captured
+    (whole_part,), (comma,), (decimals,) = place.captured
     before = place.line.tokens[place.start - 1].text if place.start else ""
-    longest = 3 if whole.text == "0" else 2 if before == "=" else 1
-    is_list = rest.text == "0" or (len(whole.text) > 1 and rest.text != "5")
-    has_space = bool(comma.space or rest.space)
-    if "." in whole.text + rest.text or is_list or len(rest.text) > longest or has_space:
+    longest = 3 if whole_part.text == "0" else 2 if before == "=" else 1
+    is_list = decimals.text == "0" or (len(whole_part.text) > 1 and decimals.text != "5")
+    has_space = bool(comma.space or decimals.space)
+    if (
+        "." in whole_part.text + decimals.text
+        or is_list
+        or len(decimals.text) > longest
+        or has_space
+    ):
         return None
-    text = f"{whole.text}.{rest.text}"
-    return [whole._replace(text=text, source=text)]
+    text = f"{whole_part.text}.{decimals.text}"
+    return [whole_part._replace(text=text, source=text)]
 
 
 def _zero_after(place: _Place) -> _Made:
@@ -425,14 +430,14 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
     for row in names.rows:
         for k in range(len(tokens) - len(row) + 1):
             if texts(tokens[k : k + len(row)]) == row:
-                name = made(joined(row))._replace(space=tokens[k].space)
+                name = made(joined_name(row))._replace(space=tokens[k].space)
                 return [*tokens[:k], name, *tokens[k + len(row) :]], True
     for k in range(len(tokens)):
         if sided := _sensor_of_side(tokens, k, names):
             sensor, count = sided
             word = made(sensor)._replace(space=tokens[k].space)
-            is_own = joined(texts(tokens[k : k + count])) == sensor  # `LIGHT-L`
-            return [*tokens[:k], word, *tokens[k + count :]], is_own
+            is_sensor_name = joined_name(texts(tokens[k : k + count])) == sensor  # `LIGHT-L`
+            return [*tokens[:k], word, *tokens[k + count :]], is_sensor_name
     for k, count in product(range(len(tokens)), (3, 2)):
         row = texts(tokens[k : k + count])
         if len(row) < count or any(token.kind is not WORD for token in tokens[k : k + count]):
@@ -446,8 +451,8 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
         if lexicon_concept(text) == "ELSE" and after == "(" and tokens[k + count].space == "":
             continue  # `SE NÃO(DISTANCE < 10)`
         if lexicon_concept(text) or (text in WORDS and row[0] == "END"):
-            meant = names.meanings(text)  # `END IF` ends any block
-            word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)
+            meanings = names.meanings(text)  # `END IF` ends any block
+            word = made(meanings[0].concept if meanings else text)._replace(space=tokens[k].space)
             return [*tokens[:k], word, *tokens[k + count :]], False
     return None
 
@@ -463,5 +468,5 @@ def _sensor_of_side(tokens: Sequence[Lexeme], k: int, names: Names) -> tuple[str
     sensor = name if name in names.sensors else names.meant(name)
     count = 2 if not at else 4 if signs[0] in "([" else 3
     is_call = not at and signs[1:2] == ("(",)  # an order after it: `IF LIGHT L(1, 60)`
-    is_said = is_closed and signs[at:] and not is_call
-    return (sensor, count) if is_said and sensor in names.sensors else None
+    is_complete = is_closed and signs[at:] and not is_call
+    return (sensor, count) if is_complete and sensor in names.sensors else None

@@ -200,15 +200,15 @@ class Recovery:
     def join_until(self) -> None:
         """Put an UNTIL on a line of its own after the instruction before it."""
         texts: list[_Text] = []
-        until = re.compile(rf"^\s*{words_of('until')}\b", re.MULTILINE)
+        until_pattern = re.compile(rf"^\s*{words_of('until')}\b", re.MULTILINE)
         text = plain(self.program)
-        if not until.search(text) or _END_UNTIL.search(text):
+        if not until_pattern.search(text) or _END_UNTIL.search(text):
             return  # there is none, or it is taken for a block
         is_do = False
         for line in self.lines:
             above = next((text for text in reversed(texts) if text.body.strip()), None)
             body = above.body.rstrip().rstrip(";") if above and not above.note.strip() else ""
-            if above and body.endswith(")") and not is_do and until.match(plain(line.body)):
+            if above and body.endswith(")") and not is_do and until_pattern.match(plain(line.body)):
                 above.body, above.note = f"{body} {line.body.strip()}", line.note
                 above.last = line.last
                 above.steps.append(Step(codes.UNTIL_ALONE, lexemes(line.body), lexemes(above.body)))
@@ -230,7 +230,7 @@ class Recovery:
             line.reading = self.parts(tokens, names)
             return
         first = readings[0]
-        line.rivals = [reading for reading in readings[1:] if reading.said != first.said]
+        line.rivals = [reading for reading in readings[1:] if reading.text_read != first.text_read]
         is_close = any(
             rival.is_sure
             and rival.cost < first.cost + MARGIN
@@ -294,11 +294,11 @@ class Recovery:
         text = "\n".join(change.text for change in changes)
         left = self.mistakes(text)
         if left and set(left) & rows.MISPLACED:
-            for moved in ordered(text):
-                if left and not self.mistakes(moved.text):
-                    text, left, changes, move = moved.text, [], [], moved
-        is_alone = has_sure_blocks and _count_ends(text) == self.ends
-        if left and not ((is_sure or is_alone) and len(left) < self.count):
+            for moved_program in ordered(text):
+                if left and not self.mistakes(moved_program.text):
+                    text, left, changes, move = moved_program.text, [], [], moved_program
+        is_better_alone = has_sure_blocks and _count_ends(text) == self.ends
+        if left and not ((is_sure or is_better_alone) and len(left) < self.count):
             return None
         is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
         return Candidate(text, is_applied, not left, changes, has_sure_blocks, move)
@@ -330,12 +330,12 @@ class Recovery:
         has_blocks = [
             any(it.kind != "do" for it in reading.items or ()) for reading in sure_readings
         ]
-        alone = [
+        without_blocks = [
             _UNREAD if has_block else reading
             for reading, has_block in zip(sure_readings, has_blocks, strict=True)
         ]
-        if alone != sure_readings:
-            yield alone, False
+        if without_blocks != sure_readings:
+            yield without_blocks, False
 
     def may_be_of_block(self, line: _Text) -> bool:
         """Whether a line that nobody can read may begin a block, or end one."""

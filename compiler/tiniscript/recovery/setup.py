@@ -66,12 +66,12 @@ def setup(text: str) -> Diagnostic | None:
         return None
     head, sign, rest = plain(match["head"]), match["sep"].strip(), body[match.end() :]
     end = match.end("head") + len(match["sep"].rstrip())
-    is_own = head in ("SI", "SB")
-    is_begun = is_own and (not rest or sign in rows.BARS)
-    is_apart = match.end() > match.end("head")
-    if SEAL in line[end:] or not (is_begun or _begins_instruction(rest, sign, is_apart)):
+    is_start_word = head in ("SI", "SB")
+    is_begun = is_start_word and (not rest or sign in rows.BARS)
+    is_separate = match.end() > match.end("head")
+    if SEAL in line[end:] or not (is_begun or _begins_instruction(rest, sign, is_separate)):
         return None
-    head_meant = head if is_own else "SI"
+    head_meant = head if is_start_word else "SI"
     fix = head_meant + "|"
     span = Span(start, start + end)
     edits = [Edit(span, fix)]
@@ -104,9 +104,9 @@ def _framed(source: Source) -> Diagnostic | None:
 
 def _unframed(source: Source, head: re.Match[str], close: int) -> Diagnostic:
     inside = source.text[head.end() : close]
-    begun = _BEGUN_INSIDE.match(inside)
-    setup_text = f"{begun[1].upper()}|" if begun else "SI|"
-    start = head.end() + (begun.end() if begun else len(inside) - len(inside.lstrip()))
+    start_match = _BEGUN_INSIDE.match(inside)
+    setup_text = f"{start_match[1].upper()}|" if start_match else "SI|"
+    start = head.end() + (start_match.end() if start_match else len(inside) - len(inside.lstrip()))
     end = close if start >= close else head.end() + len(inside.rstrip(" \t"))
     name = Span(head.start(1), head.end(1))
     edits = (Edit(Span(name.start, min(start, close)), setup_text), Edit(Span(end, close + 1), ""))
@@ -128,14 +128,14 @@ def _spoken(source: Source, kit: Kit) -> Diagnostic | None:
     names = Names([lexemes(line) for line in source.text.split("\n")], kit)
     if match := _HEAD_IN_WORDS.match(body):
         head, words = plain(match[1]), lexemes(body[match.end() :])
-        begun, values = match[1], {"found": head}
+        start_text, values = match[1], {"found": head}
         if block([made("IF"), *words], names, is_open=False):
             return None
     else:
         words = lexemes(body)
         head, count = _start_in_words(words, names)
-        begun = "".join((it.space or "") + (it.source or "") for it in words[:count]).strip()
-        values = {"button": "SB|"} if head == "SB" else {"begun": begun}
+        start_text = "".join((it.space or "") + (it.source or "") for it in words[:count]).strip()
+        values = {"button": "SB|"} if head == "SB" else {"begun": start_text}
         words = words[count:]
     orders_said = orders(words, names) if head else []
     if not orders_said or (head == "SB" and orders_said[0].word in ("S", "STOP")):
@@ -144,9 +144,9 @@ def _spoken(source: Source, kit: Kit) -> Diagnostic | None:
     sample = made_up(orders_said)
     values |= {"whole": fix, "example": sample} if sample else {"fix": fix}
     place = Span(row.start(), row.start() + len(body))
-    start = place.start + body.index(begun)
+    start = place.start + body.index(start_text)
     return Diagnostic(
-        codes.SETUP_NEEDS_BAR, Span(start, start + len(begun)), values, place,
+        codes.SETUP_NEEDS_BAR, Span(start, start + len(start_text)), values, place,
         Repair((Edit(place, fix),), False),
     )  # fmt: skip
 
@@ -159,25 +159,25 @@ def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
         return "SI", 1
     first = words[:_LONGEST_START]
     button_positions = [k for k, it in enumerate(first) if lexicon_concept(it.text) == "BUTTON"]
-    pressed = [k for k, it in enumerate(first) if lexicon_meaning(it.text, "pressed")]
-    if not button_positions or not pressed or "BUTTON" in names.sensors:
+    press_positions = [k for k, it in enumerate(first) if lexicon_meaning(it.text, "pressed")]
+    if not button_positions or not press_positions or "BUTTON" in names.sensors:
         return "", 0
-    end = max(button_positions[0], pressed[0]) + 1
-    does = {names.meant(it.text) for it in first[:end]} & {*CALLED, "UNTIL", "S", "STOP"}
-    return ("SB", end) if does in (set(), {"W"}, {"W", "UNTIL"}) else ("", 0)
+    end = max(button_positions[0], press_positions[0]) + 1
+    actions = {names.meant(it.text) for it in first[:end]} & {*CALLED, "UNTIL", "S", "STOP"}
+    return ("SB", end) if actions in (set(), {"W"}, {"W", "UNTIL"}) else ("", 0)
 
 
-def _begins_instruction(rest: str, sign: str, is_apart: bool) -> bool:
+def _begins_instruction(rest: str, sign: str, is_separate: bool) -> bool:
     """Whether an instruction begins, and no condition; a sign before it says that by itself."""
     match = re.match(r"([^\W\d]\w*)\s*(\(|=|;|$)?", rest)
     if match is None:
         return False
     word, after = plain(match[1]), match[2]
-    known = WORDS.get(word)
-    if known is None:
+    word_row = WORDS.get(word)
+    if word_row is None:
         return bool(sign) and after in ("=", "(")
-    is_apart = is_apart and (after is not None or known.is_call or word == "DEF")
-    return known.role.begins and (bool(sign) or after == "(" or is_apart)
+    is_separate = is_separate and (after is not None or word_row.is_call or word == "DEF")
+    return word_row.role.begins and (bool(sign) or after == "(" or is_separate)
 
 
 def _set_before(source: Source, kit: Kit) -> list[Diagnostic]:
@@ -185,13 +185,13 @@ def _set_before(source: Source, kit: Kit) -> list[Diagnostic]:
 
     `int vel = 70;` above `SI|F(2, vel)` is `SI|vel = 70;F(2, vel)`: SI| comes before them.
     """
-    begun = _BEGUN.search(source.text)
-    if begun is None:
+    start_match = _BEGUN.search(source.text)
+    if start_match is None:
         return []
     edits: list[Edit] = []
     sets: list[str] = []
     declared = 0
-    for row in _ROW.finditer(source.text[: begun.start()]):
+    for row in _ROW.finditer(source.text[: start_match.start()]):
         line = without_note(row[0])[0].rstrip(" ;\t\r")
         words = lexemes(line)
         if not words:
@@ -200,21 +200,25 @@ def _set_before(source: Source, kit: Kit) -> list[Diagnostic]:
             (k for k, it in enumerate(words) if not lexicon_meaning(it.text, "declare")), 0
         )
         size = sum(len((it.space or "") + (it.source or "")) for it in words[:count])
-        own = line[size:].lstrip()
+        assignment = line[size:].lstrip()
         signs = texts(words[count + 1 : count + 2])
-        if signs != ("=",) or not lines.is_right(lexemes(own), Names([lexemes(own)], kit)):
+        if signs != ("=",) or not lines.is_right(
+            lexemes(assignment), Names([lexemes(assignment)], kit)
+        ):
             return []
-        start = row.start() + len(line) - len(own)
+        start = row.start() + len(line) - len(assignment)
         edits.append(Edit(Span(row.start(), start), ""))
-        sets.append(own)
+        sets.append(assignment)
         declared += count
     if not sets or not declared:
         return []
-    head = Span(begun.start() + len(begun[0]) - len(begun[0].lstrip()), begun.end())
+    head = Span(
+        start_match.start() + len(start_match[0]) - len(start_match[0].lstrip()), start_match.end()
+    )
     setup_text = "".join(source[head].split()).upper()
     edits[0] = edits[0]._replace(text=setup_text)
     edits = [edit for edit in edits if edit.text or edit.span.start < edit.span.end]
-    rest = without_note(source.text[begun.end() :].split("\n")[0])[0].strip(" ;\t\r")
+    rest = without_note(source.text[start_match.end() :].split("\n")[0])[0].strip(" ;\t\r")
     fix = setup_text + ";".join((*sets, rest))
     repair = Repair((*edits, Edit(head, "")), True)
     return [Diagnostic(codes.SETUP_TWICE, head, {"begun": fix, "found": setup_text}, None, repair)]

@@ -47,17 +47,23 @@ def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic
         at = _compared(tokens, k) if size and float(token.text) <= _WHOLE else -1
         side = "".join(lexicon_meaning(tokens[at].text, "left", "right")) if at > 0 else ""
         at -= bool(side)  # `luz izquierda`
-        asked = "_".join((tokens[at].text, *([side[0].upper()] if side else [])))
-        sensor = _sensor(asked, names) if at >= 0 else None
+        sensor_word = "_".join((tokens[at].text, *([side[0].upper()] if side else [])))
+        sensor = _sensor(sensor_word, names) if at >= 0 else None
         if sensor is None or sensor.low:
             continue
         begin, end = ends[k] - len(token.source or ""), ends[k + size]
-        named = ends[at] - len(tokens[at].source or "")
-        before = body[named:begin] if tokens[at].text in names.asked else ""
+        name_start = ends[at] - len(tokens[at].source or "")
+        before = body[name_start:begin] if tokens[at].text in names.asked else ""
         share = number_text(round(sensor.high * float(token.text) / _WHOLE, -3) / ONE)
-        values = {"sensor": body[named : ends[at]], "low": "0", "high": f"{sensor.high / ONE:g}",
-                  "found": body[begin:end], "number": token.text,
-                  "share": before + share, "kept": before + token.text}  # fmt: skip
+        values = {
+            "sensor": body[name_start : ends[at]],
+            "low": "0",
+            "high": f"{sensor.high / ONE:g}",
+            "found": body[begin:end],
+            "number": token.text,
+            "share": before + share,
+            "kept": before + token.text,
+        }
         span = Span(start + begin, start + end)
         yield Diagnostic(codes.UNIT, span, values), Edit(span, share)
 

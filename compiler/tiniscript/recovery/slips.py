@@ -117,15 +117,15 @@ def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
     if is_begun and code in (codes.OTHER_SIGN, codes.QUOTE):
         new_lexemes = instructions(change.after)  # the bar was a word, or in quotation marks, too
     head, tail = alike([*map(texts, old_lexemes)], [*map(texts, new_lexemes)])
-    was, now = (
+    old_part, new_part = (
         [lexeme for part in parts[head : len(parts) - tail] for lexeme in part]
         for parts in (old_lexemes, new_lexemes)
     )
     start, found, right = first_difference(old, new)
-    has_end = bool(head) and any(lexeme.text in ENDED for lexeme in now)
+    has_end = bool(head) and any(lexeme.text in ENDED for lexeme in new_part)
     parts = new_lexemes[0 if has_end else head : len(new_lexemes) - tail]
     until = len(new_lexemes[head]) if len(old_lexemes) < len(new_lexemes) else None
-    slip = Slip(code, old, new, start, found, right, was, now, change.after, parts, until)
+    slip = Slip(code, old, new, start, found, right, old_part, new_part, change.after, parts, until)
     return _EXACTLY[code](slip) if code in _EXACTLY else slip
 
 
@@ -136,16 +136,16 @@ def code_of(change: Change) -> tuple[Code, Step | None]:
     """Return with which code a change is told, and the rewrite that it is told of."""
     _, _, steps, before, after = change
     fewer = Counter(texts(before)) - Counter(texts(after))
-    more = {*texts(after)} - {*texts(before)}
-    if "SI" in fewer and "IF" in more:
+    added_words = {*texts(after)} - {*texts(before)}
+    if "SI" in fewer and "IF" in added_words:
         return codes.SPANISH_IF, None
     dropped = {item for item in fewer if {item, meant_by(item)} & {*ENDED}}
-    if dropped and not more and fewer.keys() <= dropped | {";"}:
+    if dropped and not added_words and fewer.keys() <= dropped | {";"}:
         return codes.EXTRA_WORD, None
     code, step = _code_of_steps(change) if steps else (_code_of_words(before, after), None)
     if (
         code is codes.EXTRA_WORD
-        and more & {*ENDED}
+        and added_words & {*ENDED}
         and any(lexicon_meaning(it, "end") for it in fewer)
     ):
         return codes.END_ALONE, None  # it is no word too many: it ends a block
@@ -166,22 +166,24 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
     """Return the code of the rewrite that says most: rather another word than a sign."""
     _, _, steps, before, after = change
     words, new = {*texts(before)}, {*texts(after)}
-    own = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
-    own.sort(key=lambda it: (it.code is not codes.ASKED_AFTER, it.code is codes.OTHER_SIGN))
-    if own and own[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
-        return own[0].code, own[0]
+    own_steps = [step for step in steps if step.code is not codes.OTHER_LANGUAGE]
+    own_steps.sort(key=lambda it: (it.code is not codes.ASKED_AFTER, it.code is codes.OTHER_SIGN))
+    if own_steps and own_steps[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
+        return own_steps[0].code, own_steps[0]
     lost = (lexeme.text for lexeme in before if lexeme.kind is WORD and lexeme.text not in new)
     foreign = next((item for item in lost if meant_by(item) in new - words), "")
     translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
-    if translated and (foreign or not own):
+    if translated and (foreign or not own_steps):
         is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
         return codes.OTHER_LANGUAGE if is_said else codes.MISSING_OPEN, translated
     if foreign:
-        changed = (it for it in own if foreign in {*texts(it.before)} - {*texts(it.after)})
-        return codes.OTHER_LANGUAGE, next(changed, own[0])
-    right = first_difference(own[0].before, own[0].after)[2]
-    is_comma = own[0].code is codes.OTHER_CALL and texts(right) == (",",)
-    return codes.MISSING_COMMA if is_comma else own[0].code, own[0]
+        changed_texts = (
+            it for it in own_steps if foreign in {*texts(it.before)} - {*texts(it.after)}
+        )
+        return codes.OTHER_LANGUAGE, next(changed_texts, own_steps[0])
+    right = first_difference(own_steps[0].before, own_steps[0].after)[2]
+    is_comma = own_steps[0].code is codes.OTHER_CALL and texts(right) == (",",)
+    return codes.MISSING_COMMA if is_comma else own_steps[0].code, own_steps[0]
 
 
 def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
@@ -218,14 +220,14 @@ def _foreign_words(slip: Slip) -> Slip:
         result, right = [old[start - 1], *result], [old[start - 1]]
     elif has_dot:
         result = with_next
-    cut = next((k for k, it in enumerate(result) if it.text in ("=", "(")), len(result))
-    is_set = cut < len(result) and result[cut].text == "="
-    result = result[: cut - is_set] or result
+    end = next((k for k, it in enumerate(result) if it.text in ("=", "(")), len(result))
+    is_set = end < len(result) and result[end].text == "="
+    result = result[: end - is_set] or result
     if any(lexeme.kind is NUMBER for lexeme in result):  # PARA of `PARA I DE 1 A 4`
         result = [*takewhile(_is_counting, result)] or result
     if right and result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in result):
-        named = [lexeme for lexeme in old if meant_by(lexeme.text) == right[0].text]
-        result = named[:1] or result  # `oi robô, anda`
+        meant_lexemes = [lexeme for lexeme in old if meant_by(lexeme.text) == right[0].text]
+        result = meant_lexemes[:1] or result  # `oi robô, anda`
     return slip._replace(found=result, right=right)
 
 
@@ -285,17 +287,17 @@ def found_in(slip: Slip) -> str:
     """Return what is wrong, as it was written: all of the instruction where a sign is missing."""
     code, found = slip.code, slip.found
     if _has_gap(slip):
-        return written(slip.old[slip.start : slip.start + 1])
+        return text_of(slip.old[slip.start : slip.start + 1])
     is_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
     is_all = code is codes.REPEATED or (code is codes.OTHER_SIGN and not slip.right)
-    was = written(slip.was if is_all or not (found or is_sign) else found)
-    if code is codes.LINE_NUMBER and was[:1] == "_":
+    old_text = text_of(slip.was if is_all or not (found or is_sign) else found)
+    if code is codes.LINE_NUMBER and old_text[:1] == "_":
         return "_"
     if code in (codes.OTHER_LANGUAGE, codes.EXTRA_WORD):
-        return was.strip("; ")
+        return old_text.strip("; ")
     if code is codes.OTHER_NOTE:
-        return re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
-    return was
+        return re.match(r"\w+|\W+", old_text).group().strip()  # type: ignore[union-attr]
+    return old_text
 
 
 def _has_gap(slip: Slip) -> bool:
@@ -327,13 +329,13 @@ def _word_in(text: str) -> str:
 def before_it(slip: Slip) -> str:
     """Return what is right of the instruction before the slip."""
     if _has_gap(slip):
-        return written(slip.old[slip.start - 1 : slip.start])
-    result = written(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
+        return text_of(slip.old[slip.start - 1 : slip.start])
+    result = text_of(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
     if slip.code is codes.HEADER_SEPARATOR and (
         not result or result[-1] == "(" or lexemes(result)[0].text not in OF_BLOCKS
     ):
-        begun = (part for part in without_setup(slip.line) if part[0].text in OF_BLOCKS)
-        return laid_out(next(begun)) if result else slip.now[0].text  # `CADA VEZ QUE … S`
+        block_parts = (part for part in without_setup(slip.line) if part[0].text in OF_BLOCKS)
+        return laid_out(next(block_parts)) if result else slip.now[0].text  # `CADA VEZ QUE … S`
     return result
 
 
@@ -479,5 +481,5 @@ def without_setup(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
     ]
 
 
-def written(tokens: Sequence[Lexeme]) -> str:
+def text_of(tokens: Sequence[Lexeme]) -> str:
     return "".join((token.space or "") + (token.source or token.text) for token in tokens).strip()

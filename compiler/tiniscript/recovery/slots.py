@@ -120,9 +120,9 @@ class _Reader:
             if sign == ")" and any(it.kind in (WORD, NUMBER) or it.text == "(" for it in rest):
                 return False
             is_odd = sign == "," and after in (",", ")")
-            is_again = sign == "(" and k > 2 and "(" in signs[:k]
+            has_second_group = sign == "(" and k > 2 and "(" in signs[:k]
             is_call = sign == "(" and self.names.meant(after, NEAR) in CALLED
-            if is_odd or is_again or (is_call and self.names.meant(signs[0], NEAR) != "M"):
+            if is_odd or has_second_group or (is_call and self.names.meant(signs[0], NEAR) != "M"):
                 self.is_sure = False
         return True
 
@@ -139,9 +139,9 @@ class _Reader:
         if token.kind is not WORD or token.text in self.names.known.values:
             return None
         text = lexicon_meaning(token.text, "number")
-        is_told = after in (",", ")") or lexicon_meaning(after, "unit") or self._is_half(k + 1)
-        is_one = text == ("1",) and not is_told
-        if text and self.command and not is_one:
+        has_context = after in (",", ")") or lexicon_meaning(after, "unit") or self._is_half(k + 1)
+        is_bare_one = text == ("1",) and not has_context
+        if text and self.command and not is_bare_one:
             number, k = self._sum(float(text[0]), k + 1)
             self.is_sure = self.is_sure and text != ("1",)
             return number, k
@@ -237,7 +237,7 @@ class _Reader:
         names, marked = self.names, lexicon_meaning(word, "value")
         is_command = word in names.actuators or (word in DONE and word != "BREAK")
         text = [word] if is_command else [meaning.concept for meaning in names.meanings(word)]
-        meant = next((item for item in text if is_command or item in CALLED or item == "S"), None)
+        command = next((item for item in text if is_command or item in CALLED or item == "S"), None)
         is_before_number = self._is_number(k + 1) or after in ("=", ":")
         if self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]
@@ -248,8 +248,8 @@ class _Reader:
             self.command = None if self.command == "F" else self.command
         elif self._is_mark(word, marked):
             last = self.values[-1] if self.values else None
-            is_behind = after in ("", ",", ")") and self.text(k - 1) != ","
-            if last and last.unit in (None, marked[0]) and is_behind and marked != ("s",):
+            is_last = after in ("", ",", ")") and self.text(k - 1) != ","
+            if last and last.unit in (None, marked[0]) and is_last and marked != ("s",):
                 self.values[-1] = last._replace(unit=marked[0])
             else:
                 self.mark = marked[0]
@@ -268,9 +268,9 @@ class _Reader:
         elif lexicon_meaning(word, "power") and self.command:
             self._add_value(lexicon_meaning(word, "power")[0], "%")
             self.is_sure = False
-        elif meant:
-            is_again = after in ("", ",") and meant == self.command and meant in MOVES
-            return k + 1 if is_again or self._take_command(word, meant) else None
+        elif command:
+            is_repetition = after in ("", ",") and command == self.command and command in MOVES
+            return k + 1 if is_repetition or self._take_command(word, command) else None
         elif lexicon_meaning(word, "filler"):
             is_in_place = self._is_number(k - 1) and after in ",)"
             self.is_sure = self.is_sure and not is_in_place  # it may be a unit: `F(8 in, 60)`
@@ -297,18 +297,18 @@ class _Reader:
         self.values.append(_Value(text, unit))
         self.mark = None
 
-    def _take_command(self, word: str, meant: str) -> bool:
+    def _take_command(self, word: str, command: str) -> bool:
         meanings = () if word in DONE else self.names.meanings(word)
         cost = meanings[0].cost if meanings else 0
         self.is_sure = self.is_sure and cost < 2
         before = self.command
-        is_way = before == "F" and meant in ("B", "L", "R") and not self.values
-        is_side = self.is_turn and meant in ("L", "R") and before not in ("L", "R")
+        is_way = before == "F" and command in ("B", "L", "R") and not self.values
+        is_side = self.is_turn and command in ("L", "R") and before not in ("L", "R")
         if before is None or is_way or is_side:
-            self.command = meant
-        elif before == meant and not self.values and meant in MOVES:
+            self.command = command
+        elif before == command and not self.values and command in MOVES:
             pass
-        elif not (meant == "F" and before in MOVES and lexicon_meaning(word, "filler")):
+        elif not (command == "F" and before in MOVES and lexicon_meaning(word, "filler")):
             return False
         self.cost += cost * 0.3
         return True
@@ -331,9 +331,9 @@ class _Reader:
         texts: list[str] = []
         samples: list[str] = []
         for value, argument in zip(slots, word.arguments, strict=True):
-            own = value.text if value else self._own_value(argument)
-            samples += [] if own else [f"{argument.sample} {argument.unit}"]
-            texts.append(own or argument.sample)
+            own_text = value.text if value else self._own_value(argument)
+            samples += [] if own_text else [f"{argument.sample} {argument.unit}"]
+            texts.append(own_text or argument.sample)
         call = f"{word.text}({','.join(texts)})".replace(",", f" {self.way},", 1)
         tokens = [made(lexeme.text) for lexeme in lexemes(call)]
         return Filled(tokens, self.cost, self.is_sure, self.times, tuple(samples))
@@ -343,12 +343,18 @@ class _Reader:
 
         The one variable that is called so, VELOCIDAD for `F(2)`, else what all other calls give.
         """
-        own = [
+        own_values = [
             it
             for it in self.names.variables
             if any(is_called(part, argument) for part in it.split("_"))
         ]
-        return own[0] if len(own) == 1 else "" if own else self.names.usual.get(argument.unit, "")
+        return (
+            own_values[0]
+            if len(own_values) == 1
+            else ""
+            if own_values
+            else self.names.usual.get(argument.unit, "")
+        )
 
     def _with_decimals(self, count: int) -> list[_Value] | None:
         """Join whole numbers that are halves of decimal ones: `F(1,5,80,0)`, `W(0,5)`."""
@@ -392,12 +398,12 @@ class _Reader:
                     return None
                 slots[0], order[k], self.way = value, 0, way
             elif unit is not None:
-                fits = (
+                fitting_places = (
                     i
                     for i, expected in enumerate(arguments)
                     if unit in (expected.unit, expected.name)
                 )
-                place = next((i for i in fits if slots[i] is None), None)
+                place = next((i for i in fitting_places if slots[i] is None), None)
                 if place is None:
                     return None
                 slots[place], order[k] = value, place

@@ -34,7 +34,13 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.recovery.orders import Order, condition_in, made_up, orders, written
 from tiniscript.recovery.slots import filled
-from tiniscript.recovery.trailing_tokens import Around, Trailing, set_in, whole, width
+from tiniscript.recovery.trailing_tokens import (
+    LineContext,
+    Trailing,
+    instruction_length,
+    set_in,
+    width,
+)
 from tiniscript.recovery.worded import sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import free_number_name
@@ -112,7 +118,7 @@ def rows() -> tuple[Row, ...]:
 
 
 @cache
-def _places() -> rewrites.Places:
+def _places() -> rewrites.RowIndex:
     return rewrites.places({k: row.pattern for k, row in enumerate(rows())})
 
 
@@ -129,7 +135,7 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
         words = lexemes(body)
         is_right = lines.is_right(words, names)
         if "~" not in body and not is_right:
-            for part in islice(_parts(body, start, Around(text, names, depth, above)), left):
+            for part in islice(_parts(body, start, LineContext(text, names, depth, above)), left):
                 left -= 1
                 each = _suggestion_for(part)
                 if each and not (
@@ -140,9 +146,9 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
         if body.strip() and not any(
             each.diagnostic.code is codes.SAME_AGAIN for each in suggestions_of_line
         ):
-            bare = _COUNTED.sub("", body)  # `2. S`
-            is_right = is_right or (bare != body and lines.is_right(lexemes(bare), names))
-            above.append(_as_orders(bare.partition("|")[2] or bare, is_right))
+            uncounted = _COUNTED.sub("", body)  # `2. S`
+            is_right = is_right or (uncounted != body and lines.is_right(lexemes(uncounted), names))
+            above.append(_as_orders(uncounted.partition("|")[2] or uncounted, is_right))
         depth += sum((word.text in BLOCK_ENDS) - (word.text in ENDED) for word in words)
         start += len(line) + 1
     return suggestions
@@ -157,9 +163,9 @@ def _as_orders(line: str, is_right: bool) -> str | None:
     return line.strip().rstrip(" ;") if is_right else ""
 
 
-def _parts(body: str, start: int, around: Around) -> Iterator[_Words]:
+def _parts(body: str, start: int, line_context: LineContext) -> Iterator[_Words]:
     """Give each instruction of a line that has words behind it, and words without one."""
-    names = around.names
+    names = line_context.names
     before: list[str | None] = []
     for match in _PART.finditer(body):
         tokens, at = lexemes(match[1]), start + match.start()
@@ -167,19 +173,19 @@ def _parts(body: str, start: int, around: Around) -> Iterator[_Words]:
             continue
         is_block = tokens[0].text in (*_BEGIN_BODY, *ENDED)
         while 0 < len(tokens) <= lines.LONGEST:
-            size = whole(tokens, names)
+            size = instruction_length(tokens, names)
             rest = tokens[size:]
             if not size and (spoken_call := _spoken_call(tokens, names)):
-                yield _Words(around, at, tokens, spoken_call[0], before, spoken_call[1])
+                yield _Words(line_context, at, tokens, spoken_call[0], before, spoken_call[1])
                 break
             if not size or not rest:
-                yield _Words(around, at, tokens, 0, before)
+                yield _Words(line_context, at, tokens, 0, before)
                 break
             if any(token.text in ASKING for token in tokens[:size]):
                 is_ended = all(lexicon_meaning(item.text, "do") for item in rest)  # by a THEN
-                yield _Words(around, at, tokens if is_ended else tokens[:size], 0, before)
-            if not whole(rest, names) or rest[0].text in ("IF", "WHILE"):
-                yield _Words(around, at, tokens, size, before)
+                yield _Words(line_context, at, tokens if is_ended else tokens[:size], 0, before)
+            if not instruction_length(rest, names) or rest[0].text in ("IF", "WHILE"):
+                yield _Words(line_context, at, tokens, size, before)
                 break
             at += sum(map(width, tokens[:size]))
             tokens = rest
@@ -189,7 +195,7 @@ def _parts(body: str, start: int, around: Around) -> Iterator[_Words]:
 def holding(place: Place) -> Iterator[tuple[Row, Gaps]]:
     """Give the rows that hold at a place, with what fills their gaps, in the order of the table."""
     line = rewrites.Encoded([made(";"), *place.row], place.names, place.labels())
-    for k in line.tried(_places()):
+    for k in line.candidate_rows(_places()):
         row = rows()[k]
         if match := next(line.matches(row.pattern), None):
             gaps = Gaps(place, line, match)
@@ -219,10 +225,10 @@ class _Words(Trailing):
     """Words behind an instruction, or without one, as a place of rows."""
 
     def __init__(
-        self, around: Around, start: int, tokens: Sequence[Lexeme], size: int,
+        self, line_context: LineContext, start: int, tokens: Sequence[Lexeme], size: int,
         before: Sequence[str | None], spoken: str = "",
     ) -> None:  # fmt: skip
-        super().__init__(around, start, tokens, size, before, spoken)
+        super().__init__(line_context, start, tokens, size, before, spoken)
         self.gaps = _GAPS
 
     def values(self) -> dict[str, str]:
@@ -233,24 +239,24 @@ class _Words(Trailing):
 
 
 def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
-    part, named, values = gaps.part, row.pattern.of_labels.groupindex, gaps.filled
+    part, group_names, values = gaps.part, row.pattern.of_labels.groupindex, gaps.filled
     place = part.place if values["fix"] else None
     is_right = lines.is_right(part.tokens, part.names)
     if place and not is_right and values["fix"].startswith(part.call):
         place = part.behind  # of a call with a mistake of its own
         values["fix"] = values["fix"][len(part.call) :].lstrip(" ")
-    start, end = gaps.span("s") if "s" in named else (1, len(part.spans))
+    start, end = gaps.span("s") if "s" in group_names else (1, len(part.spans))
     span = Span(part.spans[start].start, part.spans[end - 1].end)
     code = row.code
     assert code is not None
-    is_other = any(values[gap] for gap in values if gap not in ("before", "words", "order"))
-    is_noted = "//" in values["fix"] or not is_other
+    has_other_values = any(values[gap] for gap in values if gap not in ("before", "words", "order"))
+    is_noted = "//" in values["fix"] or not has_other_values
     if code in _MAY_BE_NOTES and part.tokens and not is_noted:
         values = {**values, **_as_note(part)}  # what changes no movement comes first
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
     result = Diagnostic(code, span, values, place)
-    if "h" in named:
+    if "h" in group_names:
         place = Span(part.spans[gaps.span("h")[0]].start, part.behind.end)
         condition = values.get("asked") or values.get("question") or "TRUE"
         return Suggestion(result, Edit(place, f"{gaps['head']}({condition})"))
@@ -347,8 +353,8 @@ class Gaps(dict[str, str]):
 def _loop_over_all(gaps: Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
     part, before = gaps.part, [item for item in gaps.part.before if item]
-    is_known = len(before) == len(part.before) <= _FARTHEST
-    if not is_known or part.is_in_block or times in ("", "0", "1"):
+    has_all_orders = len(before) == len(part.before) <= _FARTHEST
+    if not has_all_orders or part.is_in_block or times in ("", "0", "1"):
         return ""
     messages = [item.strip() for line in (*before, part.call) for item in line.split(";")]
     orders = [item for item in messages if item.upper() not in ("", "START")]
@@ -420,17 +426,17 @@ def _choice(gaps: Gaps, is_exact: bool = False) -> str:
     text = f"{gaps.part.call},{gaps['l']}".lstrip(",")
     orders = []
     for match in map(_CHOICE.fullmatch, re.split(r",(?![^(]*\))", text)):
-        known = WORDS.get(gaps.part.means(plain(match[1]))) if match else None
-        if match is None or known is None or not known.role.is_instruction:
+        word_row = WORDS.get(gaps.part.means(plain(match[1]))) if match else None
+        if match is None or word_row is None or not word_row.role.is_instruction:
             return ""
-        if is_exact and known.arguments and not match[2]:
+        if is_exact and word_row.arguments and not match[2]:
             return ""
-        orders.append(known.text + match[2] if match[2] else known.example)
+        orders.append(word_row.text + match[2] if match[2] else word_row.example)
     name, count = free_number_name(gaps.part.text), len(orders)
-    drawn, asked = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
+    drawn, conditions = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
     if count == 2:
-        drawn, asked = "", ["RANDOM(1, 2) = 1"]
-    arms = [f"ELSEIF({one}); {order}; " for one, order in zip(asked, orders, strict=False)]
+        drawn, conditions = "", ["RANDOM(1, 2) = 1"]
+    arms = [f"ELSEIF({one}); {order}; " for one, order in zip(conditions, orders, strict=False)]
     return f"{drawn}{''.join(arms)[4:]}ELSE; {orders[-1]}; ENDIF" if arms else ""
 
 

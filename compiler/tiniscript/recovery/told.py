@@ -298,14 +298,22 @@ def moved_back(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) ->
     """
     values = dict(diagnostic.values)
     for edit in edits:
-        if edit.text.endswith("(TRUE)") and "TRUE" not in (was := source[edit.span].strip()):
-            values = {name: text.replace(edit.text, was) for name, text in values.items()}
+        if edit.text.endswith("(TRUE)") and "TRUE" not in (original := source[edit.span].strip()):
+            values = {name: text.replace(edit.text, original) for name, text in values.items()}
     place = diagnostic.place and _original_span(diagnostic.place, edits)
     repair = diagnostic.repair
     if repair is not None:
-        own = tuple(Edit(_original_span(edit.span, edits), edit.text) for edit in repair.edits)
-        passed = [edit for edit in edits if edit.text.isspace()]  # words that nothing may drop
-        repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
+        own_edits = tuple(
+            Edit(_original_span(edit.span, edits), edit.text) for edit in repair.edits
+        )
+        blanking_edits = [
+            edit for edit in edits if edit.text.isspace()
+        ]  # words that nothing may drop
+        repair = (
+            Repair((), False)
+            if overlap(own_edits, blanking_edits)
+            else repair._replace(edits=own_edits)
+        )
     return Diagnostic(
         diagnostic.code, _original_span(diagnostic.span, edits), values, place, repair
     )
@@ -316,12 +324,12 @@ def _original_span(span: Span, edits: Sequence[Edit]) -> Span:
     start = end = shift = 0
     for edit in sorted(edits):
         begin = edit.span.start + shift
-        behind = begin + len(edit.text)
-        shift = behind - edit.span.end
-        if span.start >= behind:
+        edit_end = begin + len(edit.text)
+        shift = edit_end - edit.span.end
+        if span.start >= edit_end:
             start = shift
         elif span.start > begin:
             start = span.start - edit.span.start
         if span.end > begin:
-            end = shift if span.end >= behind else span.end - edit.span.end
+            end = shift if span.end >= edit_end else span.end - edit.span.end
     return Span(span.start - start, max(span.start - start, span.end - end))

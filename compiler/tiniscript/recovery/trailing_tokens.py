@@ -41,7 +41,7 @@ _IN_NO_NOTE = frozenset((*COMPARISONS, "*", "+", "==", "!=", "{", "}"))
 _LONG_WORDS = tuple(word for word in WORDS if len(word) > 2)
 
 
-class Around(NamedTuple):
+class LineContext(NamedTuple):
     """Where an instruction stands: `depth` blocks are open there.
 
     `above` are the lines before it, "" for one of no orders, None for one that begins a block.
@@ -58,7 +58,7 @@ def width(token: Lexeme) -> int:
     return len(token.space or "") + len(token.source or "")
 
 
-def whole(tokens: Sequence[Lexeme], names: Names) -> int:
+def instruction_length(tokens: Sequence[Lexeme], names: Names) -> int:
     """Return how many tokens begin a line as a whole instruction."""
     first, sign = tokens[0].text, tokens[1].text if len(tokens) > 1 else ";"
     if first in names.defs or (sign == "=" and first not in WORDS):
@@ -66,13 +66,13 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
         size = failure.at if isinstance(failure, Failure) else 0
         is_right = lines.is_right(tokens[:size], names)
         return size if is_right and tokens[size].space else 0
-    known = WORDS.get(first)
-    if known is None and not names.takes(names.meant(first, NEAR)):
+    word_row = WORDS.get(first)
+    if word_row is None and not names.takes_values(names.meant(first, NEAR)):
         return 0
     if first == "DEF":
         return 2 if len(tokens) > 1 and tokens[1].kind is WORD else 0
-    if known is not None and not known.arguments:
-        is_done = known.role.name in ("stop", "start", "break", "end", "arm")
+    if word_row is not None and not word_row.arguments:
+        is_done = word_row.role.name in ("stop", "start", "break", "end", "arm")
         return int(is_done and sign not in ("(", "="))
     end = closed(tokens, 1)
     if end and end < len(tokens) and tokens[end].text == "UNTIL":
@@ -88,10 +88,10 @@ class Trailing:
     """
 
     def __init__(
-        self, around: Around, start: int, tokens: Sequence[Lexeme], size: int,
+        self, line_context: LineContext, start: int, tokens: Sequence[Lexeme], size: int,
         before: Sequence[str | None], spoken: str = "",
     ) -> None:  # fmt: skip
-        text, self.names, depth, above = around
+        text, self.names, depth, above = line_context
         self.is_said = bool(spoken)
         self.tokens = lexemes(spoken) if spoken else tokens[:size]
         self.row = tokens[size:]
@@ -109,10 +109,10 @@ class Trailing:
         self.words = text[slice(*self.behind)]
         self.spans = [called, *spans[size:]]
         self.text = text
-        meant = self.names.meant(self.tokens[0].text, NEAR) if size else ""
-        known = WORDS.get(meant)
-        self.is_arm = known is not None and known.role.is_of_blocks
-        self.own = ENDED.get(meant, meant)
+        concept = self.names.meant(self.tokens[0].text, NEAR) if size else ""
+        word_row = WORDS.get(concept)
+        self.is_arm = word_row is not None and word_row.role.is_of_blocks
+        self.own = ENDED.get(concept, concept)
         self.is_asked = any(token.text == "UNTIL" for token in self.tokens)
         self.time = _TIME.match(self.call)
         self.power = _POWER.search(self.call)
@@ -151,18 +151,18 @@ class Trailing:
         return [self._label_of_call(), *(self._label_of(k) for k in range(len(self.row)))]
 
     def _label_of_call(self) -> str:
-        own, known = self.own, WORDS.get(self.own)
-        is_timed = known is not None and known.role.lasts
+        own_word, word_row = self.own, WORDS.get(self.own)
+        is_timed = word_row is not None and word_row.role.lasts
         if self.tokens:
-            is_order = known is not None and not self.is_arm and own != "START"
+            is_order = word_row is not None and not self.is_arm and own_word != "START"
             labels: dict[str, object] = {
-                own: True,
+                own_word: True,
                 "@any": True,
                 "@cmd": is_order,
                 "@did": self.tokens[0].text in self.names.defs,
                 "@set": [token.text for token in self.tokens[1:2]] == ["="],
-                "@move": own in MOVES,
-                "@clock": (is_timed or own == "BEEP") and not self.is_asked,
+                "@move": own_word in MOVES,
+                "@clock": (is_timed or own_word == "BEEP") and not self.is_asked,
                 "@asked": self.is_asked,
                 "@unasked": is_timed and not self.is_asked,
                 "@outer": not self.is_in_block,
@@ -195,26 +195,26 @@ class Trailing:
             or lexicon_meaning(text, "often")
             or text[0] == "X"
         )
-        is_many = lexicon_meaning(before, "multiplied", "times") or before in ("X", "*")
-        is_many = is_many or self.means(before) == "LOOP"
+        is_multiplied = lexicon_meaning(before, "multiplied", "times") or before in ("X", "*")
+        is_multiplied = is_multiplied or self.means(before) == "LOOP"
         concept = (
             lexicon_concept(text) if token.kind is WORD and not self.names.is_name(text) else None
         )
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
-        is_own = token.source == "l" or text in set_in(self.text)
-        known = None if is_own else WORDS.get(text)
+        is_own_name = token.source == "l" or text in set_in(self.text)
+        word_row = None if is_own_name else WORDS.get(text)
         labels = {
             "@number": is_number,
             "@often": is_number
-            and (is_counted or (is_many and not lexicon_meaning(after, "unit"))),
+            and (is_counted or (is_multiplied and not lexicon_meaning(after, "unit"))),
             "@percent": is_number and self.has_percent,
             "@in_s": lexicon_meaning(text, "unit")[:1] == ("s",),
             "@other": text not in WORDS and self.means(text) == OPPOSITE_MOVES.get(self.own),
             "@paced": self._is_paced(k),
             "@told": self.tokens and self._is_told(k),
             f"@no{concept}": not is_of_kit,
-            "@call": known and known.is_call,
-            "@order": known and known.role.is_instruction,
+            "@call": word_row and word_row.is_call,
+            "@order": word_row and word_row.role.is_instruction,
             "@ask": self.means(text) in ASKING,
             "@quote": text in QUOTES and text != "`",
             "@mark": text in MARKS,
@@ -279,10 +279,10 @@ class Trailing:
             return len(words) == 1 or token.text in self.names.defs
         if len(words) == 1 and token.text in WORDS and not lexicon_meaning(token.text, "note"):
             return True
-        is_told = (
+        is_explained = (
             self.means(token.text) or lexicon_meaning(token.text, "power") or self.own == "START"
         )
-        if is_told or len(words) > 1:
+        if is_explained or len(words) > 1:
             return False
         source = token.source or ""
         is_name = len(source) > 1 and source.isupper()
@@ -290,26 +290,28 @@ class Trailing:
 
     def _is_order(self, k: int) -> bool:
         """Whether the word at a place says what the instruction does not."""
-        text, own = self.row[k].text, self.own
+        text, own_word = self.row[k].text, self.own
         is_last = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row[k + 1 :])
         is_begun = k or len(text) == 1 or lexicon_meaning(text, "count")
         is_small = lexicon_meaning(text, "small") and not is_last and is_begun
-        if is_small or (own == "BEEP" and lexicon_meaning(text, "note")):
+        if is_small or (own_word == "BEEP" and lexicon_meaning(text, "note")):
             return False
         if lexicon_meaning(text, "lap", "turn"):
-            return own not in ("L", "R", "M") and not (own == "B" and lexicon_meaning(text, "lap"))
+            return own_word not in ("L", "R", "M") and not (
+                own_word == "B" and lexicon_meaning(text, "lap")
+            )
         if lexicon_meaning(text, "on", "off", "act"):
             return True
         if lexicon_meaning(text, "end") or text in ENDED:
             return self.is_in_block and not self.is_arm
         if lexicon_meaning(text, "until"):
-            return own != "SHOW" and self.row[0].text != "(" and not self.is_asked
-        meant = self.means(text)
-        known = WORDS.get(meant)
-        is_same = meant == own or (meant == "S" and self.is_asked)
-        if is_same or known is None or known.role.is_of_values or meant == "START":
+            return own_word != "SHOW" and self.row[0].text != "(" and not self.is_asked
+        concept = self.means(text)
+        word_row = WORDS.get(concept)
+        is_repetition = concept == own_word or (concept == "S" and self.is_asked)
+        if is_repetition or word_row is None or word_row.role.is_of_values or concept == "START":
             return False
-        return own not in ("LOOP", "DEF", "S", "STOP") or meant not in ("S", "LOOP", "DEF")
+        return own_word not in ("LOOP", "DEF", "S", "STOP") or concept not in ("S", "LOOP", "DEF")
 
 
 @lru_cache(maxsize=1)

@@ -35,7 +35,7 @@ from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
 from tiniscript.recovery.calls import likely_word, own_example, usage_with
-from tiniscript.recovery.ends import possible_places, shown
+from tiniscript.recovery.ends import places_text, possible_places
 from tiniscript.recovery.meanings import (
     ASKING,
     DONE,
@@ -169,10 +169,10 @@ class _Text:
         for line in self.source.text[:place].split("\n"):
             for part in without_note(line)[0].split(";"):
                 first = next((it.text for it in lexemes(part.rpartition("|")[2])), "")
-                meant = {"FOREVER": "LOOP"}.get(self.names.meant(first), self.names.meant(first))
-                if meant in BLOCK_ENDS:
-                    ends.append(BLOCK_ENDS[meant])
-                elif ends and (meant in BLOCK_ENDS.values() or lexicon_meaning(first, "end")):
+                concept = {"FOREVER": "LOOP"}.get(self.names.meant(first), self.names.meant(first))
+                if concept in BLOCK_ENDS:
+                    ends.append(BLOCK_ENDS[concept])
+                elif ends and (concept in BLOCK_ENDS.values() or lexicon_meaning(first, "end")):
                     ends.pop()
         return "".join(ends[-1:])
 
@@ -181,19 +181,23 @@ class _Text:
         nameless = [
             diagnostic for diagnostic in diagnostics if diagnostic.code is codes.DEF_NEEDS_NAME
         ]
-        unknown = (
+        unknown_calls = (
             diagnostic for diagnostic in diagnostics if diagnostic.code is codes.UNKNOWN_WORD
         )
-        wholes = ((it, self.source[instruction_at(it.span, self.source)]) for it in unknown)
-        called = (it.values["found"] for it, whole in wholes if len(lexemes(whole)) == 1)
+        instructions = (
+            (it, self.source[instruction_at(it.span, self.source)]) for it in unknown_calls
+        )
+        called = (
+            it.values["found"] for it, instruction in instructions if len(lexemes(instruction)) == 1
+        )
         name = next(called, "") if len(nameless) == 1 else ""
         if not name:
             return diagnostics
-        own, end = nameless[0], nameless[0].span.end
+        nameless_diagnostic, end = nameless[0], nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
-        text = own._replace(values={"name": name}, repair=repair)
+        text = nameless_diagnostic._replace(values={"name": name}, repair=repair)
         return [
-            text if diagnostic is own else diagnostic
+            text if diagnostic is nameless_diagnostic else diagnostic
             for diagnostic in diagnostics
             if diagnostic.values.get("found") != name
         ]
@@ -243,7 +247,7 @@ class Usage:
         return [self._label_of_found(), *map(self._label_of, range(len(self.row)))]
 
     def _label_of_found(self) -> str:
-        code, here = self.found.code, self.source[self.found.span]
+        code, found_text = self.found.code, self.source[self.found.span]
         is_strange = code is codes.UNKNOWN_WORD and self.is_first and bool(self.row)
         is_strange = is_strange and not self.found.values.get("near")
         text = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
@@ -251,17 +255,17 @@ class Usage:
         labels: dict[str, object] = {
             code.number: True,
             "@bare": code is codes.MISSING_OPEN and self.is_first,
-            f"@{code.number}_{here.upper()}": True,
+            f"@{code.number}_{found_text.upper()}": True,
             "@values": code in _OF_VALUES,
             "@twice": code is codes.SETUP_TWICE,
         }
         if code is codes.ODD_CHARACTER:
             after = self.behind_it[:1]
             labels |= {
-                "@upside": here in "\u00a1\u00bf" and len(self.words) > 1,
-                "@negating": here == "!" and after not in ("", "\n", " "),
-                "@brace": here in ("{", "}"),
-                "@quoted": here in QUOTES,
+                "@upside": found_text in "\u00a1\u00bf" and len(self.words) > 1,
+                "@negating": found_text == "!" and after not in ("", "\n", " "),
+                "@brace": found_text in ("{", "}"),
+                "@quoted": found_text in QUOTES,
             }
         if code is codes.RESERVED:
             labels["@clocked"] = bool(self.other_name.is_set) and self.other_name.word == "TIME"
@@ -284,11 +288,11 @@ class Usage:
 
     def _label_of(self, k: int) -> str:
         text, span = self.row[k].text, self.spans[k + 1]
-        is_said = bool(self.names.meant(text) or lexicon_meaning(text, "turn", "end", "short"))
+        has_meaning = bool(self.names.meant(text) or lexicon_meaning(text, "turn", "end", "short"))
         labels = {
             "@quote": text in QUOTES,
             "@known": text in WORDS,
-            "@loose": not k and not is_said,
+            "@loose": not k and not has_meaning,
             "@button": self.is_button(text),
             "@behind": span.start >= self.found.span.start,
         }
@@ -328,14 +332,18 @@ class Usage:
 
     def usage(self, word: str) -> str:
         """Return how an instruction is written: a block with its end, where the text has none."""
-        if word in ASKING and (asked := self.question(word)):
-            return asked
+        if word in ASKING and (question := self.question(word)):
+            return question
         if word in ("L", "R") and (angle := _ANGLE.search(self.source[self.piece])):
             if float(angle[1]) >= LONG_S:  # `turnLeft(90, 70)`: no seconds
                 return f"{word}({angle[1]} DEG, {angle[2]})"
         numbers = [token.text for token in self.row if token.kind is NUMBER]
-        if len(numbers) == 1 and "(" not in self.signs and (own := usage_with(word, numbers[0])):
-            return own
+        if (
+            len(numbers) == 1
+            and "(" not in self.signs
+            and (usage_with_number := usage_with(word, numbers[0]))
+        ):
+            return usage_with_number
         if word == "SHOW" and (
             variables_used := [it for it in self.words if it in self.names.variables]
         ):
@@ -434,9 +442,9 @@ class Usage:
             not name or number or len({*numbers_given}) > 1
         ):  # seconds, or how often: who writes it knows
             call = _CALL.fullmatch(piece)
-            is_other = call is None or lexicon_meaning(call[1], *_NO_CALLS)
+            is_known_call = call is None or lexicon_meaning(call[1], *_NO_CALLS)
             is_often = bool(number and self.around.lacks_loop)
-            return _Own("", "" if is_other or call is None else call[1], is_often, 0, False)
+            return _Own("", "" if is_known_call or call is None else call[1], is_often, 0, False)
         if self.names.meant(name):
             return _Own("", "", False, 0, False)  # a function of another language
         lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.text)
@@ -467,8 +475,8 @@ class Usage:
         """A word behind a number, which is no value: a unit of something else, or nothing."""
         before = self.before()
         calls = [one.text for one, after in pairwise(before) if after.text == "("]
-        here = self.source[self.found.span]
-        word, found = WORDS.get("".join(calls[-1:])), plain(here)
+        found_text = self.source[self.found.span]
+        word, found = WORDS.get("".join(calls[-1:])), plain(found_text)
         is_word = found.isidentifier() and found not in WORDS and not self.names.is_name(found)
         if word is None or not word.arguments or before[-1].kind is not NUMBER or not is_word:
             return None
@@ -479,7 +487,7 @@ class Usage:
         is_of_way = bool(way) and unit == (WAYS[way].unit, "1000")
         text = f"{before[-1].text} {way}" if is_of_way else ""
         return (
-            _NoValue(word, argument, before[-1].text, here, unit[0] if unit else "", text)
+            _NoValue(word, argument, before[-1].text, found_text, unit[0] if unit else "", text)
             if (argument.unit in _WANTED)
             else None
         )
@@ -520,13 +528,15 @@ class Usage:
         end = self.found.values["word"]
         if word is None or len(values) != len(word.arguments) or end not in ("MAX", "MIN"):
             return {}
-        of = [k for k, value in enumerate(values) if plain(value) == end]
-        if not of or any(word.arguments[k].unit != POWER.unit for k in of):
+        positions = [k for k, value in enumerate(values) if plain(value) == end]
+        if not positions or any(word.arguments[k].unit != POWER.unit for k in positions):
             return {}
         number = as_text(POWER.high) if end == "MAX" else str(_SLOW)
-        values_text = ", ".join(number if k in of else value for k, value in enumerate(values))
-        low = as_text(word.arguments[of[0]].low)
-        values_said = {"low": low, "high": as_text(word.arguments[of[0]].high)}
+        values_text = ", ".join(
+            number if k in positions else value for k, value in enumerate(values)
+        )
+        low = as_text(word.arguments[positions[0]].low)
+        values_said = {"low": low, "high": as_text(word.arguments[positions[0]].high)}
         return values_said | {"greatest" if end == "MAX" else "slow": f"{word.text}({values_text})"}
 
     def reading(self, word: str) -> str:
@@ -570,17 +580,17 @@ class Usage:
         """Where a block ends that has no end: its indentation, or its line, says so."""
         rows = self.text.splitlines()
         k = self.source.position(self.found.span.start)[0] - 1
-        behind = without_note(self.behind_it[: len(rows[k])])[0]
+        first_line = without_note(self.behind_it[: len(rows[k])])[0]
         rest = [
             item.strip()
-            for item in behind.split("\n")[0].split(";")
+            for item in first_line.split("\n")[0].split(";")
             if _WORD_CHARACTER.search(item)
         ]
         below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
-            begun = self.source[Span(self.found.span.start, self.piece.end)]
-            places = possible_places(tokens_of(f"{begun};{behind}"))
-            return {"behind": rest[-1], "places": shown(places)}
+            block_text = self.source[Span(self.found.span.start, self.piece.end)]
+            places = possible_places(tokens_of(f"{block_text};{first_line}"))
+            return {"behind": rest[-1], "places": places_text(places)}
         if not below:
             return {"head": self.source[self.found.span]}
         depth = [len(row) - len(row.lstrip()) for row in rows]
@@ -690,8 +700,8 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
             yield k
         elif is_begun and not is_inside:
             count = _value_count(tokens, k + 1)
-            is_own = count == parameters and count != (len(WORDS[word].arguments) or -1)
-            if is_own or after.kind in (*_BEGINS, "end"):
+            has_own_values = count == parameters and count != (len(WORDS[word].arguments) or -1)
+            if has_own_values or after.kind in (*_BEGINS, "end"):
                 yield k
 
 
@@ -853,7 +863,7 @@ def _method_call(gaps: Gaps) -> str:
     """What a part of a thing does, if that is a call: WRITE of `servo.write`."""
     thing, _, done = plain(gaps.place.text[slice(*_member(_usage_at(gaps)))]).rpartition(".")
     right = "" if lexicon_meaning(thing, "device") else gaps.place.names.meant(done)
-    return right if gaps.place.names.takes(right) else ""
+    return right if gaps.place.names.takes_values(right) else ""
 
 
 def _member(usage: Usage) -> Span:
@@ -1127,10 +1137,10 @@ def _taking(gaps: Gaps) -> list[str]:
     values = [it.strip() for it in usage.source[usage.piece].strip("() ").split(",")]
     if not all(_PLAIN_NUMBER.fullmatch(value) for value in values):
         return []
-    known = (WORDS[word] for word in _TAKING if len(WORDS[word].arguments) == len(values))
+    words = (WORDS[word] for word in _TAKING if len(WORDS[word].arguments) == len(values))
     return [
         f"{word.text}({', '.join(values)})"
-        for word in known
+        for word in words
         if all(
             _may_be(argument, float(it))
             for argument, it in zip(word.arguments, values, strict=True)

@@ -29,7 +29,7 @@ def laid_out(tokens: Sequence[Lexeme]) -> str:
 
 def as_written(tokens: Sequence[Lexeme]) -> str:
     """Return a line as it was written, with its own spaces where nothing was changed."""
-    out, before = "", made("(")
+    line, before = "", made("(")
     for token in tokens:
         space = token.space
         if space is None:
@@ -39,9 +39,9 @@ def as_written(tokens: Sequence[Lexeme]) -> str:
             space = " "
         if before.text == "(" and before.source is None:
             space = ""
-        out += space + _source(token)
+        line += space + _source(token)
         before = token
-    return out
+    return line
 
 
 def _source(token: Lexeme) -> str:
@@ -101,8 +101,8 @@ def with_signs(line: str) -> str:
     sign_names = _with_closed(sign_names)
     is_begun = sign_names[:1] == ["bar"] and text[: sign_matches[0].start()].strip() in ("SI", "SB")
     names = " ".join(sign_names).split()
-    opened, closed = names.count("open"), names.count("close")
-    if not closed <= opened <= closed + is_bare or not (opened or is_begun):
+    open_count, closed_count = names.count("open"), names.count("close")
+    if not closed_count <= open_count <= closed_count + is_bare or not (open_count or is_begun):
         return line
     for match, names in zip(
         sign_matches[::-1], [name.split() for name in sign_names[::-1]], strict=True

@@ -43,25 +43,25 @@ class Chip(NamedTuple):
     pin_volts: int = 5 * ONE  # in thousandths: what its pins give, and the most that they take
     capabilities: int = 0  # what its firmware has of `needs` in an image
 
-    def can(self, pin: int, need: str) -> bool:
-        """Return whether `pin` has the ability `need`, one of NEEDS."""
-        if need == "input":
+    def can(self, pin: int, ability: str) -> bool:
+        """Return whether `pin` has the ability `ability`, one of NEEDS."""
+        if ability == "input":
             return pin in self.digital or pin in self.reading
-        if need == "analog":
+        if ability == "analog":
             return pin in self.analog
-        if need == "pwm":
+        if ability == "pwm":
             return pin in self.pwm
-        if need == "echo":
+        if ability == "echo":
             return pin in self.echo
-        if need == "count":
+        if ability == "count":
             return pin in self.counting
         return pin in self.digital  # output, pull_up, servo, tone
 
-    def pin_number(self, written: object) -> int | None:
+    def pin_number(self, pin_text: object) -> int | None:
         """Return the number of `5` or `"A0"`, or None where the board has no such pin."""
-        number = written if isinstance(written, int) else None
-        if isinstance(written, str) and self.first_analog is not None:
-            letter, digits = written[:1].upper(), written[1:]
+        number = pin_text if isinstance(pin_text, int) else None
+        if isinstance(pin_text, str) and self.first_analog is not None:
+            letter, digits = pin_text[:1].upper(), pin_text[1:]
             if letter == "A" and digits in ANALOG_DIGITS:
                 number = self.first_analog + int(digits)
         every = self.digital | self.reading | self.analog | self.link_pins

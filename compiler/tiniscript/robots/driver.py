@@ -37,7 +37,7 @@ class PinKey(NamedTuple):
     """
 
     key: str
-    need: str
+    ability: str
     is_optional: bool = False
     fixed: int | None = None
     name: str = ""
@@ -150,9 +150,9 @@ class Plan:
         self.off: list[str] = []  # what a stop turns off besides the motors
         self.servo_pins: list[str] = []
 
-    def pin(self, name: str, number: int, mode: str = "", beside: str = "") -> str:
+    def pin(self, name: str, number: int, mode: str = "", comment: str = "") -> str:
         """Add a pin, and return what it is called."""
-        note = f"  // {beside}" if beside else ""
+        note = f"  // {comment}" if comment else ""
         text = CHIPS[self.robot.board.chip].pin_name(number)
         self.constants.append(f"const int {name} = {text};{note}")
         if mode:
@@ -192,8 +192,8 @@ class Driver(ABC):
         """Return the key of the profile that makes it take a fixed pin, or nothing: it does not."""
         return "driver"
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
-        """Return what it looks like; a sensor `sees` what its place in the robot's body says."""
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
+        """Return what it looks like; a sensor `sensed` what its place in the robot's body says."""
         return self.looks
 
 

@@ -160,25 +160,25 @@ def _read_labels(table: Table, kit: Kit, name: str) -> Mapping[str, Mapping[str,
     A missing one is taken from another language, or is the name itself.
     """
     devices = (*kit.sensors, *kit.actuators)
-    known = [language for language in languages() if table.has(language)]
-    written = {item: _read_language(table, item, devices) for item in known}
+    label_languages = [language for language in languages() if table.has(language)]
+    labels_read = {item: _read_language(table, item, devices) for item in label_languages}
     table.finish()
     labels: ByLanguage[dict[str, str]] = ByLanguage()
-    for language in dict.fromkeys((SOURCE_LANGUAGE, *known)):
+    for language in dict.fromkeys((SOURCE_LANGUAGE, *label_languages)):
         labels[language] = {"robot": name, **{device.name: device.name for device in devices}}
-        for item in (*known, language):
-            labels[language].update(written.get(item, {}))
+        for item in (*label_languages, language):
+            labels[language].update(labels_read.get(item, {}))
     return labels
 
 
 def _read_language(table: Table, language: str, devices: Sequence[Device]) -> dict[str, str]:
     labels = table.table(language)
-    known = {device.name: device.name for device in devices}
+    known_names = {device.name: device.name for device in devices}
     result = {}
     for key in labels.key_names():
-        name = "robot" if key == "robot" else known.get(key.upper())
+        name = "robot" if key == "robot" else known_names.get(key.upper())
         if name is None:
-            labels.complain_not_in_kit(key, tuple(known))
+            labels.complain_not_in_kit(key, tuple(known_names))
         elif (label := labels.label(key, LABEL_CHARACTERS)) is not None:
             result[name] = label
     return result

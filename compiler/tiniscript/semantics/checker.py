@@ -128,14 +128,14 @@ class _Checker(Scope):
         return result
 
     @staticmethod
-    def unread_sensors(values: Sequence[Value], read: int) -> tuple[int, ...]:
-        """Return the sensors in `values`, each once, in order, that `read` does not hold."""
-        expected: list[int] = []
+    def unread_sensors(values: Sequence[Value], sensors_read: int) -> tuple[int, ...]:
+        """Return the sensors in `values`, each once, in order, that are not in `sensors_read`."""
+        unread: list[int] = []
         for value in values:
             for sensor in value.sensors:
-                if not read >> sensor & 1 and sensor not in expected:
-                    expected.append(sensor)
-        return tuple(expected)
+                if not sensors_read >> sensor & 1 and sensor not in unread:
+                    unread.append(sensor)
+        return tuple(unread)
 
     # -- instructions -------------------------------------------------------------------------
 
@@ -154,12 +154,12 @@ class _Checker(Scope):
         value = self.types.value(node.value, node.name if name is None else None)
         self.check_stack_fits([value], node.span)
         number = self.variable(node, value) if name is None else name.number
-        known = self.types.variable_names[number]
-        if ANY not in (known, value.type) and known != value.type:
+        known_type = self.types.variable_names[number]
+        if ANY not in (known_type, value.type) and known_type != value.type:
             free = self.wrong.free_name(node.name, self.procedures)
             other = f"{free} = {self.source[node.value.span]}"
             self.report(codes.TYPE_CHANGES, node.value.span, name=node.name, other=other,
-                        old="@" + known, new="@" + value.type)  # fmt: skip
+                        old="@" + known_type, new="@" + value.type)  # fmt: skip
         self.take([value], node.span, output)
         output.append(ir.Assign(number, value.terms, node.span))
 
@@ -244,14 +244,14 @@ class _Checker(Scope):
         argument: ast.Argument,
         spec: Argument,
         word: str,
-        of: tuple[ast.Command, Word] | None = None,
+        called: tuple[ast.Command, Word] | None = None,
     ) -> Value:
-        """Check a number argument, `of` a command; a plain one must be in range."""
+        """Check a number argument, `called` a command; a plain one must be in range."""
         if argument.is_plain:
             part = argument.expression[0]
             assert isinstance(part.value, int)
             if not spec.low <= part.value <= spec.high:
-                self.wrong.report_out_of_range(argument.span, part.value, spec, word, of)
+                self.wrong.report_out_of_range(argument.span, part.value, spec, word, called)
         value = self.types.value(argument)
         if value.type == "yes_no":
             self.wrong.report_not_number(argument.span, word)
@@ -269,10 +269,10 @@ class _Checker(Scope):
         self.check_stack_fits([value], argument.span)
         return value
 
-    def report_not_condition(self, argument: ast.Argument, by: str) -> None:
+    def report_not_condition(self, argument: ast.Argument, asker: str) -> None:
         result = self.source[argument.span]
         values = self.types.wrong.condition(argument.span)
-        self.report(codes.WANTS_CONDITION, argument.span, None, by=by, found=result, **values)
+        self.report(codes.WANTS_CONDITION, argument.span, None, by=asker, found=result, **values)
 
     def check_stack_fits(self, values: Sequence[Value], span: Span) -> None:
         if any(value.depth + i > STACK_VALUES for i, value in enumerate(values)):
@@ -396,9 +396,9 @@ class _Checker(Scope):
             after &= self.definitely_read_mask
             self.definitely_read_mask = before
             arms.append(ir.Arm(reads, value.terms, body, arm.span))
-        otherwise = self.nested_body(node.otherwise, False, node.span)
+        else_body = self.nested_body(node.otherwise, False, node.span)
         self.definitely_read_mask &= after
-        output.append(ir.If(tuple(arms), otherwise, node.span, node.has_else))
+        output.append(ir.If(tuple(arms), else_body, node.span, node.has_else))
 
     def loop(self, node: ast.Loop, output: list[Statement]) -> None:
         count = None
@@ -424,9 +424,9 @@ class _Checker(Scope):
         output.append(ir.Break(node.span))
 
     def def_(self, node: ast.Def, output: list[Statement]) -> None:
-        known = self.names.get(node.name)
-        if known is not None:
-            code = codes.DEF_TWICE if known.kind == "def" else codes.NAME_TAKEN
+        known_name = self.names.get(node.name)
+        if known_name is not None:
+            code = codes.DEF_TWICE if known_name.kind == "def" else codes.NAME_TAKEN
             other = self.wrong.free_name(node.name, self.procedures)
             self.report(code, node.name_span, name=node.name, other=other)
         if len(self.procedures) == DEFS:
@@ -442,7 +442,7 @@ class _Checker(Scope):
         self.inside = None
         self.facts.append(_Procedure(self.definitely_read_mask, self.deepest, self.calls))
         self.restore_scope(outside)
-        if known is None:
+        if known_name is None:
             self.names[node.name] = Name("def", len(self.procedures))
         procedure = ir.Procedure(node.name, body, node.span, values=tuple(values))
         self.procedures.append(procedure)
@@ -454,14 +454,18 @@ class _Checker(Scope):
                         name=node.name, limit=str(PARAMETERS))  # fmt: skip
         parameters: list[int] = []
         for each, kind in zip(node.parameters, self.kinds.kinds_of(node), strict=True):
-            known = self.names.get(each.name)
-            is_free = known is None and each.name not in self.taken_names
-            parameters.append(self.new_variable(each.name, each.span, kind if is_free else ANY))
-            if known is None:  # even if it is taken below: that is said once
+            known_name = self.names.get(each.name)
+            is_new_name = known_name is None and each.name not in self.taken_names
+            parameters.append(self.new_variable(each.name, each.span, kind if is_new_name else ANY))
+            if known_name is None:  # even if it is taken below: that is said once
                 self.names[each.name] = Name("variable", parameters[-1])
-            if is_free:
+            if is_new_name:
                 continue
-            if known is not None and known.kind == "variable" and known.number in parameters:
+            if (
+                known_name is not None
+                and known_name.kind == "variable"
+                and known_name.number in parameters
+            ):
                 self.report(codes.PARAMETER_TWICE, each.span, name=each.name)
             else:
                 other = self.wrong.free_name(each.name, self.procedures)
@@ -472,16 +476,16 @@ class _Checker(Scope):
         outside = self.enter_scope()
         self.beside_blocks += outside.blocks
         self.beside_calls += outside.calls
-        look = None
+        until = None
         if node.is_when:
             nothing = ir.Until((), self.types.nothing.terms)
-            look = nothing if node.condition is None else self.until(node.condition, "WHEN")
+            until = nothing if node.condition is None else self.until(node.condition, "WHEN")
         body = self.body(node.body)
         blocks, calls = self.deepest, self.calls
         self.restore_scope(outside)
         self.beside_blocks += blocks
         self.beside_calls += calls
-        self.tasks.append(ir.Task(look, body, node.span))
+        self.tasks.append(ir.Task(until, body, node.span))
 
     def check_copies_fit(self, program: ir.Program) -> None:
         """Check that a machine has room for what each task has of its own."""

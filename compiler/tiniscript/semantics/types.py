@@ -132,7 +132,7 @@ class Types:
         if operand.type == YES_NO:
             self.wrong.report_not_number(op, operand)
 
-    def _require_yes_no(self, by: str, operand: Operand, other: Operand | None = None) -> None:
+    def _require_yes_no(self, asker: str, operand: Operand, other: Operand | None = None) -> None:
         """`other` is the other side of an AND or OR."""
         if operand.type == NUMBER:
-            self.wrong.report_not_yes_no(by, operand, other)
+            self.wrong.report_not_yes_no(asker, operand, other)

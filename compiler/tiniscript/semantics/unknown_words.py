@@ -75,8 +75,8 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     suggestion = suggestion or scope.nearest_word(
         word, chain(commands, scope.names, scope.def_names)
     )
-    is_own = suggestion in scope.set_somewhere or suggestion in scope.def_names
-    if is_own and suggestion.rstrip(_DIGITS) == word.rstrip(_DIGITS):
+    is_own_name = suggestion in scope.set_somewhere or suggestion in scope.def_names
+    if is_own_name and suggestion.rstrip(_DIGITS) == word.rstrip(_DIGITS):
         suggestion = ""  # `PASO2`, where there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
     letters = [word[0]] if is_held and word[0] in WORDS else expand_short(word)
@@ -110,13 +110,13 @@ def report_placeholders(scope: Scope, node: ast.Command, word: Word, count: int)
 
 def report_words_shown(scope: Scope, count: int) -> None:
     """`SHOW(HOLA)`: words are not shown. Changes the diagnostics since `count`."""
-    shown = dict.fromkeys(
+    words_shown = dict.fromkeys(
         diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:MOST_SUGGESTIONS]
     )
     for k, each in enumerate(scope.diagnostics[count:], count):
         if each.code is codes.UNKNOWN_NAME and not each.values.get("near"):
             name = each.values["found"]
-            number = str(len([*takewhile(name.__ne__, filter(None, shown))]) + 1)
+            number = str(len([*takewhile(name.__ne__, filter(None, words_shown))]) + 1)
             is_word = len(name) > 2 and name.isalpha() and not value_of(name)
             said_as = {"meaning": name, "number": number} if is_word else {}
             scope.diagnostics[k] = each._replace(values={**each.values, "shown": name, **said_as})

@@ -128,8 +128,8 @@ class WrongValues:
             or diagnostics[0].span.start > span.start
         ):
             return False
-        between = self.scope.source[Span(diagnostics[0].span.end, span.start)]
-        return not set(between) & set("();\r\n") and "," in between
+        text_between = self.scope.source[Span(diagnostics[0].span.end, span.start)]
+        return not set(text_between) & set("();\r\n") and "," in text_between
 
     def report_mixed(self, op: str, left: Operand, right: Operand, span: Span) -> None:
         """A number is compared with a yes or no."""
@@ -147,7 +147,7 @@ class WrongValues:
         operand_text = self.scope.source[span]
         self.scope.report(codes.WANTS_NUMBER, span, None, by=by, found=operand_text, **own)
 
-    def report_not_yes_no(self, by: str, operand: Operand, other: Operand | None) -> None:
+    def report_not_yes_no(self, asker: str, operand: Operand, other: Operand | None) -> None:
         """`other` is the other side of an AND or OR.
 
         `X = 5 OR 6` means `X = 5 OR X = 6`, and `X AND Y > 5` means `X > 5 AND Y > 5`.
@@ -155,17 +155,20 @@ class WrongValues:
         span = Span(operand.start, operand.end)
         result = self.scope.source[span]
         values = self.condition(span)
-        if by == "NOT" and "example" in values:  # NOT X is `X = 0`, as other languages have it
+        if asker == "NOT" and "example" in values:  # NOT X is `X = 0`, as other languages have it
             values = {**values, "example": f"{result.upper()} > 0"}
         if other is not None and other.end - other.start <= 80:
-            asked = self.scope.source[Span(other.start, other.end)]
-            before, after = _COMPARISON_BEFORE.match(asked), _COMPARISON.fullmatch(asked)
+            compared_text = self.scope.source[Span(other.start, other.end)]
+            before, after = (
+                _COMPARISON_BEFORE.match(compared_text),
+                _COMPARISON.fullmatch(compared_text),
+            )
             is_sensor = result.upper() in (reading.name for reading in self.scope.kit.readings)
             if other.start < operand.start and before and not is_sensor:
                 values = {"fix": f"{before[0]} {result}"}
             elif after and result.isidentifier():
                 values = {"fix": f"{result} {after[1]}"}
-        self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=result, **values)
+        self.scope.report(codes.WANTS_CONDITION, span, None, by=asker, found=result, **values)
 
     def condition(self, span: Span) -> dict[str, str]:
         """Return the yes or no that a number alone means, or an example of a condition with it."""
@@ -174,9 +177,9 @@ class WrongValues:
         if name is not None:
             example = f"{word} < 10" if name.kind == "sensor" else f"{word} > 0"
             return {"example": example, **value_of_def(self.scope, span)}
-        meant = {"0": "FALSE", "1": "TRUE"}.get(word)
-        if meant or not word.isdecimal():
-            return {"fix": meant} if meant else {}
+        truth_word = {"0": "FALSE", "1": "TRUE"}.get(word)
+        if truth_word or not word.isdecimal():
+            return {"fix": truth_word} if truth_word else {}
         names = {device.name for device in self.scope.kit.sensors if not device.is_yes_no}
         sensor = "DISTANCE" if "DISTANCE" in names else "X"
         return {"times": word, "example": f"{sensor} < {word}"}

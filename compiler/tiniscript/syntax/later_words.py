@@ -43,13 +43,13 @@ def report_given_way(tokens: Sequence[Token], kit: Kit, source: Source) -> list[
 
 def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
     """Return the younger words that a program names something with where they first appear."""
-    seen: set[str] = set()
+    token_of_word: set[str] = set()
     words = {}
     is_begin, is_in_def, depth = True, False, 0
     for k, token in enumerate(tokens):
         kind, text = token.kind, token.text
-        if kind is WORD and text in KIT_WORDS_SINCE and text not in seen:
-            seen.add(text)
+        if kind is WORD and text in KIT_WORDS_SINCE and text not in token_of_word:
+            token_of_word.add(text)
             is_named = tokens[k - 1].text == "DEF" if k else False
             is_set = is_begin and tokens[k + 1].kind == "=" and not _value_uses(text, tokens, k + 2)
             if is_named or is_set or is_in_def:

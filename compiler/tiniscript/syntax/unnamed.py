@@ -20,8 +20,8 @@ def used_inside(source: Source, number: Token) -> dict[str, str]:
     text = source.text
     head = re.compile(r"[^;\r\n]*").match(text, number.end)
     end = _DEF_END.search(text, number.end)
-    is_alone = text[number.end :].lstrip(" \t")[:1] == ")"
-    if head is None or end is None or not is_alone:
+    is_only_number = text[number.end :].lstrip(" \t")[:1] == ")"
+    if head is None or end is None or not is_only_number:
         return {}
     for each in re.compile(r"[^;\r\n]+").finditer(text, head.end(), end.start()):
         instruction = each[0].partition("//")[0].strip()

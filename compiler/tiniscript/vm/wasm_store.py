@@ -88,19 +88,19 @@ def _bound_function(store: Store, function: Func) -> Callable[..., Any]:
         from wasmtime._func import enter_wasm
 
         kind = function.type(store)
-        takes, gives = len(kind.params), kind.results
-        raw = (c.wasmtime_val_raw_t * max(takes, 1))()
+        argument_count, gives = len(kind.params), kind.results
+        raw = (c.wasmtime_val_raw_t * max(argument_count, 1))()
         quick, inside, trap_type = c.wasmtime_func_call_unchecked, function._func, c.wasm_trap_t
     except (ImportError, AttributeError):
         return partial(function, store)
     numbers = memoryview(raw).cast("B").cast("q")
-    apart = len(numbers) // len(raw)
+    result_step = len(numbers) // len(raw)
     result = numbers if gives == [ValType.i64()] else numbers.cast("B").cast("i")
 
     def call(*values: int) -> int | None:
-        assert len(values) == takes, values
+        assert len(values) == argument_count, values
         for k, value in enumerate(values):
-            numbers[k * apart] = value
+            numbers[k * result_step] = value
         trap = POINTER(trap_type)()
         error = quick(store._context(), byref(inside), raw, len(raw), byref(trap))
         if error or trap:

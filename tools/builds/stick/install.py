@@ -60,8 +60,8 @@ def main(words: list[str]) -> int:
         return _fail("failed", system=sys.platform, version=version)
     for name in ("pages", "examples"):
         shutil.copytree(STICK / name, folder / name, dirs_exist_ok=True)
-    tried = [str(python), "-m", "tiniscript", "run", "--machine", "cpp", "-e", "SI|F(1, 80)"]
-    completed = subprocess.run(tried, env=variables, capture_output=True)
+    command = [str(python), "-m", "tiniscript", "run", "--machine", "cpp", "-e", "SI|F(1, 80)"]
+    completed = subprocess.run(command, env=variables, capture_output=True)
     if completed.returncode:
         why = completed.stderr.decode("utf-8", "replace").strip().splitlines() or ["?"]
         _say("no_robot", why=why[0])

@@ -29,9 +29,9 @@ def run(options: Namespace, language: str) -> int:
     header = firmware.header([robot], "tsc firmware --board, from a robot profile.")
     if not outputs.write_output(options.output, header.encode()):
         return 0
-    now = _next(options.robot, Path(options.output), robot.board.chip, language)
+    next_command = _next(options.robot, Path(options.output), robot.board.chip, language)
     say("board", language, file=inputs.printable_name(options.output), robot=robot.name,
-        chip=robot.board.chip, now=now)  # fmt: skip
+        chip=robot.board.chip, now=next_command)  # fmt: skip
     return 0
 
 

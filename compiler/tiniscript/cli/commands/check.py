@@ -59,25 +59,25 @@ def _repair(
 
     result = repair(program_input, robot)
     name = inputs.printable_name(program_input.name)
-    says = not options.json
+    is_talkative = not options.json
     if options.diff:
-        if says and result.repairs:
+        if is_talkative and result.repairs:
             print_difference(program_input.data, result.data, program_input.name)
         key = "would_repair" if result.repairs else "nothing_repaired"
-        if says and (result.repairs or not result.compiled.is_right):
+        if is_talkative and (result.repairs or not result.compiled.is_right):
             key += "_one" if result.repairs == 1 else ""
             say_aside(key, language, file=name, n=result.repairs)
         return result.compiled, result.compiled.is_right and not result.repairs
     if program_input.path is None:
-        if says:
+        if is_talkative:
             outputs.write_output(None, result.data)
     elif result.repairs:
         outputs.write(program_input.path, result.data, "unwritable_source")
-    if says and result.repairs and program_input.path is not None:
+    if is_talkative and result.repairs and program_input.path is not None:
         print_difference(program_input.data, result.data, program_input.name)
         key = "repaired_one" if result.repairs == 1 else "repaired"
         say_aside(key, language, file=name, n=result.repairs)
-    if says and not result.compiled.is_right:
+    if is_talkative and not result.compiled.is_right:
         key = "not_repaired" if result.repairs else "nothing_repaired"
         print(text(key, language).format(file=name) + "\n", file=sys.stderr)
     compiled = compiling.for_level(result.compiled, robot, options.text_level)

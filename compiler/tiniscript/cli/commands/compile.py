@@ -47,7 +47,7 @@ def run(options: Namespace, language: str) -> int:
         code=len(compiled.code),
         stack=compiled.verdict.stack_values if compiled.verdict else 0,
         stacks=STACK_VALUES,
-        runs="" if will_fault else _runs(compiled.lowered, robot.kit, language),
+        runs="" if will_fault else _run_time_text(compiled.lowered, robot.kit, language),
     )
     print(sentence, file=sys.stderr if target is None else sys.stdout)
     return 0
@@ -87,17 +87,17 @@ def _target(program_input: inputs.Input, output: str | None) -> str | None:
     return paths.default_output(program_input.name) if output is None else output
 
 
-def _runs(program: Program | None, kit: Kit, language: str) -> str:
+def _run_time_text(program: Program | None, kit: Kit, language: str) -> str:
     assert program is not None
-    how = duration(program, kit)
-    if how.never_ends:
+    run_time = duration(program, kit)
+    if run_time.never_ends:
         key = "runs_forever"
-    elif how.most is None:
-        if not how.least:
+    elif run_time.most_ms is None:
+        if not run_time.least_ms:
             return ""
         key = "runs_at_least"
     else:
-        key = "runs_exactly" if how.most == how.least else "runs_between"
-    least, most = as_text(how.least), as_text(how.most or 0)
+        key = "runs_exactly" if run_time.most_ms == run_time.least_ms else "runs_between"
+    least, most = as_text(run_time.least_ms), as_text(run_time.most_ms or 0)
     sentence = text(key, language).format(least=least, most=most)
     return text("runs", language).format(how=sentence)

@@ -26,14 +26,16 @@ def run(options: Namespace, language: str) -> int:
     if len(laid_out.encode()) > LARGEST_SOURCE_BYTES:
         raise CommandError(2, "fmt_too_large", file=inputs.printable_name(program_input.name))
     name = inputs.printable_name(program_input.name)
-    is_same = laid_out.encode() == program_input.data
+    is_formatted = laid_out.encode() == program_input.data
     if options.check:
-        key = "is_formatted" if is_same else "would_format"
-        print(text(key, language).format(file=name), file=sys.stdout if is_same else sys.stderr)
-        return 0 if is_same else 1
+        key = "is_formatted" if is_formatted else "would_format"
+        print(
+            text(key, language).format(file=name), file=sys.stdout if is_formatted else sys.stderr
+        )
+        return 0 if is_formatted else 1
     if program_input.path is None:
         outputs.write_output(None, laid_out.encode())
-    elif not is_same:
+    elif not is_formatted:
         outputs.write(program_input.path, laid_out.encode(), "unwritable_source")
         say("formatted", language, file=name)
     return 0

@@ -29,7 +29,7 @@ def run(options: Namespace, language: str) -> int:
             if options.plot and sys.stderr.isatty():
                 with Board(text("plot_waiting", language)) as board:
                     printer = EventPrinter(language, options.json, has_times=True, rows=add,
-                                    out=board.say, err=board.warn)  # fmt: skip
+                                           print_line=board.say, print_error=board.warn)  # fmt: skip
                     _watch(connection, printer, seconds, board)
             else:
                 printer = EventPrinter(language, options.json, has_times=True, rows=add)

@@ -39,12 +39,12 @@ def run(options: Namespace, language: str) -> int:
             print(note, file=sys.stderr, flush=True)
     rows = list_rows(language, options.port, in_reach)
     if options.ask:
-        absent: Row = {"answer": None, "said": text("out_of_reach", language)}
+        absent_row: Row = {"answer": None, "said": text("out_of_reach", language)}
 
         def ask(row: Row) -> Row:
             port = str(row["port"])
-            is_absent = port in in_reach.absent and row["held_by"] is None
-            return absent if is_absent else _ask(port, baud, robot, language)
+            is_absent = port in in_reach.absent_ports and row["held_by"] is None
+            return absent_row if is_absent else _ask(port, baud, robot, language)
 
         with ThreadPoolExecutor(MOST_CHECKS_AT_ONCE) as pool:
             for row, answer in zip(rows, pool.map(ask, rows), strict=True):
@@ -61,7 +61,7 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     try:
         with closing(open_client(port, robot, LOOKING_VERB, baud, language, OPEN_S)) as client:
             reply = client.hello()
-            device_info, heard = client.line.robot, client.line.heard
+            device_info, has_bytes = client.line.robot, client.line.heard
             foreign_board = stranger(client.line)
     except CommandError as failure:
         return {"answer": None, "said": failure.plain(language)}
@@ -88,4 +88,4 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
         }
     if foreign_board is not None and (foreign_board.has_row or foreign_board.is_sure):
         return {"answer": None, "said": Sentence(explain(foreign_board, language).said.rstrip("."))}
-    return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}
+    return {"answer": None, "said": text("port_other" if has_bytes else "port_quiet", language)}

@@ -43,8 +43,8 @@ QUIT = "qQ\x04"
 def run(options: Namespace, language: str) -> int:
     profile = inputs.robot(options, language)
     port = whole_number("--listen", options.listen, 0, 0, 65535, language)
-    usual, most = profile.board.baud, opening.FASTEST_BAUD
-    baud = whole_number("--baud", options.baud, usual, 0, most, language)
+    usual_baud, fastest_baud = profile.board.baud, opening.FASTEST_BAUD
+    baud = whole_number("--baud", options.baud, usual_baud, 0, fastest_baud, language)
     pushes = sorted(
         [(time_ms, PUSH_MS) for time_ms in _pushes_ms("--button-at", options.button_at)]
         + [(time_ms, HOLD_MS) for time_ms in _pushes_ms("--hold-at", options.hold_at)]
@@ -104,9 +104,9 @@ class _Stage:
         robot = self.simulator.robot
         self._introduce()
         try:
-            with Keys() as keys, handle_signals() as ended:
+            with Keys() as keys, handle_signals() as end_request:
                 self._begin()
-                while not ended.is_set and (end_ms is None or robot.now_ms < end_ms):
+                while not end_request.is_set and (end_ms is None or robot.now_ms < end_ms):
                     if pushes and robot.now_ms >= pushes[0][0]:
                         self.simulator.push(pushes.pop(0)[1])
                     self.simulator.turn(self._limit_s(pushes, end_ms))
@@ -217,9 +217,11 @@ def _announcement(name: str, number: int) -> Announcement:
     try:
         from tiniscript.virtual.announcement import Announcement, NameTaken
     except ImportError as missing:
-        how = install_advice.command(install_advice.RADIO)
+        install_command = install_advice.command(install_advice.RADIO)
         why = missing.name or ""
-        raise CommandError(2, "port_not_installed", port="--announce", why=why, how=how) from None
+        raise CommandError(
+            2, "port_not_installed", port="--announce", why=why, how=install_command
+        ) from None
     try:
         return Announcement(name, number)
     except NameTaken:

@@ -61,10 +61,10 @@ def _without_robot(
     """
     may_open = port is not None
     findings = diagnosis_of(options, port, expected, language, may_open=may_open).findings
-    wrong = [finding for finding in findings if finding.is_wrong]
-    if not wrong:  # it has come meanwhile
+    wrong_findings = [finding for finding in findings if finding.is_wrong]
+    if not wrong_findings:  # it has come meanwhile
         return [sure("plain", said=failure.sentence(language))]
-    return [finding._replace(of=finding.part or "answers") for finding in wrong]
+    return [finding._replace(of=finding.part or "answers") for finding in wrong_findings]
 
 
 def _print(
@@ -81,8 +81,15 @@ def _print(
         say("selftest_head", language, robot=name, port=printable_name(port or ""))
     print("\n".join(rows(findings, language)))
     counts = {item: sum(row.verdict == item for row in findings) for item in (OK, WRONG, OPEN)}
-    good, wrong, left = counts[OK], counts[WRONG], counts[OPEN]
-    say("selftest_end", language, good=good, all=len(findings), wrong=wrong, open=left)
+    good_count, wrong_count, open_count = counts[OK], counts[WRONG], counts[OPEN]
+    say(
+        "selftest_end",
+        language,
+        good=good_count,
+        all=len(findings),
+        wrong=wrong_count,
+        open=open_count,
+    )
 
 
 def _report(findings: list[Finding], name: str, port: str, language: str) -> list[str]:

@@ -21,13 +21,13 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(2, "output_needs_arduino", file=inputs.printable_name(options.output))
     if program_input.is_image and options.robot is None:
         robot = images.robot_for(program_input, robot)
-    ready = images.ready(program_input, robot, language)
-    if ready is None:
+    ready_program = images.ready_program(program_input, robot, language)
+    if ready_program is None:
         return 1
     if options.json:
-        print_json(ready, robot)
+        print_json(ready_program, robot)
     else:
-        print_disassembly(ready, robot, inputs.printable_name(program_input.name), language)
+        print_disassembly(ready_program, robot, inputs.printable_name(program_input.name), language)
     return 0
 
 
@@ -37,8 +37,8 @@ def _sketch(options: Namespace, program_input: inputs.Input, robot: Robot, langu
     if program_input.is_image:
         raise CommandError(2, "sketch_needs_text", file=inputs.printable_name(program_input.name))
     if robot.board.chip not in BOARD_TITLES:
-        known = ", ".join(BOARD_TITLES)
-        raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=known)
+        boards_text = ", ".join(BOARD_TITLES)
+        raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=boards_text)
     compiled = compiling.compile_input(program_input, robot, is_strict=False)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:

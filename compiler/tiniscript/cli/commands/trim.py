@@ -68,8 +68,8 @@ def _trim_options(options: Namespace, language: str) -> dict[str, Any]:
     for name in Pace._fields:
         text: str | None = getattr(options, name)
         if text is not None:
-            option, most = f"--{name.replace('_', '-')}", round(MOST_PACE * ONE)
-            size = thousandths(option, text.replace(",", "."), 0, 0, most, language)
+            option, most_thousandths = f"--{name.replace('_', '-')}", round(MOST_PACE * ONE)
+            size = thousandths(option, text.replace(",", "."), 0, 0, most_thousandths, language)
             result[name] = size / ONE
     if options.least is not None:
         result["least"] = whole_number("--least", options.least, 0, 0, MOST_LEAST, language)

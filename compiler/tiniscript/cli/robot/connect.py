@@ -175,7 +175,9 @@ class Connection(Client):
             self._tell_stale_key(device_info)
         return device_info
 
-    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
+    def wait(
+        self, request: PendingRequest[T], on_wait: Callable[[], None] | None = None
+    ) -> Reply[T]:
         """Wait for the outcome of a request, and say so where that takes long."""
         arrived = request.done_bytes
 
@@ -184,12 +186,12 @@ class Connection(Client):
             if request.done_bytes != arrived:
                 arrived = request.done_bytes
                 self.quiet.note_news()
-            if look is not None:
-                look()
+            if on_wait is not None:
+                on_wait()
             self.quiet.look()
 
         if self._is_meeting:
-            return super().wait(request, look)
+            return super().wait(request, on_wait)
         self.quiet.begin()
         return super().wait(request, watch)
 
@@ -435,13 +437,14 @@ def _ask_port(language: str, can_bring: bool, virtual: list[directory.RunningRob
             if offer_virtual_robot(language):
                 return OWN_VIRTUAL_ROBOT
         raise CommandError(3, "no_ports")
-    about = {item.port: describe_port(item, language) for item in result}
-    about |= {item.address: describe_virtual_robot(item, language) for item in virtual}
+    descriptions = {item.port: describe_port(item, language) for item in result}
+    descriptions |= {item.address: describe_virtual_robot(item, language) for item in virtual}
     say_aside("choose_port", language)
     for number, port in enumerate(choices, 1):
-        more = "   ".join(filter(None, (names.get(port), about.get(port))))
+        details = "   ".join(filter(None, (names.get(port), descriptions.get(port))))
         print(
-            f"  {number}  {printable_name(port)}   {printable_name(more)}".rstrip(), file=sys.stderr
+            f"  {number}  {printable_name(port)}   {printable_name(details)}".rstrip(),
+            file=sys.stderr,
         )
     if can_bring:
         choices.append(OWN_VIRTUAL_ROBOT)

@@ -10,7 +10,7 @@ from struct import iter_unpack
 from tiniscript.base.fixed_point import value_of, value_text
 from tiniscript.bytecode.statements import statement_of, statement_starts
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.images import Ready
+from tiniscript.cli.images import ReadyProgram
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
@@ -32,19 +32,21 @@ from tiniscript.link.requests import Reply
 STEP, GO = "sS \n\r", "gG"  # keys
 
 
-def places_of(line_texts: Sequence[str], ready: Ready, language: str) -> tuple[int, ...]:
+def places_of(
+    line_texts: Sequence[str], ready_program: ReadyProgram, language: str
+) -> tuple[int, ...]:
     """Return the offset of the first statement from each line on. Raises CommandError."""
     lines = [whole_number("--break", line, 1, 1, 10**6, language) for line in line_texts]
-    if ready.places is None:
+    if ready_program.places is None:
         raise CommandError(2, "break_image")
     if len(set(lines)) > MOST_BREAKPOINTS:
         raise CommandError(2, "break_most", most=str(MOST_BREAKPOINTS))
-    statements = statement_starts(ready.image.code)
+    statements = statement_starts(ready_program.image.code)
     offsets = []
     for line in lines:
         places = [
             statement_of(statements, place.offset)
-            for place in ready.places.places
+            for place in ready_program.places.places
             if place.line >= line
         ]
         if not places:
@@ -63,12 +65,14 @@ class Debugger:
     """Tells where a program halts. At a terminal a key steps it or lets it go on; elsewhere it goes
     on by itself."""
 
-    def __init__(self, connection: Connection, printer: EventPrinter, ready: Ready) -> None:
-        assert ready.places is not None
+    def __init__(
+        self, connection: Connection, printer: EventPrinter, ready_program: ReadyProgram
+    ) -> None:
+        assert ready_program.places is not None
         self.connection = connection
         self.printer = printer
-        self.map: Map = ready.places
-        self.statements = statement_starts(ready.image.code)
+        self.map: Map = ready_program.places
+        self.statements = statement_starts(ready_program.image.code)
         self.keys = Keys()
         self.has_keys = sys.stdin.isatty() and is_in_front() and not printer.is_json
         self.is_halted = False
@@ -111,9 +115,9 @@ class Debugger:
         if key and self.is_halted:
             self._resume(RESUME_STEP if key in STEP else RESUME_GO)
 
-    def _resume(self, how: int) -> None:
-        self.is_halted, self.is_stepping = False, how == RESUME_STEP
-        self.connection.request(lambda session: session.resume(how))
+    def _resume(self, resume_kind: int) -> None:
+        self.is_halted, self.is_stepping = False, resume_kind == RESUME_STEP
+        self.connection.request(lambda session: session.resume(resume_kind))
 
     def _print_halt(self, at: int, task: int, place: MapLocation | None) -> None:
         language = self.printer.language

@@ -91,25 +91,30 @@ class Description(NamedTuple):
 
     def text(self) -> str:
         """Return it as lines."""
-        say, status, fields = self._text, self.status, self.fields()
+        format_text, status, fields = self._text, self.status, self.fields()
         kit = f"{fields['kit']} ({fields['robot']})" if fields["robot"] else fields["kit"]
-        state, reset = say(f"state_{fields['state']}"), say(f"reset_{fields['reset']}")
+        state, reset = (
+            format_text(f"state_{fields['state']}"),
+            format_text(f"reset_{fields['reset']}"),
+        )
         lines = [
-            say("info_robot", id=fields["id"], whose=say(f"whose_{self.owner}")),
-            say("info_kit", kit=kit, isa=fields["isa"], room=self.device_info.room),
+            format_text("info_robot", id=fields["id"], whose=format_text(f"whose_{self.owner}")),
+            format_text("info_kit", kit=kit, isa=fields["isa"], room=self.device_info.room),
             self._reader(),
             self._program(),
-            say("info_state", state=state, reset=reset),
+            format_text("info_state", state=state, reset=reset),
         ]
         if self.trim not in (None, Trim(), Trim(pace=Pace())):
-            lines.append(say("info_trim", trim=trim_in_words(self.trim or Trim(), self.language)))
+            lines.append(
+                format_text("info_trim", trim=trim_in_words(self.trim or Trim(), self.language))
+            )
         if status.fault:
             lines.append(self._fault())
         if status.damaged or status.dropped or status.framing or status.overrun:
-            lines.append(say("info_hearing", **status._asdict()))
+            lines.append(format_text("info_hearing", **status._asdict()))
         if any(status.noise):
             left, right = status.noise
-            lines.append(say("info_noise", left=left, right=right))
+            lines.append(format_text("info_noise", left=left, right=right))
         return "\n".join(lines)
 
     def _text(self, key: str, **values: object) -> str:

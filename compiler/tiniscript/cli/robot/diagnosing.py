@@ -55,11 +55,11 @@ def diagnosis_of(
         watch_ms,
         tuple(item.address for item in directory.unclaimed_robots()),
     )
-    doing = Doing(not options.json)
+    status_line = Doing(not options.json)
     try:
-        return diagnose(_doors(options, language, doing, expected.pings, may_open), question)
+        return diagnose(_doors(options, language, status_line, expected.pings, may_open), question)
     finally:
-        doing.end()
+        status_line.end()
 
 
 def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expectations:
@@ -78,9 +78,9 @@ def examination_of(
     reply = robot.hello()
     if reply is None:
         raise connection.failure(Reply(LOST))
-    heard: list[RobotAnswers] = []
-    findings = examine(robot, reply, expected._replace(hear=heard.append), on_step=on_step)
-    return findings, heard[-1] if heard else None
+    answers: list[RobotAnswers] = []
+    findings = examine(robot, reply, expected._replace(hear=answers.append), on_step=on_step)
+    return findings, answers[-1] if answers else None
 
 
 def _has_key(robot_id: int) -> bool:
@@ -96,7 +96,9 @@ def _doubt(port: str, hello: HelloReply) -> str:
     return "unproven" if has_to_seal(keys, info) and not is_right else ""
 
 
-def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agreed: bool) -> Doors:
+def _doors(
+    options: Namespace, language: str, status_line: Doing, pings: int, is_agreed: bool
+) -> Doors:
     def open_wire(port: str, baud: int) -> Wire:
         return Wire(ports.open_port(port, baud))
 
@@ -105,7 +107,7 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
             return True
         if options.json or not can_ask():
             return False
-        doing.end()
+        status_line.end()
         return confirm(text("doctor_yes", language).format(port=printable_name(port)))
 
     @contextmanager
@@ -119,5 +121,5 @@ def _doors(options: Namespace, language: str, doing: Doing, pings: int, is_agree
 
     return Doors(
         System(), open_wire, lambda port: join(port, "doctor"), confirms_opening, ports.is_radio,
-        share, lambda what: doing.tell(text(f"doing_{what}", language).format(n=pings)),
+        share, lambda what: status_line.tell(text(f"doing_{what}", language).format(n=pings)),
     )  # fmt: skip

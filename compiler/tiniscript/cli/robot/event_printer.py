@@ -57,24 +57,24 @@ class EventPrinter:
         has_times: bool = False,
         places: Map | None = None,
         rows: Callable[[int, str, str, str], None] | None = None,
-        out: Callable[[str], None] | None = None,
-        err: Callable[[str], None] | None = None,
-        about: Mapping[str, object] | None = None,
+        print_line: Callable[[str], None] | None = None,
+        print_error: Callable[[str], None] | None = None,
+        robot_fields: Mapping[str, object] | None = None,
         began_ms: int | None = None,
         program: int | None = None,
-        whole: Map | None = None,
+        whole_map: Map | None = None,
     ) -> None:
         self.language = language
         self.is_json = is_json
         self.has_times = has_times
         self.places = places
-        shown = whole or places
-        self.shows = Finder({} if shown is None or program is None else {program: shown})
-        self.has_lines = whole is None  # whose numbers a person knows
+        shown_map = whole_map or places
+        self.shows = Finder({} if shown_map is None or program is None else {program: shown_map})
+        self.has_lines = whole_map is None  # whose numbers a person knows
         self.rows = rows
-        self.out = out or _print_line
-        self.err = err or _err
-        self.about = about or {}
+        self.out = print_line or _print_line
+        self.err = print_error or _err
+        self.about = robot_fields or {}
         self.began_ms = began_ms
 
     def tell(self, time_ms: int, event: Event) -> None:
@@ -156,11 +156,19 @@ def printer_of(
     is_json: bool = False,
     places: Map | None = None,
     program: int | None = None,
-    whole: Map | None = None,
+    whole_map: Map | None = None,
 ) -> EventPrinter:
     """Return the printer of a connection's events, above the picture of its virtual robot."""
     simulator = connection.simulator
-    out, err = (None, None) if simulator is None else (simulator.say, simulator.complain)
+    print_line, print_error = (
+        (None, None) if simulator is None else (simulator.say, simulator.complain)
+    )
     return EventPrinter(
-        connection.language, is_json, places=places, out=out, err=err, program=program, whole=whole
+        connection.language,
+        is_json,
+        places=places,
+        print_line=print_line,
+        print_error=print_error,
+        program=program,
+        whole_map=whole_map,
     )

@@ -258,15 +258,15 @@ class Fleet:
 
     def _print_sum(self) -> None:
         """Print the number of successes, and the ports without a robot."""
-        absent = [member for member in self.in_order() if member.is_absent]
-        present_count = len(self.members) - len(absent)
+        absent_members = [member for member in self.in_order() if member.is_absent]
+        present_count = len(self.members) - len(absent_members)
         if self.options.json or not present_count:
             return
         sys.stdout.flush()
-        done = sum(member.mark == "ok" for member in self.members)
-        lines = [text("crew_sum", self.language).format(done=done, all=present_count)]
-        if absent:
-            ports = ", ".join(printable_name(member.target.port) for member in absent)
+        done_count = sum(member.mark == "ok" for member in self.members)
+        lines = [text("crew_sum", self.language).format(done=done_count, all=present_count)]
+        if absent_members:
+            ports = ", ".join(printable_name(member.target.port) for member in absent_members)
             lines.append(text("crew_absent", self.language).format(ports=ports))
         print("\n".join(lines), file=sys.stderr, flush=True)
 

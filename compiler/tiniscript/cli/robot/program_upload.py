@@ -28,18 +28,23 @@ from tiniscript.link.requests import Reply
 
 
 def send_program(
-    connection: Connection, ready: images.Ready, options: Namespace, draw: Callable[[int], None]
+    connection: Connection,
+    ready_program: images.ReadyProgram,
+    options: Namespace,
+    draw_progress: Callable[[int], None],
 ) -> ReceiptReply:
-    """Send a program to the robot; return its receipt. `draw` gets the number of code bytes that
-    have arrived. Raises CommandError."""
+    """Send a program to the robot; return its receipt. `draw_progress` gets the number of code
+    bytes that have arrived. Raises CommandError."""
     places: tuple[int, ...] = ()
     if options.breaks:
-        places = places_of(options.breaks, ready, connection.language)
+        places = places_of(options.breaks, ready_program, connection.language)
         require_breakpoints(connection)
     runs = not options.no_run and not places
-    reply = connection.send_program(ready.image, runs, not options.no_save, options.detach, draw)
+    reply = connection.send_program(
+        ready_program.image, runs, not options.no_save, options.detach, draw_progress
+    )
     if reply.status:
-        raise _failure(connection, reply, ready)
+        raise _failure(connection, reply, ready_program)
     if places:  # it starts with them
         connection.request(lambda session: session.break_at(places))
         return connection.request(lambda session: session.start()).values
@@ -47,7 +52,7 @@ def send_program(
 
 
 def follow_run(
-    connection: Connection, ready: images.Ready, saving: Saving, options: Namespace,
+    connection: Connection, ready_program: images.ReadyProgram, saving: Saving, options: Namespace,
     printer: EventPrinter,
 ) -> int:  # fmt: skip
     """Follow a program until it has ended and is saved; return the exit code.
@@ -55,48 +60,59 @@ def follow_run(
     Raises CommandError.
     """
     exit_code = 0
-    if is_running(ready, options):
+    if is_running(ready_program, options):
         if options.detach:
             return 0
         if connection.simulator is not None:
             connection.simulator.watch()
         if options.breaks:
-            exit_code = _follow_halts(connection, ready, saving, printer)
+            exit_code = _follow_halts(connection, ready_program, saving, printer)
         else:
-            exit_code = RunMonitor(connection, printer, look=saving.look).follow(saving.run)
-    elif has_button(connection, ready, options):
+            exit_code = RunMonitor(connection, printer, on_wait=saving.look).follow(saving.run)
+    elif has_button(connection, ready_program, options):
         exit_code = follow_button(connection, printer, saving)
     saving.wait()
     return exit_code
 
 
 def _follow_halts(
-    connection: Connection, ready: images.Ready, saving: Saving, printer: EventPrinter
+    connection: Connection,
+    ready_program: images.ReadyProgram,
+    saving: Saving,
+    printer: EventPrinter,
 ) -> int:
     """The same for a program with breakpoints."""
-    with Debugger(connection, printer, ready) as debugger:
+    with Debugger(connection, printer, ready_program) as debugger:
 
-        def look() -> None:
+        def on_wait() -> None:
             saving.look()
             debugger.look()
 
-        return RunMonitor(connection, printer, debugger.hold, look).follow(saving.run)
+        return RunMonitor(connection, printer, debugger.hold, on_wait).follow(saving.run)
 
 
-def is_running(ready: images.Ready, options: Namespace) -> bool:
+def is_running(ready_program: images.ReadyProgram, options: Namespace) -> bool:
     """Whether a program runs once it has arrived."""
-    return ready.image.start == "SI" and not options.no_run
+    return ready_program.image.start == "SI" and not options.no_run
 
 
-def has_button(connection: Connection, ready: images.Ready, options: Namespace) -> bool:
+def has_button(
+    connection: Connection, ready_program: images.ReadyProgram, options: Namespace
+) -> bool:
     """Whether the program waits for the button of this command's own virtual robot."""
-    return connection.simulator is not None and ready.image.start == "SB" and not options.no_run
+    return (
+        connection.simulator is not None
+        and ready_program.image.start == "SB"
+        and not options.no_run
+    )
 
 
-def _failure(connection: Connection, reply: Reply[object], ready: images.Ready) -> CommandError:
+def _failure(
+    connection: Connection, reply: Reply[object], ready_program: images.ReadyProgram
+) -> CommandError:
     port = inputs.printable_name(connection.port)
     if reply.status == STATUSES["TOO_LARGE"]:
-        code_bytes, room = len(ready.image.code), reply.detail
+        code_bytes, room = len(ready_program.image.code), reply.detail
         return CommandError(
             1, "too_large_by", code=str(code_bytes), over=str(code_bytes - room), room=str(room)
         )
@@ -106,17 +122,21 @@ def _failure(connection: Connection, reply: Reply[object], ready: images.Ready) 
 
 
 def receipt(
-    connection: Connection, ready: images.Ready, name: str, values: ReceiptReply,
+    connection: Connection, ready_program: images.ReadyProgram, name: str, values: ReceiptReply,
     options: Namespace,
 ) -> dict[str, object]:  # fmt: skip
     """Return the result of the upload as data."""
-    image, runs, saved = ready.image, is_running(ready, options), saved_name(values.saved)
+    image, runs, saved = (
+        ready_program.image,
+        is_running(ready_program, options),
+        saved_name(values.saved),
+    )
     return {
         "event": "RECEIPT",
         "robot": connection.device_info.name,
         "port": connection.port,
         "program": name,
-        "image_bytes": ready.image_bytes,
+        "image_bytes": ready_program.image_bytes,
         "code_bytes": len(image.code),
         "checksum": f"{values.program:08x}",
         "saved": saved,
@@ -124,7 +144,7 @@ def receipt(
         "start": image.start,
         "is_running": runs,
         "is_detached": runs and bool(options.detach),
-        "is_pushed": has_button(connection, ready, options),  # JSON output has no keys
+        "is_pushed": has_button(connection, ready_program, options),  # JSON output has no keys
     }
 
 

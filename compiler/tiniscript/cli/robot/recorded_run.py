@@ -58,7 +58,7 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     message = sensor_lists(options.sensor, robot, language)
     world, form = recordings.stored_form(world_of(options, language))
-    result = images.ready(program_input, robot, language, is_strict=True)
+    result = images.ready_program(program_input, robot, language, is_strict=True)
     if result is None:
         return 1
     image = result.image
@@ -79,8 +79,8 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
     head = recordings.head(
         VIRTUAL, source, robot, image.checksum, world=form, seed=seed, told=message
     )
-    whole = recordings.encode(head, rows, end_ms)
-    outputs.write(Path(options.record), whole.encode(), "unwritable_more --record")
+    recording = recordings.encode(head, rows, end_ms)
+    outputs.write(Path(options.record), recording.encode(), "unwritable_more --record")
     if fault:
         text = fault_text(fault, fault_at or 0, result.places, program_input.is_image, language)
         print(text, file=sys.stderr)

@@ -51,10 +51,10 @@ class Rows:
         except (OSError, ValueError) as why:
             raise self._failure(why) from None
 
-    def line(self, whole: str) -> None:
+    def line(self, row: str) -> None:
         try:
             with self._lock:
-                self._file.write(whole + "\n")
+                self._file.write(row + "\n")
                 self._file.flush()
         except (OSError, ValueError) as why:
             raise self._failure(why) from None

@@ -94,11 +94,11 @@ class TerminalRemote:
             self.has_quit = True
             raise KeyboardInterrupt
         self._refuse()
-        held = self._held.pressed_at(now_s)
-        if held == self._said and (held == NOTHING_PRESSED or now_s - self._said_s < SAY_S):
+        pressed = self._held.pressed_at(now_s)
+        if pressed == self._said and (pressed == NOTHING_PRESSED or now_s - self._said_s < SAY_S):
             return
-        self._said, self._said_s = held, now_s
-        self._request = self._connection.begin_request(lambda session: session.press(*held))
+        self._said, self._said_s = pressed, now_s
+        self._request = self._connection.begin_request(lambda session: session.press(*pressed))
 
     def _refuse(self) -> None:
         outcome = None if self._request is None else self._request.outcome

@@ -131,8 +131,8 @@ def tell(connection: Connection, wifi_reply: WifiReply, name: str = "", command:
 def _class_command(options: Namespace) -> str:
     """Return `tsc class` at the broker of the options, as this computer reaches it."""
     place = broker_options.place(options, bool(options.tls))
-    usual = broker_options.place(Namespace(broker=place.host), bool(options.tls))
-    words = ["--broker", place.host if place == usual else str(place)]
+    default_place = broker_options.place(Namespace(broker=place.host), bool(options.tls))
+    words = ["--broker", place.host if place == default_place else str(place)]
     words += ["--class", broker_options.group(options)]
     if options.user is not None:
         words += ["--user", options.user]

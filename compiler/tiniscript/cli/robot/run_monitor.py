@@ -37,14 +37,14 @@ class RunMonitor:
         connection: Connection,
         printer: EventPrinter,
         hold: Callable[[Event], bool] | None = None,
-        look: Callable[[], None] | None = None,
-        look_s: float = LOOK_S,
+        on_wait: Callable[[], None] | None = None,
+        wait_s: float = LOOK_S,
     ) -> None:
         self.connection = connection
         self.printer = printer
         self.hold = hold
-        self.look = look
-        self.look_s = look_s
+        self.look = on_wait
+        self.look_s = wait_s
 
     def follow(self, run: int) -> int:
         """Wait for the end of a run; return the exit code.

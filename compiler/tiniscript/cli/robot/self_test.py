@@ -75,8 +75,8 @@ class SelfTest(Conversation):
         if robot.board.buzzer is not None:
             self._buzzer()
 
-    def _add(self, cause: str, of: str = "", **values: str) -> None:
-        self.found.append(Finding(cause, True, values, of))
+    def _add(self, cause: str, part: str = "", **values: str) -> None:
+        self.found.append(Finding(cause, True, values, part))
 
     # -- what the robot says about itself
 
@@ -120,7 +120,10 @@ class SelfTest(Conversation):
             self._add("plain", "discs", said=failure.sentence(self.language))
             return
         after = self.connection.request(lambda session: session.status()).values.noise
-        left, right = (str((now - then) % 256) for now, then in zip(after, before, strict=True))
+        left, right = (
+            str((count_now - count_before) % 256)
+            for count_now, count_before in zip(after, before, strict=True)
+        )
         if left == right == "0":
             self._add("discs_rest")
         else:
@@ -156,13 +159,13 @@ class SelfTest(Conversation):
             is_stuck = not sensor.is_yes_no and {*before} <= {sensor.low, sensor.high}
             self._add("stuck" if is_stuck else "reads", name=name, values=values)
             return
-        now = _range(sensor, after)
+        range_text = _range(sensor, after)
         least = 0 if sensor.is_yes_no else (sensor.high - sensor.low) // NOTICED
         if abs(sum(after) - sum(before)) > least * READINGS:
             cause = "changes"
         else:  # a hand may be as bright as the floor
             cause = "as_bright" if sensor.is_yes_no else "same"
-        self._add(cause, name=name, values=values, now=now)
+        self._add(cause, name=name, values=values, now=range_text)
 
     def _motors(self, is_lifted: bool) -> None:
         """Turn both. A robot with other wires may learn them, and turns both again."""

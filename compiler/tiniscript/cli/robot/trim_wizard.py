@@ -83,9 +83,9 @@ class TrimWizard(Conversation):
             return trim
         if self.choice("trim_measure", 2) != ANSWER_YES:
             return trim._replace(pace=before.pace)
-        ahead = self._measure("F", DRIVE_S, "trim_how_far")
+        forward_pace = self._measure("F", DRIVE_S, "trim_how_far")
         turning = self._measure("R", TURN_S, "trim_how_round")
-        return trim._replace(pace=Pace(*ahead, *turning))
+        return trim._replace(pace=Pace(*forward_pace, *turning))
 
     def run_line(self, line: str) -> list[int]:
         try:
@@ -98,12 +98,12 @@ class TrimWizard(Conversation):
 
     def _find_wiring(self) -> Trim:
         """Turn each motor; return the trim with which they are those of their wheels."""
-        seen = []
+        wheel_turns = []
         for side in ("left", "right"):
-            seen.append(self.turn_motor(side))
-            if not seen[-1].wheel:
+            wheel_turns.append(self.turn_motor(side))
+            if not wheel_turns[-1].wheel:
                 raise self._failure(sure("still")._replace(of=side))
-        trim = trim_from_answers(Trim(), *seen)
+        trim = trim_from_answers(Trim(), *wheel_turns)
         if trim is None:
             raise self._failure(sure("same_wheel"))
         return trim

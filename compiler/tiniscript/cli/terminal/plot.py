@@ -30,9 +30,9 @@ STEPS = 4  # between the marks of the axis, about
 class Board(Screen):
     """The terminal while values come: what is told, and below it the curves."""
 
-    def __init__(self, waiting: str) -> None:
+    def __init__(self, waiting_text: str) -> None:
         super().__init__()
-        self.plot = Plot(waiting)
+        self.plot = Plot(waiting_text)
         self.drawn_s = 0.0
 
     def __enter__(self) -> Board:
@@ -59,8 +59,8 @@ Values = deque[tuple[int, int]]  # when, and thousandths
 class Plot:
     """`now_ms` is the time of the newest value; `waiting` is said until there is one."""
 
-    def __init__(self, waiting: str = "") -> None:
-        self.waiting = waiting
+    def __init__(self, waiting_text: str = "") -> None:
+        self.waiting = waiting_text
         self.now_ms = 0
         self.curves: dict[str, Values] = {}  # by name, in the order of their first values
         self.styles: dict[str, str] = {}
@@ -88,8 +88,8 @@ class Plot:
         for values in self.curves.values():
             while len(values) > 1 and values[1][0] < begin_ms:
                 values.popleft()
-        known = [value for _, value in chain.from_iterable(self.curves.values())]
-        low, high, step = scale(min(known, default=0), max(known, default=1000))
+        values_shown = [value for _, value in chain.from_iterable(self.curves.values())]
+        low, high, step = scale(min(values_shown, default=0), max(values_shown, default=1000))
         rows = min(ROWS, height - 1)
         ticks = [as_text(value) for value in range(low, high + 1, step)]
         self.margin = max(self.margin, *(len(tick) + 1 for tick in ticks))  # it never jumps back

@@ -26,10 +26,10 @@ class Progress:
     The last percent is there when the line is cleared: what has arrived is not done yet.
     """
 
-    def __init__(self, language: str, whole: int) -> None:
-        """`whole` is the total, in any unit."""
+    def __init__(self, language: str, total: int) -> None:
+        """`total` is the total, in any unit."""
         self.label = text("sending", language)
-        self.whole = whole
+        self.whole = total
         self._begin_s = monotonic()
         self._is_seen = sys.stderr.isatty()
         self._drawn = ""
@@ -40,8 +40,8 @@ class Progress:
         if not self._is_seen or not self.whole or monotonic() - self._begin_s < BLINK_S:
             return False
         percent = min(100 * done // self.whole, MOST_PERCENT)
-        full = COLUMNS * percent // 100
-        line = f"{self.label} [{'#' * full}{'.' * (COLUMNS - full)}] {percent:3} %"
+        full_columns = COLUMNS * percent // 100
+        line = f"{self.label} [{'#' * full_columns}{'.' * (COLUMNS - full_columns)}] {percent:3} %"
         if line == self._drawn:
             return False
         self._drawn, self._is_there = line, True

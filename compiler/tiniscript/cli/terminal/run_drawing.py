@@ -137,17 +137,17 @@ class Picture:
         if len(rows) > height:
             rows[1:3] = [(text("motors", language), f"{left} {right}", "%", "")]
         # values have a column that only grows: one that jumps cannot be read
-        names, *wide = (max(cell_len(row[k]) for row in rows) for k in range(3))
-        self.widest = [max(pair) for pair in zip(self.widest, wide, strict=True)]
+        names, *widths = (max(cell_len(row[k]) for row in rows) for k in range(3))
+        self.widest = [max(pair) for pair in zip(self.widest, widths, strict=True)]
         numbers, units = self.widest
         names = min(names, max(6, width // 3))
         lines = []
-        for name, value, unit, more in rows[:height]:
+        for name, value, unit, detail in rows[:height]:
             line = Text(name)
             line.truncate(names, overflow="ellipsis", pad=True)
             line.append(f" {value:>{numbers}} ", style="bold")
             line.append(f"{set_cell_size(unit, units)}  ")
-            line.append(more, style="" if "│" in more or more is self.ending else "dim")
+            line.append(detail, style="" if "│" in detail or detail is self.ending else "dim")
             line.truncate(width, overflow="ellipsis")
             lines.append(line)
         return lines

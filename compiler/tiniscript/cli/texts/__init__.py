@@ -38,12 +38,12 @@ class Sentence(str):
         template = "".join(self)
         for key, value in plain.items():
             if isinstance(value, int | str) and str(value).isdecimal():
-                for counted in COUNTED:
-                    several, form = (
-                        f"{{{key}}} {languages.plural_text(CATALOGUE, counted, n, self.language)}"
+                for noun_key in COUNTED:
+                    placeholder, form = (
+                        f"{{{key}}} {languages.plural_text(CATALOGUE, noun_key, n, self.language)}"
                         for n in (SEVERAL_COUNT, int(value))
                     )
-                    template = template.replace(several, form)
+                    template = template.replace(placeholder, form)
         return Sentence(template.format(*map(_printable, values), **plain))
 
 

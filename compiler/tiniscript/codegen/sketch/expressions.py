@@ -38,12 +38,12 @@ class Expressions:
 
     def __init__(
         self,
-        use: Callable[[str], str],
+        use_function: Callable[[str], str],
         is_exact: bool,
         variables: Sequence[str],
         sensors: Sequence[str],
     ) -> None:
-        self.use = use
+        self.use = use_function
         self.is_exact = is_exact
         self.variables = variables
         self.sensors = sensors

@@ -347,9 +347,11 @@ def comment_text(text: str) -> str:
     return printable(text).replace("??/", "?? /").rstrip("\\ ")
 
 
-def _truncate(text: str, most: int) -> str:
-    return text if len(text) <= most else text[: most - 1] + "…"
+def _truncate(text: str, most_characters: int) -> str:
+    return text if len(text) <= most_characters else text[: most_characters - 1] + "…"
 
 
-def _rows(text: str, most: int) -> list[str]:
-    return [comment_text(text[at : at + most]) for at in range(0, len(text), most)] or [""]
+def _rows(text: str, most_characters: int) -> list[str]:
+    return [
+        comment_text(text[at : at + most_characters]) for at in range(0, len(text), most_characters)
+    ] or [""]

@@ -82,10 +82,12 @@ def missing_feature(program: ir.Program, kit: Kit) -> str | None:
     Tasks are TASK and WHEN, ways are CM and DEG that are calculated. None where there is a sketch.
     """
     statements = list(ir.all_statements(program))
-    read = {statement.sensor for statement in statements if isinstance(statement, ir.Read)}
+    sensors_read = {statement.sensor for statement in statements if isinstance(statement, ir.Read)}
     if program.tasks:
         return "tasks"
-    if any(k >= len(kit.sensors) for k in read | ir.referenced_numbers("SENSOR", statements)):
+    if any(
+        k >= len(kit.sensors) for k in sensors_read | ir.referenced_numbers("SENSOR", statements)
+    ):
         return "remote"
     return "ways" if any(map(is_open_way, statements)) else None
 
@@ -197,17 +199,17 @@ class _Sketch:
         rows.variables_set_by_calls = self.arguments - {
             *procedure.values
         }  # those of this DEF it sets itself
-        read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
+        variables_read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
         for k in procedure.values:
-            if k not in read:  # or a compiler warns
+            if k not in variables_read:  # or a compiler warns
                 rows.line(f"(void){self.named.variables[k]};")
         rows.body(procedure.body)
         body, rows.lines = rows.lines, []
         types = ("bool" if self.yes_no[k] else "$N" for k in procedure.values)
         names = (self.named.variables[k] for k in procedure.values)
         header = f"void {name}({', '.join(map(' '.join, zip(types, names, strict=True)))}) {{"
-        beside = f"{header:<38}  // {rows.instruction_text(procedure.span.start)}"
-        return "\n".join([*head, beside, *body, "}"])
+        commented_header = f"{header:<38}  // {rows.instruction_text(procedure.span.start)}"
+        return "\n".join([*head, commented_header, *body, "}"])
 
     def layout(
         self, rows: Statements, main: list[str], repeated: list[str], procedures: list[str]
@@ -216,7 +218,7 @@ class _Sketch:
         is_ping, parts = self.program.start == "PING", self.plan
         if not is_ping:
             self.plan.motors()
-        own = {
+        own_functions = {
             **{
                 self.named.reads[k]: self.plan.reader(k, self.named.sensors[k], self.named.reads[k])
                 for k in sorted(rows.read_sensors)
@@ -229,10 +231,10 @@ class _Sketch:
         self.functions.update(parts.functions)
         self.functions["halt"] = self.halt()
         begin = [] if is_ping else self.begin()
-        self.add_needed_helpers([*main, *repeated, *procedures, *own.values(), *begin])
-        wired = [*own.values()]
+        self.add_needed_helpers([*main, *repeated, *procedures, *own_functions.values(), *begin])
+        wired = [*own_functions.values()]
         kit = self.robot.kit
-        about = [
+        introduction = [
             *(
                 self.text_of_key("read", name=kit.sensors[k].name)
                 for k in sorted(rows.read_sensors)
@@ -248,7 +250,10 @@ class _Sketch:
             if key in self.functions
         }
         written = [
-            *(self.with_comment(note, code) for note, code in zip(about, wired, strict=True)),
+            *(
+                self.with_comment(note, code)
+                for note, code in zip(introduction, wired, strict=True)
+            ),
             *(self.with_comment(self.note(key), code) for key, code in functions.items()),
         ]
         used = [*procedures, *wired, *functions.values()]
@@ -313,12 +318,12 @@ class _Sketch:
                 if word in by_name and f"{word}(" in text:
                     self.needed[by_name[word]] = None
             self._names_in(text)
-        waiting = list(self.needed)
-        while waiting:
-            text = self.functions.get(waiting.pop(), "")
+        pending_keys = list(self.needed)
+        while pending_keys:
+            text = self.functions.get(pending_keys.pop(), "")
             before = set(self.needed)
             self._names_in(text)
-            waiting += [key for key in self.needed if key not in before]
+            pending_keys += [key for key in self.needed if key not in before]
 
     def _names_in(self, text: str) -> None:
         for key in re.findall(r"\$([a-z_]+)", text):
@@ -367,8 +372,10 @@ class _Sketch:
         for k, name in enumerate(self.named.variables):
             if k not in self.arguments:
                 lines.append(f"bool {name} = false;" if self.yes_no[k] else f"$N {name} = 0;")
-        named = ir.referenced_numbers("SENSOR", ir.all_statements(self.program))  # read or not
-        for k in sorted(rows.read_sensors | named):
+        named_sensors = ir.referenced_numbers(
+            "SENSOR", ir.all_statements(self.program)
+        )  # read or not
+        for k in sorted(rows.read_sensors | named_sensors):
             kind = self.plan.kind(k)
             lines.append(f"{kind} {self.named.sensors[k]} = {'false' if kind == 'bool' else '0'};")
         pieces = ["\n".join([f"// {self.text_of_key('values')}", *lines])] if lines else []

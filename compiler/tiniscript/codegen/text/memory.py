@@ -91,9 +91,9 @@ class Reader:
 
     # -- memory -------------------------------------------------------------------------------
 
-    def require_room(self, more: int) -> None:
-        """Note that a byte is wanted after the code and `more` bytes."""
-        expected = self.length + more + 1 + self.used
+    def require_room(self, byte_count: int) -> None:
+        """Note that a byte is wanted after the code and `byte_count` bytes."""
+        expected = self.length + byte_count + 1 + self.used
         if expected > self.most:
             self.most = expected
             self.needs.append(Need(expected, self.tokens[max(self.i - 1, 0)].span))
@@ -113,8 +113,8 @@ class Reader:
     def pop(self) -> None:
         self.used -= 1
 
-    def add_name(self, name: str, more: int) -> None:
-        count = 1 + more + len(name)
+    def add_name(self, name: str, other_bytes: int) -> None:
+        count = 1 + other_bytes + len(name)
         self.require_room(len(name) + count - 1)
         self.used += count
 

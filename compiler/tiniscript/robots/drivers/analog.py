@@ -57,10 +57,10 @@ class Analog(SensorDriver):
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", beside)
         if self.is_count(device, wiring):
             return [f"{name} = analogRead({pin});"]
-        zero, full = wiring.settings["zero"], wiring.settings["full"]
-        step, rest = divmod(full - zero, FULL_COUNT)
-        lowest, highest = sorted((zero, full))
-        value = f"{zero} + $counted * {step} + ($counted * {rest} + 511) / {FULL_COUNT}"
+        zero_volts, full_volts = wiring.settings["zero"], wiring.settings["full"]
+        step, rest = divmod(full_volts - zero_volts, FULL_COUNT)
+        lowest, highest = sorted((zero_volts, full_volts))
+        value = f"{zero_volts} + $counted * {step} + ($counted * {rest} + 511) / {FULL_COUNT}"
         if device.low <= lowest and highest <= device.high:
             return [f"long $counted = analogRead({pin});", f"{name} = {plan.value(value)};"]
         limits = f"constrain($value, {device.low}, {device.high})"
@@ -83,9 +83,9 @@ class Analog(SensorDriver):
         return module("OUT", "need_analog", "mind_analog")
 
 
-def _divided_voltage(device: Device, full: int, pin_volts: int) -> Shape:
-    """Two resistors: the lower one has what a pin takes when the whole has `full` thousandths."""
-    upper = f"{10 * (full - pin_volts) / pin_volts:g} kΩ"
+def _divided_voltage(device: Device, full_volts: int, pin_volts: int) -> Shape:
+    """Two resistors: the lower one has what a pin takes when the whole has `full_volts` thousandths."""
+    upper = f"{10 * (full_volts - pin_volts) / pin_volts:g} kΩ"
     is_battery = lexicon_concept(re.split("[_0-9]", device.name)[0]) == "BATTERY"
     name = MOTOR_BATTERY if is_battery else "what_is_measured"
     source = Terminal(name, "pin", to_ground=PULL_DOWN, beyond=upper)

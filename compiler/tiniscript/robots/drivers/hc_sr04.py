@@ -56,15 +56,15 @@ class HcSr04(SensorDriver):
         plan.pin(trigger, wiring.pins["trigger"], "OUTPUT", beside)
         echo = plan.pin(f"{device.name}_$ECHO_$PIN", wiring.pins["echo"], "INPUT")
         drivers = [sensor.driver for sensor in plan.robot.board.sensors]
-        first, again, last = [], "", []
+        first, own_condition, last = [], "", []
         if drivers.count(self.name) > 1:
             first = ["static unsigned long $own_ping = -60;"]
-            again = " && millis() - $own_ping < 58"
+            own_condition = " && millis() - $own_ping < 58"
             last = ["$own_ping = $last_ping;"]
         farthest = min(FARTHEST, device.high)
         return [
             *first,
-            f"if (millis() - $last_ping < 30{again}) return {name};",
+            f"if (millis() - $last_ping < 30{own_condition}) return {name};",
             f"long $value = $ping_ms({trigger}, {echo}) * 4390UL >> 8;",
             *last,
             f"{name} = {plan.value(f'constrain($value, {max(0, device.low)}, {farthest})')};",

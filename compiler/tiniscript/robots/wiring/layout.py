@@ -138,8 +138,8 @@ class _Layout:
             parts[self._side_of(part)].append(part)
         tall = max(len(column) for column in columns) * STEP + BOARD_NAME
         heights = [sum(_room(part) for part in item) for item in parts]
-        whole = max(tall, *heights)
-        self.board_top = MARGIN + STEP + _snap((whole - tall) // 2)
+        full_height = max(tall, *heights)
+        self.board_top = MARGIN + STEP + _snap((full_height - tall) // 2)
         self.board_height = tall
         self.pins: list[Pin] = []
         for side, column in enumerate(columns):
@@ -148,7 +148,7 @@ class _Layout:
                     self.pins.append(self._pin(side, self.board_top + STEP * (k + 1), slot))
         self.pin_y = {pin.number: pin.y for pin in self.pins if pin.number is not None}
         self.tops: dict[int, int] = {}  # of parts, by their place in the plan
-        bottom = MARGIN + STEP + whole
+        bottom = MARGIN + STEP + full_height
         for item in parts:
             self._stack(item, bottom)
 
@@ -206,7 +206,7 @@ class _Layout:
 
     def compute(self) -> Layout:
         channels = (_Channel(), _Channel())
-        around: list[int] = []  # wires from a pin of one side to a part of the other
+        crossing_wires: list[int] = []  # wires from a pin of one side to a part of the other
         ends: dict[int, tuple[int, int]] = {}  # side and height of each wire's terminal
         for part in self.plan.parts:
             top = self.tops[id(part)]
@@ -221,8 +221,8 @@ class _Layout:
             if side == home:
                 channels[side].spans[wire.number] = (self.pin_y[wire.pin], y)
                 continue
-            lanes[wire.number] = below + STEP * len(around)
-            around.append(wire.number)
+            lanes[wire.number] = below + STEP * len(crossing_wires)
+            crossing_wires.append(wire.number)
             channels[home].spans[wire.number] = (self.pin_y[wire.pin], lanes[wire.number])
             channels[side].spans[wire.number] = (lanes[wire.number], y)
         widths = [TRACK * (len(channel.spans) + 1) for channel in channels]

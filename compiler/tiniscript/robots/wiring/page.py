@@ -61,16 +61,16 @@ def rail_rows(plan: Plan) -> list[tuple[str, ...]]:
     rows = [tuple(text(key, language) for key in ("head_tag", "head_colour", "head_joined"))]
     for rail in plan.rails:
         colour = text("colour_black" if rail == GROUND else "colour_red", language)
-        joined = []
+        ends = []
         if rail in BOARD_RAILS:
-            joined.append(text("the_board", language).format(pin=rail))
+            ends.append(text("the_board", language).format(pin=rail))
         for part in plan.parts:
-            joined += [
+            ends += [
                 f"{part.title}: {end.name}"
                 for end in part.ends
                 if end.rail == rail or (end.name == rail and end.wire)
             ]
-        rows += [(rail, colour, item) for item in joined]
+        rows += [(rail, colour, item) for item in ends]
     return rows
 
 
@@ -121,20 +121,22 @@ class _Page:
         for part in self.plan.parts:
             if part.shape.need:
                 parts_by_need.setdefault(part.shape.need, []).append(part)
-        needs = [self.say("need_board", board=self.board)]
+        need_texts = [self.say("need_board", board=self.board)]
         for key, parts in parts_by_need.items():
-            need = f"{len(parts)} × {self.say(key)}"
+            need_text = f"{len(parts)} × {self.say(key)}"
             if any(part.is_device for part in parts):
-                need = self.say("for_part", need=need, parts=", ".join(p.title for p in parts))
-            needs.append(need)
+                need_text = self.say(
+                    "for_part", need=need_text, parts=", ".join(p.title for p in parts)
+                )
+            need_texts.append(need_text)
         values = ", ".join(f"{count} × {value}" for value, count in self.plan.resistors.items())
-        needs.append(self.say("need_resistors", values=values))
+        need_texts.append(self.say("need_resistors", values=values))
         joins = len(self.plan.wires) + len(rail_rows(self.plan)) - 1
-        needs.append(self.say("need_breadboard", count=joins + SPARE_WIRES))
+        need_texts.append(self.say("need_breadboard", count=joins + SPARE_WIRES))
         body = self.plan.body
         size = f"{body.length_cm:g} × {body.width_cm:g} cm"
-        needs += [self.say("need_plate", size=size), self.say("need_power_bank")]
-        return needs
+        need_texts += [self.say("need_plate", size=size), self.say("need_power_bank")]
+        return need_texts
 
     def _unconnected(self) -> list[str]:
         """Return what is joined to no pin and no rail: motors, and what stays free."""

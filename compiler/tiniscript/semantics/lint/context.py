@@ -16,13 +16,13 @@ STANDING_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Beep)  # they leave the r
 MOST_CHARACTERS = 120  # characters of a condition that a message can hold
 
 
-class Around(NamedTuple):
+class BodyContext(NamedTuple):
     """What a body is in: `loop` repeats it itself, `is_last` where the program ends with it."""
 
     loop: ir.Loop | ir.While | None = None
     is_repeated: bool = False  # by a loop, or in a DEF
     is_last: bool = False
-    asked: frozenset[int] = frozenset()  # sensors of the conditions around it
+    asked_sensors: frozenset[int] = frozenset()  # sensors of the conditions around it
     outermost: ir.Loop | ir.While | None = None  # of the loops around it
 
 
