@@ -108,11 +108,18 @@ def make(extras: str, root: Path = ROOT) -> Path:
     if extras not in done_extras:
         stamp.unlink(missing_ok=True)
         say(sentence("installing"))
-        pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        pip_command = [
+            str(python),
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--disable-pip-version-check",
+        ]
         # Python compiles what it imports, a third of what there is.
-        pip += ["--no-input", "--no-compile", "--editable", f"{root}{extras}"]
+        pip_command += ["--no-input", "--no-compile", "--editable", f"{root}{extras}"]
         completed = subprocess.run(
-            pip,
+            pip_command,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             encoding="utf-8",

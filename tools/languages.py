@@ -101,8 +101,8 @@ def _longer(text: str) -> str:
     """Return a text with accents outside of its gaps, and with more words in its last line."""
     parts = re.split(r"(\{[^{}]*\}|`[^`]*`)", text)
     parts[::2] = [part.translate(ACCENTS) for part in parts[::2]]
-    more = "ñandú " * (len(text.rpartition("\n")[2]) // 3 // 6 + 1)
-    return f"{''.join(parts)} {more}".rstrip()
+    padding = "ñandú " * (len(text.rpartition("\n")[2]) // 3 // 6 + 1)
+    return f"{''.join(parts)} {padding}".rstrip()
 
 
 def make_pseudo(english: dict[str, Catalogue]) -> None:
@@ -129,10 +129,10 @@ def check_robot(catalogue_: Catalogue) -> Iterator[Problem]:
 
 def check_lexicon(language: str) -> Iterator[str]:
     """Rows of a lexicon without a meaning that the English one has, or with other than capitals."""
-    known = {row.split()[0] for row in _rows(SOURCE_LANGUAGE)} | {*NOT_IN_ENGLISH} | {*WORDS}
+    known_words = {row.split()[0] for row in _rows(SOURCE_LANGUAGE)} | {*NOT_IN_ENGLISH} | {*WORDS}
     for row in _rows(language):
         meaning, bar, words = row.partition("|")
-        if not bar or not known.issuperset(meaning.split()[:1]) or plain(words) != words:
+        if not bar or not known_words.issuperset(meaning.split()[:1]) or plain(words) != words:
             yield row
 
 

@@ -24,8 +24,8 @@ MEANT = ".meant.ts"
 class Figures(NamedTuple):
     """`known` are the programs of which it is known what they mean."""
 
-    programs: int = 0
-    right: int = 0
+    program_count: int = 0
+    right_count: int = 0
     known_count: int = 0
     harmful: tuple[str, ...] = ()
 
@@ -54,7 +54,7 @@ def figures(folder: Path) -> Figures:
             image(meant_path.read_text(encoding="utf-8")),
         )
         name = path.relative_to(folder).as_posix()
-        figures = Figures(figures.programs + 1, figures.right + bool(result),
+        figures = Figures(figures.program_count + 1, figures.right_count + bool(result),
                           figures.known_count + has_meant_program,
                           (*figures.harmful, name) if is_harmful else figures.harmful)  # fmt: skip
     return figures
@@ -65,9 +65,9 @@ def main(arguments: Iterable[str] | None = None) -> int:
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args(None if arguments is None else [*arguments]).folder
     result = figures(folder)
-    if not result.programs:
+    if not result.program_count:
         sys.exit(f"{folder} has no programs (*.ts).")
-    print(f"right after --fix: {result.right} of {result.programs}")
+    print(f"right after --fix: {result.right_count} of {result.program_count}")
     print(
         f"harmful: {len(result.harmful)} of {result.known_count} whose meaning is known",
         *result.harmful,

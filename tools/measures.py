@@ -25,9 +25,9 @@ Import = ast.Import | ast.ImportFrom
 
 def main() -> int:
     tracked = _tracked_files()
-    package = [path for path in tracked if PACKAGE in path.parents and path.suffix == ".py"]
+    package_paths = [path for path in tracked if PACKAGE in path.parents and path.suffix == ".py"]
     tests = [path for path in tracked if ROOT / "tests" in path.parents]
-    trees = {_name(path): ast.parse(path.read_bytes()) for path in package}
+    trees = {_name(path): ast.parse(path.read_bytes()) for path in package_paths}
     graph = _graph(trees)
     indented_count = sum(
         is_indented for tree in trees.values() for _, is_indented in _imports(tree)
@@ -35,7 +35,7 @@ def main() -> int:
     for label, count in (
         ("tracked lines", _lines(tracked)),
         ("tracked files", len(tracked)),
-        ("Python of the package, lines", _lines(package)),
+        ("Python of the package, lines", _lines(package_paths)),
         ("tests, lines", _lines(tests)),
         ("modules of the package", len({_module(name) for name in graph} - {""})),
         ("arrows between them", sum(map(len, arrows(graph).values()))),
@@ -157,11 +157,11 @@ def circles(graph: Graph) -> set[frozenset[str]]:
 
 def _reachable(graph: Graph, start: str) -> set[str]:
     result: set[str] = set()
-    left = [start]
-    while left:
-        new = graph[left.pop()] - result
+    names_left = [start]
+    while names_left:
+        new = graph[names_left.pop()] - result
         result |= new
-        left += new
+        names_left += new
     return result
 
 

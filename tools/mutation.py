@@ -35,7 +35,7 @@ from tests.support import order
 from tiniscript.base.files import cache_folder
 from tools import ROOT
 
-LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
+TEST_LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
 WAIT_LIMIT_S = 1800  # for what waits and does not work
 AT_ONCE = 2
 NODE_MODULES = Path("tools/studio/node_modules")
@@ -117,10 +117,10 @@ SHARED = {
 PYTHON = {**SHARED, "*": "//", "//": "*", "/": "*"}
 WORDS = {"and": "or", "or": "and", "True": "False", "False": "True", "break": "pass",
          "continue": "pass"}  # fmt: skip
-OPPOSITES = [("breq", "brne"), ("brsh", "brlo"), ("brcs", "brcc"), ("brmi", "brpl"),
-             ("brlt", "brge"), ("brtc", "brts"), ("sbrc", "sbrs"), ("sbic", "sbis"),
-             ("add", "sub"), ("adc", "sbc"), ("dec", "inc"), ("and", "or")]  # fmt: skip
-OPPOSITE = dict(OPPOSITES) | {b: a for a, b in OPPOSITES}
+OPPOSITE_BRANCHES = [("breq", "brne"), ("brsh", "brlo"), ("brcs", "brcc"), ("brmi", "brpl"),
+                     ("brlt", "brge"), ("brtc", "brts"), ("sbrc", "sbrs"), ("sbic", "sbis"),
+                     ("add", "sub"), ("adc", "sbc"), ("dec", "inc"), ("and", "or")]  # fmt: skip
+OPPOSITE = dict(OPPOSITE_BRANCHES) | {b: a for a, b in OPPOSITE_BRANCHES}
 
 OPERATOR = re.compile(r"(?<= )(?:[!=]==?|<<|>>|[-+&|]=|[-+*/%&|^<>]|[<>]=|&&|\|\||\?\?)(?= )")
 NOT = re.compile(r"!(?=[\w(])")
@@ -264,8 +264,8 @@ def draw(modules: Sequence[Module], count: int, seed: int, pattern: str = "*") -
         row = [mutant for mutant in mutants(module) if Path(mutant.file).match(pattern)]
         random.Random(f"{seed} {module.name}").shuffle(row)
         rows.append(row)
-    in_turn = [item for turn in zip_longest(*rows) for item in turn if item is not None]
-    return in_turn[:count]
+    mutants_in_turn = [item for turn in zip_longest(*rows) for item in turn if item is not None]
+    return mutants_in_turn[:count]
 
 
 def module_of(file: str) -> Module:
@@ -318,13 +318,13 @@ class Copy:
     def notices(self, mutant: Mutant, tests: Sequence[str]) -> str:
         """Return which test notices a mutant, or nothing."""
         path = self.folder / mutant.file
-        right, status = path.read_bytes(), path.stat()
+        original_bytes, status = path.read_bytes(), path.stat()
         path.write_text(mutant.text, encoding="utf-8")
         os.utime(path, (status.st_atime, status.st_mtime + 2))  # Python looks at whole seconds
         try:
             return self.first_failure(tests, is_page=path.suffix == ".js")
         finally:
-            path.write_bytes(right)
+            path.write_bytes(original_bytes)
             os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
 
     def first_failure(self, tests: Sequence[str], *, is_page: bool = False) -> str:
@@ -344,7 +344,7 @@ class Copy:
             "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",  # importing them takes longer than most tests
         }
         process = subprocess.Popen(
-            ["sh", "-c", f'ulimit -t {LIMIT_S}; exec "$@"', "sh", sys.executable, *words],
+            ["sh", "-c", f'ulimit -t {TEST_LIMIT_S}; exec "$@"', "sh", sys.executable, *words],
             cwd=self.folder, env=environment, start_new_session=True, text=True, errors="replace",
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         )  # fmt: skip
@@ -379,10 +379,10 @@ def main(arguments: list[str] | None = None) -> int:
     )
     results_path.parent.mkdir(parents=True, exist_ok=True)
 
-    def work(rest: Iterator[Mutant]) -> None:
+    def work(mutants_left: Iterator[Mutant]) -> None:
         with tempfile.TemporaryDirectory() as folder:
             copy = Copy(Path(folder))
-            for mutant in rest:
+            for mutant in mutants_left:
                 if mutant.name not in results:
                     results[mutant.name] = copy.try_mutant(mutant)
                     results_path.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")

@@ -267,7 +267,7 @@ def test_what_became_of_the_robots_is_the_exit_code(
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
     monkeypatch.setattr("tiniscript.cli.inputs.program", lambda *_: SimpleNamespace(name="P"))
     monkeypatch.setattr("tiniscript.cli.inputs.robot_for", lambda *_: None)
-    monkeypatch.setattr("tiniscript.cli.images.ready", lambda *_, **__: "a program")
+    monkeypatch.setattr("tiniscript.cli.images.ready_program", lambda *_, **__: "a program")
     monkeypatch.setattr(classroom, "upload_to_many", lambda *_: code)
     done = {"list": classroom.list_robots, "upload": classroom.upload, "stop": classroom.stop}
     is_usual = verb.startswith("show") and code == 2

@@ -8,7 +8,7 @@ from string import Formatter
 from tests.support.rows import each_row
 from tests.support.texts import in_all
 from tests.support.texts import said as all_said
-from tiniscript.cli.robot.self_test import PARTS, SIDES
+from tiniscript.cli.robot.self_test import SELF_REPORTED_PARTS, SIDES
 from tiniscript.cli.texts.causes import label, sentences_of
 from tiniscript.doctor.findings import CAUSES, OK, Finding
 from tiniscript.link import foreign
@@ -110,7 +110,7 @@ def test_an_examination_finds_what_is_about_a_part_or_that_it_is_no_robot_of_our
     assert {each for each in about_it if not CAUSES[each].part} == {
         "other_robot", "unproven", "of_another_owner", "stopped",
     }  # fmt: skip
-    assert {CAUSES[each].part for each in about_it} == {"", *PARTS}
+    assert {CAUSES[each].part for each in about_it} == {"", *SELF_REPORTED_PARTS}
 
 
 def test_one_restart_is_said_as_one() -> None:

@@ -34,17 +34,17 @@ def main(arguments: list[str] | None = None) -> int:
     unknown_names = [name for name in names if name not in names_known]
     if unknown_names:
         parser.error(f"no such benchmark: {', '.join(unknown_names)}")
-    failed = []
+    failed_names = []
     for name, *rest in rows:
         if name not in names:
             continue
         print("\n# python -m", " ".join([f"tools.bench.{name}", *rest]), end="\n\n", flush=True)
         command = [sys.executable, "-m", f"tools.bench.{name}", *rest]
         if subprocess.run(command, check=False).returncode:
-            failed.append(" ".join([name, *rest]))
-    if failed:
-        print(f"\nnot within its limits, or not done: {', '.join(failed)}", file=sys.stderr)
-    return 1 if failed else 0
+            failed_names.append(" ".join([name, *rest]))
+    if failed_names:
+        print(f"\nnot within its limits, or not done: {', '.join(failed_names)}", file=sys.stderr)
+    return 1 if failed_names else 0
 
 
 if __name__ == "__main__":

@@ -26,10 +26,10 @@ AT_ONCE = "SI|LOOP(FOREVER); M(PAD_Y, PAD_Y); END_LOOP"
 EXAMPLE = ROOT / "examples" / "remote.ts"  # it looks 20 times in a second
 PAD_AHEAD = Pressed(0, 0, 80)
 PWM_PINS = MOTORS[:2]
-TRIES = 300
+TRY_COUNT = 300
 HELD_MS = (100, 400)  # and let go
-SAID_MS = 100
-ANEW_MS = 400  # after a loss, until words arrive
+SAY_INTERVAL_MS = 100
+RECONNECT_MS = 400  # after a loss, until words arrive
 LOST_MS = HOLD_MS + 50  # it stays attached
 # At most, at the slowest, where the program looks at once, by baud. What is let go may come just
 # after what is held was said anew, and waits for the answer or for GAP_MS.
@@ -40,7 +40,7 @@ ROWS = (
     "stick held, to the motor pins",
     "stick released, to the motor pins",
     "stick held, to the motor pins, with `examples/remote.ts`, which looks 20 times a second",
-    f"lost line, to motors off, in {TRIES} of {TRIES}",
+    f"lost line, to motors off, in {TRY_COUNT} of {TRY_COUNT}",
 )
 FORMS = (".1f", ".1f", ".1f", ".0f")
 
@@ -70,7 +70,7 @@ class Hand:
 
     def lose(self) -> float:
         """Return the ms from where a line is lost, over which somebody drives, to motors off."""
-        self._hold(PAD_AHEAD, ANEW_MS)
+        self._hold(PAD_AHEAD, RECONNECT_MS)
         begin_cycle, event_count = self._begin()
         for _ in range(LOST_MS):  # what both say does not arrive
             self._wired.session.poll(self._wired.now_ms)
@@ -82,7 +82,7 @@ class Hand:
 
     def _hold(self, pressed: Pressed, more_ms: int = 0) -> None:
         for ms in range(more_ms + self._chance.randint(*HELD_MS)):
-            if ms % SAID_MS == 0:  # who says nothing for a while holds nothing
+            if ms % SAY_INTERVAL_MS == 0:  # who says nothing for a while holds nothing
                 self._wired.session.press(*pressed)
             self._wired.run(1)
 
@@ -107,11 +107,13 @@ class Hand:
 def measure(firmware: Path, baud: int) -> list[list[float]]:
     """Return the ms of each try, by row."""
     with Hand(firmware, baud, AT_ONCE) as hand:
-        changes = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED)) for _ in range(TRIES)]
-        losses = [hand.lose() for _ in range(TRIES)]
+        changes = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED)) for _ in range(TRY_COUNT)]
+        losses = [hand.lose() for _ in range(TRY_COUNT)]
     with Hand(firmware, baud, EXAMPLE.read_text(encoding="utf-8")) as hand:
-        seldom = [(hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED))[0] for _ in range(TRIES)]
-    return [*map(list, zip(*changes, strict=True)), seldom, losses]
+        pause_ms = [
+            (hand.change(PAD_AHEAD), hand.change(NOTHING_PRESSED))[0] for _ in range(TRY_COUNT)
+        ]
+    return [*map(list, zip(*changes, strict=True)), pause_ms, losses]
 
 
 def main() -> int:

@@ -22,7 +22,7 @@ from tiniscript.link.session import Session
 BAUD = 115_200
 ROUND_TRIP_MS = 40
 MUST = 3.0  # times the wire's time
-MOST_MS = 60_000
+LONGEST_UPLOAD_MS = 60_000
 MOVE = BY_NAME["MOVE8_F"].code
 
 
@@ -90,7 +90,7 @@ def upload(
         now_ms += 1
         from_robot.send(robot.step(to_robot.receive(now_ms)), now_ms)
         session.receive(from_robot.receive(now_ms), now_ms)
-        if now_ms > MOST_MS:
+        if now_ms > LONGEST_UPLOAD_MS:
             raise RuntimeError("the upload has no end")
     if request.outcome.status != OK:
         raise RuntimeError(f"the robot has not taken it: {request.outcome}")

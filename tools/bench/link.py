@@ -48,7 +48,7 @@ OTHER_BOARDS = {  # by environment
     "mega_tinibot2": "`tinibot2`, Mega, with an edge of each disc just before",
 }  # fmt: skip
 UNSHOWN_ENVIRONMENTS = ("mega", "mega_liner")  # they are held to the limit as well
-UPLOADS = 20  # the main loop is elsewhere each time: the slowest counts
+UPLOAD_COUNT = 20  # the main loop is elsewhere each time: the slowest counts
 PHASE_CYCLES = 37
 T = TypeVar("T")
 
@@ -93,8 +93,8 @@ def measure(firmware: Path, baud: int) -> Figures:
     with Uno(firmware, baud=baud) as board:
         wired = connect(board, robots.load(ROBOT), baud)
         require_ok(wired, wired.session.hello())
-        start_ms = max(measure_start(wired, 300 + k)[0] for k in range(UPLOADS))
-        live_us = max(measure_start(wired, 300 + k, is_live=True)[1] for k in range(UPLOADS))
+        start_ms = max(measure_start(wired, 300 + k)[0] for k in range(UPLOAD_COUNT))
+        live_us = max(measure_start(wired, 300 + k, is_live=True)[1] for k in range(UPLOAD_COUNT))
     stop = stops.slowest(firmware, robots.load(ROBOT), "uno", baud)
     return Figures(start_ms, live_us, stop)
 

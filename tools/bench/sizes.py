@@ -226,8 +226,8 @@ def size(name: str, chip: str = AVR) -> Size:
     On the AVR the stack comes on top.
     """
     part = PARTS[name]
-    with_it, without = (_build(part, part.always + use, chip) for use in (part.use, ""))
-    return Size(with_it.flash - without.flash, with_it.ram - without.ram)
+    with_it, size_without = (_build(part, part.always + use, chip) for use in (part.use, ""))
+    return Size(with_it.flash - size_without.flash, with_it.ram - size_without.ram)
 
 
 @lru_cache

@@ -17,8 +17,8 @@ from tools.uno import CYCLES_PER_MS, Uno
 SHORT = "SI|F(2,80)"
 ROWS = (f"`{SHORT}`", "the paper's obstacle program")
 SILENCE_MS = 1100  # what comes sooner after a stop is ignored
-TRIES = 20  # the main loop is elsewhere each time: the slowest counts
-MUST_MS = 5.0  # for the short line
+TRY_COUNT = 20  # the main loop is elsewhere each time: the slowest counts
+LONGEST_MS = 5.0  # for the short line
 
 
 def typed_line_ms(board: Uno, line: str, wait: int) -> float:
@@ -37,7 +37,7 @@ def typed_line_ms(board: Uno, line: str, wait: int) -> float:
 
 
 def slowest(board: Uno, line: str) -> float:
-    return max(typed_line_ms(board, line, 300 + k) for k in range(TRIES))
+    return max(typed_line_ms(board, line, 300 + k) for k in range(TRY_COUNT))
 
 
 def measure(firmware: Path, baud: int) -> list[float]:
@@ -55,7 +55,7 @@ def print_figures(figures_by_baud: dict[int, list[float]], _: Path) -> bool:
     by_line = zip(*figures_by_baud.values(), strict=True)
     page.show("text", [(row, *(f"{ms:.2f} ms" for ms in figures))
                        for row, figures in zip(ROWS, by_line, strict=True)])  # fmt: skip
-    return all(short_ms <= MUST_MS for short_ms, _ in figures_by_baud.values())
+    return all(short_ms <= LONGEST_MS for short_ms, _ in figures_by_baud.values())
 
 
 if __name__ == "__main__":

@@ -25,8 +25,8 @@ from tiniscript import robots
 from tools import ROOT
 from tools.bench import page
 
-RUNS = 21
-LIMIT_S = 20.0
+RUN_COUNT = 21
+UPLOAD_LIMIT_S = 20.0
 CROWD = 30
 UPLOAD = ("upload", str(ROOT / "examples" / "obstacle.ts"), "--detach", "--no-save")
 BYTES_PER_MS = 12  # about 115200 baud
@@ -70,7 +70,7 @@ class Bench:
         upload = self.start(*UPLOAD)
         while not self.pty_robot.moves:
             time.sleep(0.0003)
-            if time.perf_counter() - begin_s > LIMIT_S:
+            if time.perf_counter() - begin_s > UPLOAD_LIMIT_S:
                 raise RuntimeError("the robot did not move")
         took_ms = (time.perf_counter() - begin_s) * 1000
         if upload.wait():
@@ -115,7 +115,7 @@ def main() -> int:
     if missing():
         print(missing(), file=sys.stderr)
         return 2
-    runs = int(sys.argv[1]) if len(sys.argv) > 1 else RUNS
+    runs = int(sys.argv[1]) if len(sys.argv) > 1 else RUN_COUNT
     kit = robots.load("tinibot").kit
     with (
         tempfile.TemporaryDirectory() as folder,

@@ -31,12 +31,12 @@ from tiniscript.virtual.wheels import Roughness
 from tools.bench import page
 from tools.bench.firmware_size import PROJECT, measure
 
-SEEDS = 100
+SEED_COUNT = 100
 WANTED_PERCENT = 95  # of them
 FAST, SLOW = 107.5, 92.5  # percent
 SLIPS = (0.005, 0.02, 0.05)
 GO, TURN = "F(100 CM, 60)", "R(360 DEG, 60)"
-LONGEST_MS = 30_000
+LONGEST_RUN_MS = 30_000
 TAPE_CM, PROTRACTOR = 1, 5  # as near as one reads them
 # how the way is known: along, aside and turned, as far as each may be off
 LIMITS = {"discs": (1.5, 3, 6), "time, calibrated": (10, 20, 20), "time": (math.inf,) * 3}
@@ -66,7 +66,7 @@ class Robot(Talk):
         """Return how far a program leads ahead and aside, and how far it turns, to the left."""
         before = self.robot.pose
         self.upload(text, is_detached=True)
-        end_ms = self.robot.now_ms + LONGEST_MS
+        end_ms = self.robot.now_ms + LONGEST_RUN_MS
         while self.robot.is_running and self.robot.now_ms < end_ms:
             self.robot.step(self.robot.now_ms + 100)
         self.robot.step(self.robot.now_ms + 500)
@@ -135,7 +135,7 @@ def flash() -> int:
         return measure("uno").flash - measure("uno", project).flash
 
 
-def main(seeds: int = SEEDS, is_uno: bool = False) -> int:
+def main(seeds: int = SEED_COUNT, is_uno: bool = False) -> int:
     if is_uno:
         firmware = measure(ENVIRONMENT).firmware
         result = Off.summarise(
@@ -170,10 +170,10 @@ class Off(NamedTuple):
     @classmethod
     def summarise(cls, method: str, offsets: Sequence[tuple[float, float, float]]) -> Off:
         limits = LIMITS[method]
-        ways = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in offsets)
-        turns = sum(item[2] <= limits[2] for item in offsets)
-        within = f"{ways} and {turns}" if limits[0] < math.inf else "-"
-        is_good = 100 * min(ways, turns) >= WANTED_PERCENT * len(offsets)
+        good_way_count = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in offsets)
+        good_turn_count = sum(item[2] <= limits[2] for item in offsets)
+        within = f"{good_way_count} and {good_turn_count}" if limits[0] < math.inf else "-"
+        is_good = 100 * min(good_way_count, good_turn_count) >= WANTED_PERCENT * len(offsets)
         return cls(
             tuple(worst_wanted(column) for column in zip(*offsets, strict=True)), within, is_good
         )
@@ -185,7 +185,7 @@ class Off(NamedTuple):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("seeds", nargs="?", type=int, default=SEEDS)
+    parser.add_argument("seeds", nargs="?", type=int, default=SEED_COUNT)
     parser.add_argument("--uno", action="store_true", help="the firmware on a simulated chip")
     parser.add_argument("--size", action="store_true", help="only what they take of an Uno's flash")
     options = parser.parse_args()

@@ -25,7 +25,7 @@ SCRIPT = firmware_size.PROJECT / "src" / "boards" / "avr" / "order.ld"
 BEGIN, END = "/* begin of the order */\n", "    /* end of the order */"
 BOARD = "uno"
 NEAR = range(-4096, 4096)  # bytes, from just after a short call
-TRIES = 200_000
+TRY_COUNT = 200_000
 # What the compiler appends to a name may be another number after the next change.
 _APPENDED = re.compile(r"\.(lto_priv|constprop|part|isra)\.\d+")
 # Assembly calls its other files by short calls: they stay together.
@@ -146,7 +146,7 @@ def main() -> int:
     command = ["avr-objdump", "-d", str(sketch.firmware)]
     completed = subprocess.run(command, capture_output=True, text=True, check=True)
     all_calls = calls(completed.stdout, sections)
-    order = best_order(among, all_calls, TRIES, random.Random(1))
+    order = best_order(among, all_calls, TRY_COUNT, random.Random(1))
     print(f"{sketch.flash:,} bytes before; calls that lead far: "
           f"{count_far(list(range(len(among))), among, all_calls)} before, "
           f"{count_far(order, among, all_calls)} then")  # fmt: skip

@@ -61,8 +61,10 @@ def is_ours(folder: Path) -> bool:
     """Whether a folder is empty, or a library that was made here."""
     if not folder.is_dir():
         return False
-    about = folder / "library.properties"
-    has_name = about.is_file() and about.read_text("utf-8").startswith("name=TiniScript\n")
+    properties_path = folder / "library.properties"
+    has_name = properties_path.is_file() and properties_path.read_text("utf-8").startswith(
+        "name=TiniScript\n"
+    )
     return has_name or not any(folder.iterdir())
 
 

@@ -152,11 +152,15 @@ def registry_answers() -> bool:
             if json.load(answer)["name"] == "native":
                 answers.append(host)
 
-    asking = [threading.Thread(target=ask, args=(host,), daemon=True) for host in hosts]
-    for thread in asking:
+    asking_threads = [threading.Thread(target=ask, args=(host,), daemon=True) for host in hosts]
+    for thread in asking_threads:
         thread.start()
     end = time.monotonic() + REGISTRY_SECONDS  # looking up a host's address has no timeout
-    while not answers and any(thread.is_alive() for thread in asking) and time.monotonic() < end:
+    while (
+        not answers
+        and any(thread.is_alive() for thread in asking_threads)
+        and time.monotonic() < end
+    ):
         time.sleep(0.02)
     return bool(answers)
 
@@ -298,16 +302,16 @@ def add_boards(folder: Path) -> None:
     for value, (name, chip, variant, macro, flash, ram) in BOARDS.items():
         build = {"mcu": chip, "f_cpu": "16000000L", "core": "arduino", "variant": variant,
                  "extra_flags": f"-DARDUINO_AVR_{macro}"}  # fmt: skip
-        about = {"name": name, "vendor": "Arduino", "url": "https://docs.arduino.cc/hardware",
-                 "frameworks": ["arduino"], "build": build,
-                 "upload": {"maximum_size": flash, "maximum_ram_size": ram}}  # fmt: skip
-        (folder / f"{value}.json").write_text(json.dumps(about), encoding="utf-8")
+        description = {"name": name, "vendor": "Arduino", "url": "https://docs.arduino.cc/hardware",
+                       "frameworks": ["arduino"], "build": build,
+                       "upload": {"maximum_size": flash, "maximum_ram_size": ram}}  # fmt: skip
+        (folder / f"{value}.json").write_text(json.dumps(description), encoding="utf-8")
 
 
 def install_scons(version: str, folder: Path) -> None:
-    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    pip_command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     completed = subprocess.run(
-        [*pip, "--no-deps", "--target", str(folder), f"SCons=={version}"],
+        [*pip_command, "--no-deps", "--target", str(folder), f"SCons=={version}"],
         stdout=sys.stderr,
         check=False,
     )
@@ -326,8 +330,8 @@ def describe(
 ) -> None:
     """Write by what PlatformIO knows an installed package: its manifest and `.piopm`."""
     if manifest:
-        about = {"name": name, "version": version, "description": "An offline stand-in."}
-        (folder / manifest).write_text(json.dumps(about), encoding="utf-8")
+        description = {"name": name, "version": version, "description": "An offline stand-in."}
+        (folder / manifest).write_text(json.dumps(description), encoding="utf-8")
     spec = {"owner": owner, "id": None, "name": name, "requirements": None, "uri": None}
     piopm = {"type": kind, "name": name, "version": version, "spec": spec}
     (folder / ".piopm").write_text(json.dumps(piopm), encoding="utf-8")

@@ -56,16 +56,16 @@ SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED, ".lesson": "SI|F(5, 
           ".drawing": PROGRAM, ".phone": PROGRAM, ".minute": PROGRAM, ".drive": PROGRAM,
           ".teacher": PROGRAM, ".wall": "", ".more": PROGRAM}  # fmt: skip
 WALL = ".wall"  # of a teacher, with thirty pupils
-PUPILS = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo", "Inés", "Julia",
-          "Karim", "Lucía", "Mateo", "Nina", "Oscar", "Paula", "Quim", "Rosa", "Saúl", "Tania",
-          "Ulises", "Vera", "Wara", "Ximena", "Yago", "Zoe", "Bruno", "Celia", "Emma",
-          "Diego"]  # fmt: skip
+PUPIL_NAMES = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo", "Inés", "Julia",
+               "Karim", "Lucía", "Mateo", "Nina", "Oscar", "Paula", "Quim", "Rosa", "Saúl", "Tania",
+               "Ulises", "Vera", "Wara", "Ximena", "Yago", "Zoe", "Bruno", "Celia", "Emma",
+               "Diego"]  # fmt: skip
 TURNS = ("F(1, 80);\n", "F(1, 80);\nR(0.5, 60);\n", PROGRAM.removeprefix("SI|"))
 PUPIL, HAND = "192.0.2.7", 7  # their address, and whose hand is up
 BREAKPOINT_LINE = 5  # the line of the breakpoint
 SIZE = {"width": 1280, "height": 760}
 GAP = 12  # pixels between the pictures of a sheet
-COLOURS = 72  # of a picture: its bytes are less than half, and nobody sees it
+COLOUR_COUNT = 72  # of a picture: its bytes are less than half, and nobody sees it
 WORDS_SCENE = "words"  # the text of the picture that has them
 SEEN_SELECTOR = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
 CLASS = sources(ROOT, "docs/en/class.md")
@@ -132,7 +132,7 @@ def take(language: str, scene: str, target: Path) -> None:
     metadata = PngInfo()
     text = sorted({row.strip() for word in words for row in word.splitlines() if row.strip()})
     metadata.add_text(WORDS_SCENE, json.dumps([item for item in text if is_said(item)]))
-    _sheet(shots).quantize(COLOURS).save(target, optimize=True, pnginfo=metadata)
+    _sheet(shots).quantize(COLOUR_COUNT).save(target, optimize=True, pnginfo=metadata)
 
 
 @contextmanager
@@ -143,17 +143,17 @@ def _serve_scene(scene: str) -> Iterator[tuple[str, str]]:
             yield server.address, server.address
         return
     with studio.taught([]) as (server, room):
-        room.teach({"do": "class_places", "places": len(PUPILS)})
+        room.teach({"do": "class_places", "places": len(PUPIL_NAMES)})
         joins = {"do": "join", "code": room.code}
-        tokens = [room.answer("", PUPIL, {**joins, "name": name})["token"] for name in PUPILS]
+        tokens = [room.answer("", PUPIL, {**joins, "name": name})["token"] for name in PUPIL_NAMES]
         is_over = Event()
 
         def come() -> None:
             while True:
                 for k, token in enumerate(tokens):
                     here = {"do": "here", "text": f"SI|{TURNS[k % len(TURNS)]}", "robot": "tinibot"}
-                    done = [folder.name for folder in catalogue.folders()[: k % 5]]
-                    room.answer(token, PUPIL, {**here, "lessons": done, "hand": k == HAND})
+                    done_lessons = [folder.name for folder in catalogue.folders()[: k % 5]]
+                    room.answer(token, PUPIL, {**here, "lessons": done_lessons, "hand": k == HAND})
                 if is_over.wait(1):
                     return
 
@@ -279,7 +279,7 @@ def _teacher(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
 
 def _wall(page: Page, scene: str, take_shot: Callable[[], None]) -> None:
     """Thirty pupils, one with a hand up, without scrolling."""
-    page.locator("#wall img[src^=blob]").nth(len(PUPILS) - 1).wait_for()
+    page.locator("#wall img[src^=blob]").nth(len(PUPIL_NAMES) - 1).wait_for()
     take_shot()
 
 

@@ -257,13 +257,13 @@ def offline(target: Path) -> None:
             f"{name}\0".encode() + hashlib.sha256((target / name).read_bytes()).digest()
         )
     files_by_language = {code: language_files(code) for code in languages()}
-    later = {
+    later_files = {
         name
         for code in files_by_language
         if code != SOURCE_LANGUAGE
         for name in files_by_language[code]
     }
-    not_cached = {"index.html", LICENCES, FIRMWARE, *later}
+    not_cached = {"index.html", LICENCES, FIRMWARE, *later_files}
     files = ["./", *(name for name in names if name not in not_cached)]
     constants = {
         "VERSION": build_hash.hexdigest()[:16],
@@ -304,9 +304,9 @@ def size_rows(page: Path) -> list[str]:
         if path.name in (STAMP, LICENCES, FIRMWARE) or path.suffix in (".hex", ".bin"):
             continue
         data = path.read_bytes()
-        small = len(gzip.compress(data, 9, mtime=0))
-        total_bytes, packed_bytes = total_bytes + len(data), packed_bytes + small
-        rows.append(f"{len(data):>12,} {small:>12,}  {path.name}")
+        compressed_bytes = len(gzip.compress(data, 9, mtime=0))
+        total_bytes, packed_bytes = total_bytes + len(data), packed_bytes + compressed_bytes
+        rows.append(f"{len(data):>12,} {compressed_bytes:>12,}  {path.name}")
     return [
         f"{'bytes':>12} {'gzipped':>12}",
         *rows,

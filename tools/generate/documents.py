@@ -28,8 +28,8 @@ def architecture_document() -> str:
     rows = []
     for path in sorted(PACKAGE.glob("*/**/__init__.py")):
         text = ast.get_docstring(ast.parse(path.read_bytes())) or ""
-        about = " ".join(text.split("\n\n")[0].split())
-        rows.append((f"`{path.parent.relative_to(PACKAGE).as_posix()}/`", about))
+        first_paragraph = " ".join(text.split("\n\n")[0].split())
+        rows.append((f"`{path.parent.relative_to(PACKAGE).as_posix()}/`", first_paragraph))
     result = table(("folder", "content"), rows)
     result = splice(_text("docs/develop/architecture.md"), "packages", result)
     return splice(result, "modules", _modules())

@@ -112,16 +112,18 @@ def _length_row(request: Message | None) -> str:
         (messages.OF_REMOTE, "kHasRemote"),
     ):
         if request.name in names:
-            least, most = lengths.split(", ")
-            lengths = f"{condition} ? {least} : kUnknownRequest, {condition} ? {most} : 0"
+            least_bytes, most_bytes = lengths.split(", ")
+            lengths = (
+                f"{condition} ? {least_bytes} : kUnknownRequest, {condition} ? {most_bytes} : 0"
+            )
     return f"    {{{lengths}}},  // {request.name}\n"
 
 
 def _length_range(fields: tuple[Field, ...]) -> str:
     """Return the least and the most of a payload; what fills a frame depends on the robot."""
-    least, most = messages.sizes(fields)
+    least_bytes, most_bytes = messages.sizes(fields)
     is_filling = any(field.fills_frame for field in fields)
-    return f"{least}, {'kPayloadBytes' if is_filling else most}"
+    return f"{least_bytes}, {'kPayloadBytes' if is_filling else most_bytes}"
 
 
 def _requests() -> list[messages.Message]:

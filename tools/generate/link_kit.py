@@ -23,7 +23,7 @@ from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tools.generate.machine_kit import MOST_STEPS, TINIBOT, USUAL, Run, arithmetic, documented_runs
 
-LONGEST_MS = 3000
+LONGEST_RUN_MS = 3000
 MOST_SHOWS = 40
 MOST_BYTES = 200  # of code: any robot has room for it
 UNPREDICTABLE_WORDS = ("TIME", "RANDOM")  # what nobody knows beforehand
@@ -70,7 +70,7 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
         machine = Machine(code, robot, len(run.kit.readings))
         while (status := machine.tick(robot.now_ms, MOST_STEPS)) == WAITING:
             robot.now_ms = machine.wake_ms
-            if robot.now_ms > LONGEST_MS:
+            if robot.now_ms > LONGEST_RUN_MS:
                 break
         shows = [
             [event.values[0], int(event.text.endswith("E"))]

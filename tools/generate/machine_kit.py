@@ -41,10 +41,10 @@ TINIBOT = robots.load("tinibot").kit
 MOST_STEPS = (
     100_000  # a case that runs more without a wait says nothing about its end: it is left out,
 )
-CALLS = 1000  # and so is one of more calls at one time
+MOST_CALLS = 1000  # and so is one of more calls at one time
 RANDOM_PROGRAMS = range(1000, 1030)
 TASK_PROGRAMS = range(1000, 1020)
-TASK_MS = 600
+TASK_RUN_MS = 600
 WAY_PROGRAMS = range(1000, 1012)
 When = tuple[int, tuple[int, ...]]
 
@@ -53,7 +53,7 @@ When = tuple[int, tuple[int, ...]]
 USUAL: When = (0, (1,))
 WRAPS: When = (2**32 - 7, (1,))
 SELDOM: When = (2**31 - 30, (7,))
-LATE_MS = 45  # between two calls
+LATE_CALL_MS = 45  # between two calls
 OFTEN = (3, 7, 20)  # ms between two calls, for tasks: each has a clock of its own
 ROUND_MS = 2**31 - 8  # a multiple of the 20 ms of UNTIL; twice this is 16 ms before 2^32
 FAR = Senses({"DISTANCE": [50_000]})
@@ -187,7 +187,7 @@ def answer_of(
     robot = SlowRobot(run)
     machine = machine_of(code, robot, len(run.kit.readings), run.inputs.seed, begin)
     calls = 0  # at the same time
-    while calls < CALLS:
+    while calls < MOST_CALLS:
         robot.was_slow = False
         status = machine.tick(begin + robot.now_ms, MOST_STEPS)
         if status == DONE:
@@ -227,7 +227,7 @@ def documented_runs() -> Iterator[Run]:
             continue
         yield run._replace(name=f"{case.id} (time wraps around)", when=WRAPS)
         yield run._replace(name=f"{case.id} (called every 7 ms, time wraps around)", when=SELDOM)
-        yield run.call_every(LATE_MS)
+        yield run.call_every(LATE_CALL_MS)
         if run.needs & TASKS:
             yield from (run.call_every(every_ms) for every_ms in OFTEN)
         if senses.readings:
@@ -455,7 +455,7 @@ def task_programs() -> Iterator[Run]:
 
 
 def task_run(name: str, text: str, readings: Mapping[str, Sequence[int]]) -> Run:
-    return Run(name, TINIBOT, compile_image(text), Senses(readings, TASK_MS), text=text)
+    return Run(name, TINIBOT, compile_image(text), Senses(readings, TASK_RUN_MS), text=text)
 
 
 def ways() -> Iterator[Run]:
@@ -478,7 +478,7 @@ def ways() -> Iterator[Run]:
         senses = FAR._replace(max_ms=5000)
         run = Run(f"ways: {text}", TINIBOT, compile_image(text), senses, text=text)
         yield run
-        yield run.call_every(LATE_MS)
+        yield run.call_every(LATE_CALL_MS)
     go, watch = BY_NAME["GO_F"].opcode, BY_NAME["WATCH_GO_R"].opcode
     two = bytes([BY_NAME["PUSH_NUM_2"].code, BY_NAME["PUSH_NUM_20"].code])
     for name, code, needs in (

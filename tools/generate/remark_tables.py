@@ -10,10 +10,10 @@ from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answer_languages, language_number
 from tiniscript.robots.text_levels import LEVELS
 from tools.generate.packed_texts import (
-    DEEPEST,
     END_CODE,
     FIRST_COMMON,
     FIRST_LETTER,
+    MOST_NESTED_PAIRS,
     letters_of,
     pack,
 )
@@ -24,8 +24,8 @@ SMALLEST = "uno"
 
 def remarks_header(command: str) -> str:
     """Return `remarks.h`."""
-    about = "What the robot says to a person beside what is wrong with a line."
-    return file_of(command, "remarks.h", about, [numbers_of("Remark", REMARKS)])
+    comment = "What the robot says to a person beside what is wrong with a line."
+    return file_of(command, "remarks.h", comment, [numbers_of("Remark", REMARKS)])
 
 
 def texts_header(command: str) -> str:
@@ -60,7 +60,7 @@ def texts_header(command: str) -> str:
             f"constexpr uint8_t kFirstCommon = {FIRST_COMMON};",
             "",
             "// In flash: all texts, the codes of halves, and the two codes of each pair, which",
-            f"// may be pairs again, {DEEPEST} deep.",
+            f"// may be pairs again, {MOST_NESTED_PAIRS} deep.",
             "const uint8_t* packed_texts();",
             "const uint8_t* packed_codes();",
             "const uint8_t* pair_of(uint8_t code);",

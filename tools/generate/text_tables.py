@@ -135,7 +135,7 @@ def words_header(command: str) -> str:
         f"constexpr uint8_t kWord{camel(word.text)} = 0x{FIRST_WORD + k:02x};"
         for k, word in enumerate(words)
     ]
-    commands = sum(role_of(word) in ROLES[: ROLES.index("stop")] for word in words)
+    command_count = sum(role_of(word) in ROLES[: ROLES.index("stop")] for word in words)
     return file_of(
         command,
         "words.h",
@@ -148,7 +148,7 @@ def words_header(command: str) -> str:
             f"constexpr uint8_t kWordsEnd = 0x{FIRST_WORD + len(words):02x};",
             "",
             "// The words up to this one take arguments in brackets.",
-            f"constexpr uint8_t kCommands = {commands};",
+            f"constexpr uint8_t kCommands = {command_count};",
             "",
             "// What an argument may be; from kFirstRange on a number in a range.",
             f"constexpr uint8_t kAnyKind = {ANY};",
@@ -210,8 +210,8 @@ def words_tables(command: str) -> str:
 
 def problems_header(command: str) -> str:
     """Return `problems.h`."""
-    about = "What the reader of text says about a wrong line."
-    return file_of(command, "problems.h", about, [numbers_of("Problem", PROBLEMS)])
+    comment = "What the reader of text says about a wrong line."
+    return file_of(command, "problems.h", comment, [numbers_of("Problem", PROBLEMS)])
 
 
 def numbers_of(name: str, keys: Sequence[str]) -> str:

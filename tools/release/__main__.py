@@ -92,7 +92,7 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
             return _fail(str(why))
         files = [file for paths in items[0].values() for file in paths]
         second_clone_parts = clones[1].parts
-        failed = [
+        failed_parts = [
             path.name for path in files if sha256(path) != sha256(second_clone_parts / path.name)
         ]
         shutil.copytree(clones[0].parts, folder, dirs_exist_ok=True)
@@ -103,9 +103,9 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
         _say(f"pyproject.toml does not have {options.url}: what is published is made with it there")
     if old := ", ".join(results.old()):
         _say(f"{results.DOCUMENT.relative_to(ROOT)}: figures of older code: {old}")
-    for item in failed:
+    for item in failed_parts:
         print(f"made twice, it is not the same: {item}", file=sys.stderr)
-    if complaints or failed:
+    if complaints or failed_parts:
         return 1
     if options.tag:
         try:
@@ -163,10 +163,12 @@ def _commit(root: Path) -> None:
 
 
 def _git(root: Path, steps: Sequence[Sequence[str]]) -> None:
-    git = ["git", "-C", str(root), "-c", "user.name=release", "-c", "user.email=release@localhost",
-           "-c", "commit.gpgsign=false", "-c", "tag.gpgsign=false"]  # fmt: skip
+    git_command = [
+        "git", "-C", str(root), "-c", "user.name=release", "-c", "user.email=release@localhost",
+        "-c", "commit.gpgsign=false", "-c", "tag.gpgsign=false",
+    ]  # fmt: skip
     for step in steps:
-        completed = subprocess.run([*git, *step], capture_output=True, text=True)
+        completed = subprocess.run([*git_command, *step], capture_output=True, text=True)
         if completed.returncode:
             text = (completed.stderr or completed.stdout).strip().splitlines() or [
                 "git says nothing"
@@ -179,9 +181,9 @@ def _make(clone: Clone, parts: Sequence[str]) -> dict[str, list[Path]]:
     result = {}
     for name in parts:
         _say(f"{name}, in {clone.root.name}")
-        begun = time.monotonic()
+        begin_s = time.monotonic()
         result[name] = PARTS[name].make(clone)
-        _say(f"{name}: {time.monotonic() - begun:.0f} s")
+        _say(f"{name}: {time.monotonic() - begin_s:.0f} s")
     return result
 
 

@@ -58,9 +58,9 @@ def sources(root: Path, english: str) -> dict[str, str]:
 
 def links(language: str, english: str, other_languages: Iterable[str]) -> list[str]:
     """Return the links on a document to itself in other languages."""
-    here = PurePosixPath(name_in(language, english)).parent
+    own_folder = PurePosixPath(name_in(language, english)).parent
     return [
-        f"[{language_info(other).name}]({_relative_path(name_in(other, english), here)})"
+        f"[{language_info(other).name}]({_relative_path(name_in(other, english), own_folder)})"
         for other in other_languages
         if other != language
     ]

@@ -68,9 +68,11 @@ def shelf(root: Path, documents: list[Document], built: dict[str, str] | None = 
     places: dict[str, Place] = {}
     twins: dict[str, dict[str, Place]] = {}
     for document in documents:
-        own = {language: Place(language, document.name) for language in document.sources}
+        place_of_language = {
+            language: Place(language, document.name) for language in document.sources
+        }
         for language, source in document.sources.items():
-            places[source], twins[source] = own[language], own
+            places[source], twins[source] = place_of_language[language], place_of_language
     return Shelf(root, places, twins, built or {})
 
 

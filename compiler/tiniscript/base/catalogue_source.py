@@ -104,10 +104,14 @@ class Row:
 
     def takes(self, other: Row) -> bool:
         """Take other forms of the same text from another row, `KEY.one` and `KEY.other`."""
-        one, more = self.value, other.value
-        if not isinstance(one, dict) or not isinstance(more, dict) or one.keys() & more.keys():
+        one, other_value = self.value, other.value
+        if (
+            not isinstance(one, dict)
+            or not isinstance(other_value, dict)
+            or one.keys() & other_value.keys()
+        ):
             return False
-        self.value = {**one, **more}
+        self.value = {**one, **other_value}
         self.text += other.above + other.text
         return True
 

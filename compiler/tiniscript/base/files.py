@@ -28,8 +28,10 @@ NAME_CHARACTERS = 100  # of a file's name in that of its new one
 LOCK_ENDING = (
     ".lock"  # the end of the name of a file that commands lock while they change another one
 )
-LOCK_S = 5.0  # for which a command waits for another one
-OPEN_S = 1.0  # for which a file may be open elsewhere until it cannot be replaced on Windows
+LOCK_WAIT_S = 5.0  # for which a command waits for another one
+REPLACE_WAIT_S = (
+    1.0  # for which a file may be open elsewhere until it cannot be replaced on Windows
+)
 OWNER_ONLY = 0o700  # a folder that only its user may look into
 ABANDONED_AFTER_S = 3600.0  # a new file that is older has lost its command
 
@@ -157,7 +159,7 @@ def _move_into_place(new: Path, target: Path) -> None:
     Windows replaces no file that is open, and a virus scanner or another command may be reading it
     just now: then this waits a moment.
     """
-    end_s = monotonic() + OPEN_S
+    end_s = monotonic() + REPLACE_WAIT_S
     while True:
         try:
             new.replace(target)
@@ -179,7 +181,7 @@ def lock_file(path: Path, mode: int = 0o600) -> Iterator[None]:
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
     number = os.open(lock, flags, mode)
     try:
-        end_s = monotonic() + LOCK_S
+        end_s = monotonic() + LOCK_WAIT_S
         while not try_lock(number):
             if monotonic() >= end_s:
                 raise TimeoutError(110, os.strerror(110))

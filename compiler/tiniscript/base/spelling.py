@@ -50,10 +50,10 @@ def _edits(one: str, other: str) -> int:
     for i, letter in enumerate(one, 1):
         row = [i]
         for k, other_letter in enumerate(other, 1):
-            least = min(last[k] + 1, row[k - 1] + 1, last[k - 1] + (letter != other_letter))
+            least_edits = min(last[k] + 1, row[k - 1] + 1, last[k - 1] + (letter != other_letter))
             if i > 1 and k > 1 and letter == other[k - 2] and other_letter == one[i - 2]:
-                least = min(least, before_last[k - 2] + 1)
-            row.append(least)
+                least_edits = min(least_edits, before_last[k - 2] + 1)
+            row.append(least_edits)
         before_last, last = last, row
     return last[-1]
 

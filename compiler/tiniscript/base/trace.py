@@ -42,9 +42,9 @@ class Ending(NamedTuple):
 class Senses:
     """Readings from lists: each takes the next value, the last one repeats, no list is 0."""
 
-    def __init__(self, kit: Kit, lists: Mapping[int, Sequence[int]]) -> None:
-        """`lists` maps the number of a sensor to its readings, in thousandths."""
-        self.lists = [list(lists.get(i, ())) or [0] for i in range(len(kit.readings))]
+    def __init__(self, kit: Kit, readings_by_sensor: Mapping[int, Sequence[int]]) -> None:
+        """`readings_by_sensor` maps the number of a sensor to its readings, in thousandths."""
+        self.lists = [list(readings_by_sensor.get(i, ())) or [0] for i in range(len(kit.readings))]
         self.read_counts = [0] * len(kit.readings)
 
     def __call__(self, sensor: int) -> int:

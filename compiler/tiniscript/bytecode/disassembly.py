@@ -86,10 +86,10 @@ def _operand_values(row: Row) -> list[tuple[str, int]]:
     if row.op is None:
         return []
     kinds = [operand.kind.name for operand in row.op.operands]
-    numbered = list(zip(kinds, row.operands, strict=True))
+    kinds_and_values = list(zip(kinds, row.operands, strict=True))
     if row.op.implied is not None:
-        numbered.append((row.op.implied.kind.name, row.op.implied.value))
-    return numbered
+        kinds_and_values.append((row.op.implied.kind.name, row.op.implied.value))
+    return kinds_and_values
 
 
 def assemble(text: str) -> bytes:

@@ -26,14 +26,14 @@ def compile_input(
     )
 
 
-def for_level(compiled: Compiled, robot: Robot, name: str | None) -> Compiled:
-    """Return `compiled` with what a robot of the level `name` lacks to read the program as text."""
-    if name is None or compiled.program is None or not compiled.is_right:
-        return compiled
+def for_level(compilation: Compiled, robot: Robot, name: str | None) -> Compiled:
+    """Return a compilation with what a robot of this level lacks to read the program as text."""
+    if name is None or compilation.program is None or not compilation.is_right:
+        return compilation
     from tiniscript.library.text_fitting import misfits
 
-    lacking = misfits(compiled.source, compiled.program, robot.kit, LEVELS[name])
-    return compiled._replace(diagnostics=in_order([*compiled.diagnostics, *lacking]))
+    lacking = misfits(compilation.source, compilation.program, robot.kit, LEVELS[name])
+    return compilation._replace(diagnostics=in_order([*compilation.diagnostics, *lacking]))
 
 
 def parse_input(program_input: inputs.Input, kit: Kit) -> Compiled:

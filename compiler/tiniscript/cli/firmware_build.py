@@ -30,7 +30,7 @@ from tiniscript.robots.profile import ProfileRefused, Robot
 
 LOG_FILE = "build.log"  # the output of the last failed build, in the folder of the ready files
 # Of fetching and building, for whoever fetches 10 Mbit a second or more.
-MINUTES, MINUTES_ESP32 = 3, 10
+BUILD_MINUTES, ESP32_BUILD_MINUTES = 3, 10
 AVR_BOARDS = tuple(AVRS)  # that avrdude writes to
 
 
@@ -155,7 +155,7 @@ def _fetch(robot: Robot, values: dict[str, str], options: Namespace, language: s
     parts = [*([] if has_platformio else [platformio]), *([compiler] if compiler.mb else [])]
     if not parts:
         return
-    minutes = MINUTES_ESP32 if robot.board.chip in ESP32S else MINUTES
+    minutes = ESP32_BUILD_MINUTES if robot.board.chip in ESP32S else BUILD_MINUTES
     missing = text("flash_missing", language).format(**values)
     fetching.ask_to_fetch(missing, parts, minutes, options, language)
     if not has_platformio:
@@ -167,8 +167,12 @@ def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:
     log = ready.cache() / LOG_FILE
     if why.log:
         files.keep(log, why.log.encode("utf-8", "replace"))  # else the sentence has to do
-    how = install_advice.command(install_advice.FIRMWARE)
-    texts = {"why": printable_name(why.last_output), "log": printable_name(str(log)), "how": how}
+    install_command = install_advice.command(install_advice.FIRMWARE)
+    texts = {
+        "why": printable_name(why.last_output),
+        "log": printable_name(str(log)),
+        "how": install_command,
+    }
     return CommandError(2, f"flash_{why.why}", **texts, **values)
 
 

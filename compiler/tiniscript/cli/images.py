@@ -27,9 +27,9 @@ class ReadyProgram(NamedTuple):
 class OtherRobot(Exception):
     """A program has words of another robot; its mistakes have not been printed."""
 
-    def __init__(self, compiled: Compiled) -> None:
+    def __init__(self, compilation: Compiled) -> None:
         super().__init__()
-        self.compiled = compiled
+        self.compiled = compilation
 
 
 def ready_program(
@@ -50,18 +50,18 @@ def ready_program(
                 1, lacks, robot=robot.name, file=inputs.printable_name(program_input.name)
             )
         return ReadyProgram(image, len(program_input.data), source_map.recall(image.checksum))
-    compiled = compiling.compile_input(program_input, robot, is_strict)
-    if may_choose_robot and not compiled.is_right:
-        if is_other_robots(compiled.diagnostics):
-            raise OtherRobot(compiled)
+    compilation = compiling.compile_input(program_input, robot, is_strict)
+    if may_choose_robot and not compilation.is_right:
+        if is_other_robots(compilation.diagnostics):
+            raise OtherRobot(compilation)
     if is_strict:
-        compiled = fit_to_robot(compiled, robot)
-    outputs.print_diagnostics(compiled, language)
-    if not compiled.is_right:
+        compilation = fit_to_robot(compilation, robot)
+    outputs.print_diagnostics(compilation, language)
+    if not compilation.is_right:
         return None
-    image = image_of(compiled, robot)
-    places = source_map.map_of_compiled(compiled)
-    return ReadyProgram(image, len(compiled.image), places)
+    image = image_of(compilation, robot)
+    places = source_map.map_of_compiled(compilation)
+    return ReadyProgram(image, len(compilation.image), places)
 
 
 def _read(program_input: inputs.Input) -> Image:
@@ -100,5 +100,5 @@ def keep_map(program: ReadyProgram) -> None:
     """Keep a program's source map for other commands, if it has one."""
     if program.places is not None:
         image = program.image
-        packed = pack(image.start, image.devices, image.code, needs=image.needs)
-        source_map.remember(packed, program.places)
+        image_data = pack(image.start, image.devices, image.code, needs=image.needs)
+        source_map.remember(image_data, program.places)

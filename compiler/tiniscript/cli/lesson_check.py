@@ -85,10 +85,10 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
         if options.plot is not None:
             check_picture(options)
         program_input = inputs.program(options)
-        compiled = marker.compile(program_input)
+        compilation = marker.compile(program_input)
         if not options.json:
-            outputs.print_diagnostics(compiled, language)
-        marks = [marker.mark(program_input, compiled)]
+            outputs.print_diagnostics(compilation, language)
+        marks = [marker.mark(program_input, compilation)]
     if options.csv is not None:
         outputs.write(Path(options.csv), _rows(marks, language), "unwritable_more --csv")
     if options.plot is not None and marks[0].run is not None:
@@ -119,12 +119,12 @@ class _Marker:
         try:
             if file.problem is not None:
                 raise file.problem
-            compiled = self.compile(program_input)
+            compilation = self.compile(program_input)
         except CommandError as failure:
             text = failure.plain(self.language)
             text = text.replace(inputs.printable_name(file.name), inputs.printable_name(name))
             return Mark(name, UNREADABLE, 0, (("", text),))
-        return self.mark(program_input, compiled)
+        return self.mark(program_input, compilation)
 
     def compile(self, program_input: inputs.Input) -> Compiled:
         if program_input.is_image:
@@ -132,17 +132,19 @@ class _Marker:
                 2, "needs_text", file=inputs.printable_name(program_input.name), verb="lesson check"
             )
         robot = robot_of(program_input.data, self.robot)
-        compiled = compiling.compile_input(program_input, robot, is_strict=True, names_robots=False)
-        return fit_to_robot(compiled, robot)
+        compilation = compiling.compile_input(
+            program_input, robot, is_strict=True, names_robots=False
+        )
+        return fit_to_robot(compilation, robot)
 
-    def mark(self, program_input: inputs.Input, compiled: Compiled) -> Mark:
-        if not compiled.is_right:
-            return Mark(program_input.name, MISTAKES, 0, tuple(self._mistakes(compiled)))
+    def mark(self, program_input: inputs.Input, compilation: Compiled) -> Mark:
+        if not compilation.is_right:
+            return Mark(program_input.name, MISTAKES, 0, tuple(self._mistakes(compilation)))
         robot = robot_of(program_input.data, self.robot)
         lesson = self.lesson._replace(
             robot=shipped_name_in(program_input.data) or self.lesson.robot
         )
-        marking = Marking(compiled.source.text, image_maker(robot), robot, lesson, self.seeds)
+        marking = Marking(compilation.source.text, image_maker(robot), robot, lesson, self.seeds)
         try:
             outcome = marking.run_to_end()
         except WorldRefused as refused:
@@ -161,10 +163,10 @@ class _Marker:
     def _finding_rows(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
         return tuple((finding.kind, sentence(finding, self.language)) for finding in findings)
 
-    def _mistakes(self, compiled: Compiled) -> Iterable[tuple[str, str]]:
-        for diagnostic in compiled.diagnostics:
+    def _mistakes(self, compilation: Compiled) -> Iterable[tuple[str, str]]:
+        for diagnostic in compilation.diagnostics:
             if diagnostic.is_mistake:
-                sentence = message(diagnostic, compiled.source, self.language)
+                sentence = message(diagnostic, compilation.source, self.language)
                 values = {"line": sentence.line, "task": "", "shown": sentence.message}
                 line = text("fault_line", self.language).format(**values)
                 fix = (

@@ -163,9 +163,11 @@ def _suggestion(typed: str, known_words: Sequence[str]) -> str:
 def bad_choice(option: str, choices: Sequence[str], typed: str, language: str) -> CommandError:
     """Return the error for a value that is not among an option's choices."""
     choices_text = f"{', '.join(choices[:-1])} {text('or', language)} {choices[-1]}"
-    shown = printable_name(typed) or "''"
-    near = _suggestion(typed, choices)
-    return CommandError(2, "bad_choice", option=option, known=choices_text, found=shown, near=near)
+    shown_value = printable_name(typed) or "''"
+    suggestion = _suggestion(typed, choices)
+    return CommandError(
+        2, "bad_choice", option=option, known=choices_text, found=shown_value, near=suggestion
+    )
 
 
 def whole_number(option: str, typed: str | None, default: int, low: int, high: int,

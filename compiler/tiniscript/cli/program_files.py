@@ -58,18 +58,18 @@ def in_folder(top: str, endings: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[
         folder = pending_folders.pop()
         try:
             with os.scandir(folder) as entries:
-                inside = sorted(entries, key=lambda entry: entry.name)
+                sorted_entries = sorted(entries, key=lambda entry: entry.name)
         except OSError:
             yield folder  # reading it says why
             continue
-        for entry in inside:
+        for entry in sorted_entries:
             if not entry.name.startswith(".") and entry.name.lower().endswith(endings):
                 if not entry.is_dir(follow_symlinks=False):
                     yield entry.path
-        below = (entry for entry in inside if entry.is_dir(follow_symlinks=False))
+        subfolders = (entry for entry in sorted_entries if entry.is_dir(follow_symlinks=False))
         pending_folders += [
             dir_entry.path
-            for dir_entry in reversed(list(below))
+            for dir_entry in reversed(list(subfolders))
             if not dir_entry.name.startswith(".")
         ]
 

@@ -27,8 +27,8 @@ class Repaired(NamedTuple):
     """A program with its sure repairs: the bytes of its file, how many, and what is left."""
 
     data: bytes
-    repairs: int
-    compiled: Compiled
+    repair_count: int
+    compilation: Compiled
 
 
 def repair(program_input: Input, robot: Robot) -> Repaired:
@@ -44,7 +44,7 @@ def repair(program_input: Input, robot: Robot) -> Repaired:
     new = result.text.encode()
     if program_input.data.startswith(_BOM):
         new = _BOM + new
-    return Repaired(new, result.repairs, compile_data(new))
+    return Repaired(new, result.repair_count, compile_data(new))
 
 
 def print_difference(old: bytes, new: bytes, name: str) -> None:

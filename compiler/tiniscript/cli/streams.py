@@ -21,7 +21,7 @@ from typing import Any, TextIO
 
 from tiniscript.cli.texts import Sentence
 
-UNREAD_S = 1.0  # timeout for a reader when a command is interrupted
+READER_LIMIT_S = 1.0  # timeout for a reader when a command is interrupted
 ERROR_HANDLER = "tiniscript_plain"  # of the handler of errors
 # for drawings: as wide as what they stand for
 _SAME_WIDTH = ("│─├┤█▌▐♪↑↖←↙↓↘→↗", "|-||#==~^\\</v\\>/")
@@ -128,7 +128,7 @@ def _write_all(stream: TextIO, pipe: int) -> bool:
         return False
     import select  # of an interrupted command
 
-    end_s = monotonic() + UNREAD_S
+    end_s = monotonic() + READER_LIMIT_S
     os.set_blocking(pipe, False)
     try:
         while True:

@@ -116,9 +116,11 @@ def verbs_for(question: str) -> list[str]:
     texts = {command: _weights(command) for command in COMMANDS}
     scores = dict.fromkeys(COMMANDS, 0.0)
     for stem in _stems(question):
-        having = [command for command in COMMANDS if stem in texts[command]]
-        for command in having:
-            scores[command] += texts[command][stem] * log(1 + len(COMMANDS) / len(having))
+        commands_with_stem = [command for command in COMMANDS if stem in texts[command]]
+        for command in commands_with_stem:
+            scores[command] += texts[command][stem] * log(
+                1 + len(COMMANDS) / len(commands_with_stem)
+            )
     best = max(scores.values())
     commands = [command for command in COMMANDS if scores[command] and scores[command] >= best / 2]
     return sorted(commands, key=lambda verb: -scores[verb])[:MOST_VERBS]

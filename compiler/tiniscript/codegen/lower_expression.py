@@ -70,12 +70,12 @@ class Emitter:
     def widen(self, positions: set[int]) -> None:
         """Give the jumps at the indexes `positions` their far forms."""
         items: list[Item] = []
-        moved = []
+        new_positions = []
         for k, item in enumerate(self.items):
-            moved.append(len(items))
+            new_positions.append(len(items))
             items += _far_form(item) if k in positions else (item,)
-        moved.append(len(items))
-        self.labels = [moved[index] for index in self.labels]
+        new_positions.append(len(items))
+        self.labels = [new_positions[index] for index in self.labels]
         self.items = items
 
 
@@ -180,18 +180,18 @@ def emit_unless(emitter: Emitter, condition: Expression, target: int) -> None:
         emitter.add("IF", to=target)
         return
     # where a part of it begins and ends, and whether its being TRUE branches
-    pending = [(0, len(condition), False)]
-    while pending:
-        start, end, when = pending.pop()
+    pending_branches = [(0, len(condition), False)]
+    while pending_branches:
+        start, end, wanted_answer = pending_branches.pop()
         operator = condition[end - 1].op
         if operator == "NOT":
-            pending.append((start, end - 1, not when))
-        elif operator == ("OR" if when else "AND"):
+            pending_branches.append((start, end - 1, not wanted_answer))
+        elif operator == ("OR" if wanted_answer else "AND"):
             split = _matching_index(condition, range(end - 2, -1, -1), _JOIN_OPS, _LEFT_OPS)
-            pending.append((split + 1, end - 1, when))
-            pending.append((start, split, when))
+            pending_branches.append((split + 1, end - 1, wanted_answer))
+            pending_branches.append((start, split, wanted_answer))
         else:
-            _emit_branch(emitter, condition[start:end], when, target)
+            _emit_branch(emitter, condition[start:end], wanted_answer, target)
 
 
 def emit_until(emitter: Emitter, condition: Expression) -> None:
@@ -205,14 +205,14 @@ def emit_until(emitter: Emitter, condition: Expression) -> None:
         emitter.add(f"UNTIL{comparison.bits}_{comparison.comparator}", comparison.number)
 
 
-def _emit_branch(emitter: Emitter, expression: Expression, when: bool, to: int) -> None:
+def _emit_branch(emitter: Emitter, expression: Expression, wanted_answer: bool, to: int) -> None:
     comparison = _comparison_to_constant(expression)
     if comparison is None:
         add_value(emitter, expression)
-        emitter.add("IF_NOT" if when else "IF", to=to)
+        emitter.add("IF_NOT" if wanted_answer else "IF", to=to)
         return
     value, bits, comparator, number = comparison
-    if when:
+    if wanted_answer:
         comparator = NEGATED[comparator]
     if len(value) == 1 and value[0].op == "VARIABLE":
         emitter.add(f"IF_VAR{bits}_{comparator}", value[0].value, number, to=to)

@@ -27,7 +27,7 @@ class Verdict(NamedTuple):
     name: str
     what: str
     line: int = 0
-    want: str | None = None
+    wanted_row: str | None = None
     got: str | None = None
     detail: str = ""
 

@@ -36,15 +36,17 @@ class MachineCase(NamedTuple):
 
     def request(self) -> str:
         """Return the lines that ask a machine for this run."""
-        lists = [
+        reading_rows = [
             " ".join(("readings", str(number), *map(str, values)))
             for number, values in sorted(self.readings.items())
         ]
-        slow = [f"slow {number} {' '.join(map(str, self.slow[number]))}" for number in self.slow]
+        slow_rows = [
+            f"slow {number} {' '.join(map(str, self.slow[number]))}" for number in self.slow
+        ]
         rows = (
             *self.devices,
-            *lists,
-            *slow,
+            *reading_rows,
+            *slow_rows,
             f"seed {self.seed}",
             f"begin {self.begin_ms}",
             f"every {' '.join(map(str, self.every_ms))}",

@@ -27,7 +27,7 @@ ENDING_WORDS = (
 CHUNK_BYTES = 1 << 16
 SPARE_BYTES = 1 << 18  # that an answer may be longer than the right one
 TAIL_BYTES = 2000  # of what it writes to standard error, kept to show it
-LEAVE_S = 0.5  # for a process whose output has ended, to end with its code
+EXIT_LIMIT_S = 0.5  # for a process whose output has ended, to end with its code
 
 
 class Problem(Exception):
@@ -89,11 +89,11 @@ class MachineProcess:
         process.kill()
         process.wait()
         self._requests.put(b"")
-        leaves_by = time.monotonic() + LEAVE_S
+        leaves_by = time.monotonic() + EXIT_LIMIT_S
         while self._reader.is_alive() and time.monotonic() < leaves_by:
             with contextlib.suppress(queue.Empty):  # it waits where the queue is full
                 self._chunks.get(timeout=0.01)
-        self._errors.join(LEAVE_S)
+        self._errors.join(EXIT_LIMIT_S)
         lines = bytes(self._tail).decode("utf-8", "replace").strip().splitlines()
         return lines[-1] if lines else ""
 
@@ -188,7 +188,7 @@ class MachineProcess:
     def _exit_code(self) -> int | None:
         assert self._process is not None
         try:
-            return self._process.wait(LEAVE_S)
+            return self._process.wait(EXIT_LIMIT_S)
         except subprocess.TimeoutExpired:
             return None
 

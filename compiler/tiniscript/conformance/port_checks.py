@@ -34,17 +34,17 @@ SHOW_7 = bytes.fromhex("b739")
 WAIT_20 = bytes.fromhex("bb50")  # no motor turns
 STATES = ("IDLE", "RUNNING", "STOPPED", "FAULTED")
 NO_MESSAGE = 31  # a number that no message has
-EVENT_S = 3.0  # for an event after what has caused it
+EVENT_LIMIT_S = 3.0  # for an event after what has caused it
 BUSY_TRIES, BUSY_S = 50, 0.1
 HEADER_BYTES = 10  # bytes of an image before its checksum
-SILENCE_S = 5.0  # at most, until an attached program ends without a frame: it does after 1 s
-ATTENDED_S = 3.0
+SILENCE_LIMIT_S = 5.0  # at most, until an attached program ends without a frame: it does after 1 s
+ATTENDED_LIMIT_S = 3.0
 
 
 class Check(NamedTuple):
     name: str
-    wanted: tuple[str, ...]
-    found: Callable[[WireRobot], tuple[str, ...]]
+    wanted_rows: tuple[str, ...]
+    find_rows: Callable[[WireRobot], tuple[str, ...]]
 
 
 def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
@@ -57,7 +57,7 @@ def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
     for check in checks:
         try:
             make_ready(robot)
-            yield compare(check.name, check.wanted, check.found(robot))
+            yield compare(check.name, check.wanted_rows, check.find_rows(robot))
             silent = 0
         except Silent as why:
             yield Verdict(check.name, "silent", detail=why.message)
@@ -160,7 +160,7 @@ def _program_check(program: LinkProgram) -> Callable[[WireRobot], tuple[str, ...
             answer = send_image(robot, pack("SI", 0, program.code), RUN)
         if answer.status:
             return (answer_text(answer),)
-        return _run_events(robot, program.takes_s + EVENT_S)
+        return _run_events(robot, program.takes_s + EVENT_LIMIT_S)
 
     return observe
 
@@ -224,7 +224,7 @@ def _check_repeated_request(robot: WireRobot) -> tuple[str, ...]:
     number = BY_NAME["LIVE"].number
     epoch = robot.epoch
     first = robot.ask_frame(number, payload)
-    robot.wait(EVENT_S, "DONE")
+    robot.wait(EVENT_LIMIT_S, "DONE")
     second = robot.repeat(number, payload, epoch=epoch)
     robot.wait(0.4)
     second_answer = "the same answer" if first.payload == second.payload else answer_text(second)
@@ -348,7 +348,7 @@ def _stop_check(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tu
         run_live(robot, WAIT_20)
         robot.events.clear()
         stop(robot)
-        event = robot.wait(EVENT_S, "STOPPED")
+        event = robot.wait(EVENT_LIMIT_S, "STOPPED")
         cause = "no STOPPED" if event is None else f"STOPPED {event.number('cause')}"
         state = _state(robot.ask("PING"))
         latched = answer_text(run_live(robot, SHOW_7))
@@ -365,14 +365,14 @@ def _stop_check(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tu
 
 def _check_silence(robot: WireRobot) -> tuple[str, ...]:
     run_live(robot, WAIT_20)
-    robot.wait(SILENCE_S, "FAULT", heartbeats=False)
+    robot.wait(SILENCE_LIMIT_S, "FAULT", heartbeats=False)
     status = robot.ask("STATUS")
     return (_state(status), f"fault {status.number('fault')}")
 
 
 def _check_attended(robot: WireRobot) -> tuple[str, ...]:
     run_live(robot, WAIT_20)
-    robot.wait(ATTENDED_S)
+    robot.wait(ATTENDED_LIMIT_S)
     return (_state(robot.ask("PING")),)
 
 

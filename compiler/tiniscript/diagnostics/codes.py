@@ -11,7 +11,9 @@ from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
 
-ENOUGH = 100  # diagnostics of one text, after which more help nobody: it is read no further
+MOST_DIAGNOSTICS = (
+    100  # diagnostics of one text, after which more help nobody: it is read no further
+)
 
 
 class Code(NamedTuple):

@@ -53,8 +53,8 @@ class Fixed(NamedTuple):
     """`text` is the program with its sure repairs, `left` what it still has."""
 
     text: str
-    repairs: int
-    left: list[Diagnostic]
+    repair_count: int
+    diagnostics_left: list[Diagnostic]
 
 
 Check = Callable[[str], list[Diagnostic]]
@@ -65,15 +65,15 @@ def repair_program(text: str, check: Check) -> Fixed:
 
     A long program takes long, and has many mistakes: it is not checked so often.
     """
-    left = min(MOST_CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
+    checks_left = min(MOST_CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
     diagnostics = check(text)
     count = 0
     steps = _steps(diagnostics)
-    while left > 0 and (repairs := next(steps, None)):
+    while checks_left > 0 and (repairs := next(steps, None)):
         edits = [_tidied(edit, text) for repair in repairs for edit in repair]
         changed_text = apply_edits(text, edits)
         diagnostics_after = check(changed_text)
-        left -= 1
+        checks_left -= 1
         if is_better(diagnostics_after, diagnostics, edits):
             text, diagnostics, count, steps = (
                 changed_text,
@@ -108,7 +108,7 @@ def _steps(diagnostics: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
     """Give the sure repairs that do not touch, and then each one alone."""
     sure_repairs = [
         item.repair.edits
-        for item in diagnostics[: codes.ENOUGH]
+        for item in diagnostics[: codes.MOST_DIAGNOSTICS]
         if item.repair and item.repair.is_sure
     ]
     separate_repairs: list[tuple[Edit, ...]] = []
@@ -143,10 +143,10 @@ def _removes_warning(
     after: Sequence[Diagnostic], code: Code, diagnostics: Sequence[Diagnostic]
 ) -> bool:
     """Whether there is one warning fewer of this kind, and no mistake more."""
-    before, left = (
+    before, checks_left = (
         sum(diagnostic.code is code for diagnostic in every) for every in (diagnostics, after)
     )
-    return left < before and _mistakes(after) <= _mistakes(diagnostics)
+    return checks_left < before and _mistakes(after) <= _mistakes(diagnostics)
 
 
 def drop_wrong_offers(
@@ -157,7 +157,7 @@ def drop_wrong_offers(
     It may be right only together with what others offer, as the header of a block and its end, and
     another mistake in it may be told as well. In a long text what is told last is not looked at.
     """
-    left = min(MOST_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
+    checks_left = min(MOST_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
     result = list(diagnostics)
     for _ in _SHOWN_GAPS:
         offers = [
@@ -174,17 +174,17 @@ def drop_wrong_offers(
             and not (edits and set(edits) <= joined_set and in_all.is_right(result[k], edits))
         ]  # fmt: skip
         lines: dict[tuple[Code, str], bool] = {}  # of those that name no changes: each once
-        for k in suspects[:left]:
-            others = _covered_by_offer(result, offers, k, text)
+        for k in suspects[:checks_left]:
+            codes_and_words = _covered_by_offer(result, offers, k, text)
             line = result[k].code, result[k].values.get("fix", "")
             if offers[k] or line not in lines:
                 lines[line] = any(
-                    _InPlace(text, edits, check).is_right(result[k], edits, others)
+                    _InPlace(text, edits, check).is_right(result[k], edits, codes_and_words)
                     for edits in ([offers[k]] if offers[k] else _shown_edits(result[k], text))
                 )
             if not lines[line]:
                 result[k] = _without_offer(result[k])
-        left -= len(suspects)
+        checks_left -= len(suspects)
         if not suspects:
             break
     return result

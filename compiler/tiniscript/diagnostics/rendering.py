@@ -172,21 +172,21 @@ def _texts(key: str, lang: str) -> Iterator[str]:
 def names_found(diagnostic: Diagnostic) -> bool:
     """Whether a message says what was found, as it stands in the text."""
     key = f"{diagnostic.code.number}/message"
-    chosen = _first_filled_text(key, diagnostic.values, languages.SOURCE_LANGUAGE)
-    return ("", "found") in _GAP.findall(chosen)
+    filled_text = _first_filled_text(key, diagnostic.values, languages.SOURCE_LANGUAGE)
+    return ("", "found") in _GAP.findall(filled_text)
 
 
 def _first_filled_text(key: str, values: Mapping[str, str], lang: str) -> str:
     """Return the first text whose gaps all have a value, else the last one."""
-    chosen = ""
-    for chosen in _texts(key, lang):
-        if all(values.get(name) for _, name in _GAP.findall(chosen)):
+    filled_text = ""
+    for filled_text in _texts(key, lang):
+        if all(values.get(name) for _, name in _GAP.findall(filled_text)):
             break
-    return chosen
+    return filled_text
 
 
 def _format_text(key: str, values: Mapping[str, str], lang: str) -> str:
-    chosen = _first_filled_text(key, values, lang)
+    filled_text = _first_filled_text(key, values, lang)
 
     def gap(match: re.Match[str]) -> str:
         longest = FIX_CHARACTERS if match[2] in _COPIED else VALUE_CHARACTERS
@@ -194,7 +194,7 @@ def _format_text(key: str, values: Mapping[str, str], lang: str) -> str:
             return values["said"]  # a message, which is short as it is
         return _value_text(values.get(match[2], ""), match[1] == "@", lang, longest)
 
-    return _GAP.sub(gap, chosen)
+    return _GAP.sub(gap, filled_text)
 
 
 def _value_text(value: str, should_translate: bool, lang: str, longest: int) -> str:
@@ -251,8 +251,8 @@ def _line_window(line: str, start: int, end: int) -> tuple[str, int, int]:
     after = "…" if offset + right < len(line) else ""
     line_shown = before + "".join(line_shown for line_shown, _ in cells[left:right]) + after
     blanks = len(before) + sum(width for _, width in cells[left:at])
-    carets = sum(width for _, width in cells[at : min(max(end - offset, at), right)])
-    return line_shown, blanks, max(1, carets)
+    caret_count = sum(width for _, width in cells[at : min(max(end - offset, at), right)])
+    return line_shown, blanks, max(1, caret_count)
 
 
 def _cell(character: str) -> tuple[str, int]:

@@ -174,10 +174,10 @@ def _missing_port_findings(computer: Computer, virtual: tuple[str, ...]) -> tupl
     listed = ", ".join([*(port.port for port in computer.ports), *virtual])
     if len(computer.ports) > 1:
         return (sure("which_port", ports=listed),)
-    absent = _no_port_finding(computer)
-    if listed and absent.cause in ("no_port", "charging_cable"):
-        return (absent._replace(values={**absent.values, "ports": listed}),)
-    return (absent,)
+    no_port_finding = _no_port_finding(computer)
+    if listed and no_port_finding.cause in ("no_port", "charging_cable"):
+        return (no_port_finding._replace(values={**no_port_finding.values, "ports": listed}),)
+    return (no_port_finding,)
 
 
 def _no_port_finding(computer: Computer) -> Finding:

@@ -26,9 +26,9 @@ GREETINGS: tuple[tuple[Bootloader, bytes, bytes], ...] = (
     (NANO_OLD, b"\x30\x20", b"\x14\x10"),
     (MEGA, b"\x1b\x01\x00\x01\x0e\x01\x14", b"\x1b\x01\x00"),
 )
-BLINK_MS = 450  # Optiboot blinks first, and hears no more than two bytes meanwhile
-TRIES = 4
-ANSWER_MS = 200
+BLINK_WAIT_MS = 450  # Optiboot blinks first, and hears no more than two bytes meanwhile
+BOOTLOADER_TRIES = 4
+ANSWER_LIMIT_MS = 200
 BOOTLOADER_MS = (
     5000  # a bootloader that has heard nothing for so long has gone on to what is behind it
 )
@@ -43,11 +43,11 @@ def find_bootloader(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootload
     for line, greeting, answer in GREETINGS:
         wire.set_baud(line.baud)
         wire.reset_board()
-        answer_bytes = wire.receive(BLINK_MS, BLINK_MS)
+        answer_bytes = wire.receive(BLINK_WAIT_MS, BLINK_WAIT_MS)
         has_answered = False
-        for _ in range(TRIES):
+        for _ in range(BOOTLOADER_TRIES):
             wire.send(greeting)
-            answer_bytes += wire.receive(ANSWER_MS)
+            answer_bytes += wire.receive(ANSWER_LIMIT_MS)
             if has_answered := answer in answer_bytes:
                 break
         if has_answered:
@@ -58,17 +58,19 @@ def find_bootloader(wire: Wire, hear: Callable[[bytes], None]) -> tuple[Bootload
 
 
 def _greet(wire: Wire, greeting: bytes, answer: bytes) -> bool:
-    for _ in range(TRIES):
+    for _ in range(BOOTLOADER_TRIES):
         wire.send(greeting)
-        if answer in wire.receive(ANSWER_MS):
+        if answer in wire.receive(ANSWER_LIMIT_MS):
             return True
     return False
 
 
-BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
+BOOT_WAIT_MS = (
+    1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
+)
 HELLO_TRIES = 5  # an old Nano's bootloader takes longer
 BAUDS = (9600, 115200, 57600, 38400, 19200)
-LISTEN_MS = 400  # at a speed, to what a sketch prints
+LISTEN_LIMIT_MS = 400  # at a speed, to what a sketch prints
 PROBE_MS, RADIO_PROBE_MS = 200, 500  # for an answer of a board that is not ours
 LEAST_BYTES = 4  # bytes: fewer say nothing
 
@@ -87,7 +89,7 @@ def diagnose_line(
 ) -> list[Finding]:  # fmt: skip
     """Return what is at the other end. `on_step` gets what is done next, a short name."""
     on_step("listen")
-    before = wire.receive(LISTEN_MS if line.is_radio else BOOT_MS)
+    before = wire.receive(LISTEN_LIMIT_MS if line.is_radio else BOOT_WAIT_MS)
     robot = _wire_robot(wire, line, expected)
     on_step("hello")
     reply = robot.hello(HELLO_TRIES)
@@ -241,25 +243,25 @@ def _diagnose_cable(
     wire: Wire, line: Line, expected: Expectations, received: bytes, strangers: _Strangers,
     on_step: Callable[[str], None],
 ) -> list[Finding]:  # fmt: skip
-    garbage = len(received)
+    garbage_bytes = len(received)
     for baud in BAUDS:
         if baud == line.baud:
             continue
         on_step("bauds")
         wire.set_baud(baud)
-        received_later = wire.receive(LISTEN_MS)
+        received_later = wire.receive(LISTEN_LIMIT_MS)
         robot = _wire_robot(wire, line, expected)
         reply = robot.hello(1)
         if reply is not None:
             finding = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
-            rest = examine(robot, reply, expected, on_step=on_step)
-            return [finding, *(finding for finding in rest if finding.cause != "fine")]
+            findings = examine(robot, reply, expected, on_step=on_step)
+            return [finding, *(finding for finding in findings if finding.cause != "fine")]
         received_later += robot.heard
         identify_echo = partial(_identify_echo_of_one_speed, wire, baud)
         other_finding = strangers.find(received_later, robot.spoken, identify_echo)
         if other_finding is not None:
             return [other_finding]
-        garbage = max(garbage, len(received_later))
+        garbage_bytes = max(garbage_bytes, len(received_later))
     on_step("module")
     other_finding = _find_module(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))))
     if other_finding is not None:
@@ -278,5 +280,9 @@ def _diagnose_cable(
     best_finding = strangers.best_finding()
     return [
         best_finding
-        or (probably("garbled", n=str(garbage)) if garbage >= LEAST_BYTES else probably("silent"))
+        or (
+            probably("garbled", n=str(garbage_bytes))
+            if garbage_bytes >= LEAST_BYTES
+            else probably("silent")
+        )
     ]

@@ -33,9 +33,9 @@ def _adapters(devices: list[dict[str, Any]], has_port: bool) -> Iterator[Adapter
     pending_devices = list(devices)
     while pending_devices:
         device = pending_devices.pop()
-        inside = device.get("_items")
-        if isinstance(inside, list):
-            pending_devices += [item for item in inside if isinstance(item, dict)]
+        inner_devices = device.get("_items")
+        if isinstance(inner_devices, list):
+            pending_devices += [item for item in inner_devices if isinstance(item, dict)]
         vendor, product = (
             str(device.get(key, "")).split(" ")[0].lower().removeprefix("0x")
             for key in ("vendor_id", "product_id")

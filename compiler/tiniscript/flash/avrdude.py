@@ -19,9 +19,9 @@ from tiniscript.flash import children
 from tiniscript.flash.bootloaders import Bootloader
 
 # Timeouts without output: before a bootloader has answered, and after that.
-NOBODY_S, SILENCE_S = 15.0, 30.0
-LEAVE_S = 5.0  # that it has after its last output
-WHOLE_S = 300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
+NOBODY_LIMIT_S, SILENCE_LIMIT_S = 15.0, 30.0
+EXIT_LIMIT_S = 5.0  # that it has after its last output
+RUN_LIMIT_S = 300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
 MOST_BYTES = 200_000  # limit of its output; about 2,000 are normal
 MOST_ATTEMPTS = 2  # of its ten, which take five seconds each
 BAR_MARKS = 50  # of a whole bar
@@ -112,7 +112,7 @@ def write(
     ]
     words += ["-U", f"flash:w:{firmware}:i"]
     try:
-        exit_code, output = children.run(words, None, _Watch(on_progress), leave_s=LEAVE_S)
+        exit_code, output = children.run(words, None, _Watch(on_progress), leave_s=EXIT_LIMIT_S)
     except _Ended as over:
         return over.result
     except subprocess.TimeoutExpired:
@@ -143,12 +143,12 @@ class _Watch:
         self._on_progress(progress)
         if output != self._said:
             self._said, self._heard_s = output, now_s
-        if now_s - self._began_s >= WHOLE_S or len(output) > MOST_BYTES:
+        if now_s - self._began_s >= RUN_LIMIT_S or len(output) > MOST_BYTES:
             raise _Ended(ENDLESS)
         if progress is not None:
-            if now_s - self._heard_s >= SILENCE_S:
+            if now_s - self._heard_s >= SILENCE_LIMIT_S:
                 raise _Ended(BROKEN_OFF)
-        elif now_s - self._heard_s >= NOBODY_S or _attempt(output) >= MOST_ATTEMPTS:
+        elif now_s - self._heard_s >= NOBODY_LIMIT_S or _attempt(output) >= MOST_ATTEMPTS:
             raise _Ended(NOBODY)
 
 

@@ -215,8 +215,8 @@ def build(
         except CannotBuild as why:
             if why.why != CannotBuild.TOO_LARGE or project.environment not in SMALLER_FIRMWARE:
                 raise
-            project.environment, less = SMALLER_FIRMWARE[project.environment]
-            on_progress(StepProgress(less, 0))
+            project.environment, lack = SMALLER_FIRMWARE[project.environment]
+            on_progress(StepProgress(lack, 0))
             project.build(on_progress, is_hex=True)
         return project.hex_file.read_bytes()
 
@@ -246,18 +246,20 @@ def _folder() -> Iterator[Path]:
 
 
 def _environment() -> dict[str, str]:
-    own = {name: value for name, value in os.environ.items() if not _UNWANTED_LINE.fullmatch(name)}
-    return {**own, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
+    environment = {
+        name: value for name, value in os.environ.items() if not _UNWANTED_LINE.fullmatch(name)
+    }
+    return {**environment, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
 
 
-def parse_progress(output: str, files: int) -> StepProgress | None:
-    """Return the progress, from its whole output; `files` is the total number of files."""
+def parse_progress(output: str, file_count: int) -> StepProgress | None:
+    """Return the progress, from its whole output; `file_count` is the total number of files."""
     text = _WRITING.findall(output)
     if text:
         return StepProgress(WRITING, min(100, int(text[-1])))
-    compiled = len(_COMPILING.findall(output))
-    if compiled:
-        return StepProgress(COMPILING, min(99, 100 * compiled // files))
+    compiled_count = len(_COMPILING.findall(output))
+    if compiled_count:
+        return StepProgress(COMPILING, min(99, 100 * compiled_count // file_count))
     installing = list(_INSTALLING.finditer(output))
     if installing:
         percents = _PERCENT.findall(output, installing[-1].end())

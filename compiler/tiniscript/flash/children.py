@@ -16,7 +16,7 @@ from pathlib import Path
 from threading import Thread, current_thread, main_thread
 
 LOG_BYTES = 1 << 20  # of what a program says; the last ones
-LOOK_S = 0.1
+LOOK_INTERVAL_S = 0.1
 KILLED_AFTER_S = 5.0  # that a program has to end by itself
 
 
@@ -66,7 +66,7 @@ def run(
             let_through()
             reader.start()
             while True:  # one look at least, also at what has ended meanwhile
-                reader.join(LOOK_S)
+                reader.join(LOOK_INTERVAL_S)
                 on_output(output.decode(errors="replace"))
                 if not reader.is_alive():
                     break
@@ -134,6 +134,6 @@ def reason(log: str) -> str:
     """Return the most useful line of what a program has said: the first error, else the last."""
     rows = [row.strip() for row in log.splitlines() if re.search(r"\w", row)]
     errors = [row for row in rows if re.search(r"\berror\b", row, re.IGNORECASE)]
-    others = [row for row in rows if "Error" in row]
-    chosen = (errors or others or rows[-1:] or [""])[0]
-    return chosen[-200:].rstrip(": ")
+    error_like_rows = [row for row in rows if "Error" in row]
+    best_row = (errors or error_like_rows or rows[-1:] or [""])[0]
+    return best_row[-200:].rstrip(": ")

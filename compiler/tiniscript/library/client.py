@@ -38,8 +38,10 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 PATIENCE_MS = DEADLINE_MS  # of a robot that does not answer, or is busy, from its last progress
-SAVE_S = 10.0  # timeout for saving a program while the motors stand
-LOW_S = 2.0  # timeout while the voltage is too low for saving: the robot checks every 0.5 s
+SAVE_LIMIT_S = 10.0  # timeout for saving a program while the motors stand
+LOW_VOLTAGE_LIMIT_S = (
+    2.0  # timeout while the voltage is too low for saving: the robot checks every 0.5 s
+)
 
 
 class Client:
@@ -50,7 +52,7 @@ class Client:
 
     def __init__(
         self, port: str, verb: str, profile: Robot, baud: int | None = None, language: str = "en",
-        limit_s: float = opening.OPEN_S, is_shared: bool = True,
+        limit_s: float = opening.OPEN_LIMIT_S, is_shared: bool = True,
         is_latched: Callable[[], bool] = lambda: False, heed: Callable[[], None] = lambda: None,
     ) -> None:  # fmt: skip
         """Connect to a port through its server, or open it. Raises RobotError.
@@ -305,10 +307,10 @@ class Saving:
         """Yield while it is worth waiting, as the motors stand: learn the status each time."""
         begun_s = monotonic()
         low_s: float | None = None
-        while not self.is_over and monotonic() < begun_s + SAVE_S:
+        while not self.is_over and monotonic() < begun_s + SAVE_LIMIT_S:
             yield
             low_s = (low_s or monotonic()) if self.saved == SAVED_LOW_SUPPLY else None
-            if low_s is not None and monotonic() > low_s + LOW_S:
+            if low_s is not None and monotonic() > low_s + LOW_VOLTAGE_LIMIT_S:
                 return
 
     @property

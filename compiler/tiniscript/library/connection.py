@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 VERB = "python"  # the name that other commands show for the process that holds the port
 LONGEST_S = 10**9
-LOOK_S = 0.1
+LOOK_INTERVAL_S = 0.1
 
 
 class RobotInfo(NamedTuple):
@@ -185,7 +185,7 @@ class RobotConnection:
         any_run = Follower(None)
         while self._follower is None or self._ending is None:
             follower = self._follower or any_run
-            left_s = LOOK_S if end_s is None else min(LOOK_S, end_s - monotonic())
+            left_s = LOOK_INTERVAL_S if end_s is None else min(LOOK_INTERVAL_S, end_s - monotonic())
             result = self._client.event(max(left_s, 0.0))
             robot_event = None
             if result is not None and self._concerns_us(follower, result[1]):
@@ -324,7 +324,7 @@ class RobotConnection:
         for _ in saving.rounds():
             saving.learn(self._client.request(Requester.status).values)
             if not saving.is_over:
-                self._client.event(LOOK_S)
+                self._client.event(LOOK_INTERVAL_S)
         if saving.reason:
             raise RobotError(saving.reason, self.language)
 
@@ -342,10 +342,10 @@ class RobotConnection:
 
     def _ready(self, program: Program | str | bytes) -> Program:
         is_made = isinstance(program, Program)
-        ready = program_of(program, None if is_made else self._profile, self.language)
-        if ready._map is not None:
-            self._reader.maps[ready.checksum] = ready._map
-        return ready
+        ready_program = program_of(program, None if is_made else self._profile, self.language)
+        if ready_program._map is not None:
+            self._reader.maps[ready_program.checksum] = ready_program._map
+        return ready_program
 
     def _begin_run(self, receipt: ReceiptReply, is_running: bool, is_detached: bool) -> Receipt:
         # a program that waits for the button has no run number yet

@@ -50,8 +50,10 @@ def find_robot_for(image: Image, first: Robot) -> Robot | None:
     if fits(image, first):
         return first
     shipped = (robots.load(name) for name in robots.names())
-    others = (robot for _, robot in given.profiles())
-    return next((robot for item in (shipped, others) for robot in item if fits(image, robot)), None)
+    given_robots = (robot for _, robot in given.profiles())
+    return next(
+        (robot for item in (shipped, given_robots) for robot in item if fits(image, robot)), None
+    )
 
 
 def fits(image: Image, robot: Robot) -> bool:

@@ -28,11 +28,11 @@ from tiniscript.virtual import directory
 if TYPE_CHECKING:
     from tiniscript.link.port_connection import PortConnection
 
-BUSY_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
+BUSY_LIMIT_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
 STOP_BUSY_S = 10.0  # the same for a stop: an owner with a silent robot gives up only slowly
-RETRY_S = 0.05
+RETRY_INTERVAL_S = 0.05
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
-OPEN_S = 20.0  # timeout for opening a port
+OPEN_LIMIT_S = 20.0  # timeout for opening a port
 MOST_NAME_CHARACTERS = 200  # characters of a name in a sentence
 
 ANSWER_MS = 6000  # timeout for HELLO by radio
@@ -46,7 +46,7 @@ CONFIRM_S = 7.0  # timeout for the answer to a stop, a little longer than stops 
 
 
 def connection_to(
-    port: str, verb: str, baud: int, kit: int, limit_s: float = OPEN_S,
+    port: str, verb: str, baud: int, kit: int, limit_s: float = OPEN_LIMIT_S,
     asked_baud: int | None = None, language: str = "en",
 ) -> LinkConnection:  # fmt: skip
     """Return the connection to a port. Raises RobotError if the port is busy or does not open.
@@ -74,13 +74,13 @@ def connection_to(
             return line
         except RobotError as failure:
             waited_s = monotonic() - begun_s
-            if failure.reason != "port_busy" or (waited_s > BUSY_S and not is_stop):
+            if failure.reason != "port_busy" or (waited_s > BUSY_LIMIT_S and not is_stop):
                 raise
         if is_stop:
             past = _connect_past_holder(address, baud, kit, limit_s, language, port, waited_s)
             if past is not None:
                 return past
-        sleep(RETRY_S)
+        sleep(RETRY_INTERVAL_S)
 
 
 def _is_suspended(address: str) -> bool:

@@ -84,21 +84,29 @@ def hints_among(
         stem = "".join(lexicon_meaning(word, "stem"))
         side = f"{stem or word}_L"  # `LINEA`, where others have LINE_L
         word = side if side in kit_names - own_words else word
-        having = [robot for robot, own_kit in words_by_robot.items() if word in own_kit - own_words]
-        if diagnostic.code in codes and having:
-            having = [item for item in having if item in full_kits] or having
+        robots_with_word = [
+            robot for robot, own_kit in words_by_robot.items() if word in own_kit - own_words
+        ]
+        if diagnostic.code in codes and robots_with_word:
+            robots_with_word = [
+                item for item in robots_with_word if item in full_kits
+            ] or robots_with_word
             # that which the program names is meant, else one with more of its words, or of a lesson
-            having.sort(
+            robots_with_word.sort(
                 key=lambda item: (
                     item != named_name,
                     -len(words_used & words_by_robot[item]),
                     item not in LESSON_ROBOTS,
                 )
             )
-            if any(item <= {*having} for item in messages):
+            if any(item <= {*robots_with_word} for item in messages):
                 continue
-            messages.append({*having})
-            values = {"found": word, "own": name, **dict(zip(_ORDINALS, having, strict=False))}
+            messages.append({*robots_with_word})
+            values = {
+                "found": word,
+                "own": name,
+                **dict(zip(_ORDINALS, robots_with_word, strict=False)),
+            }
             diagnostic = Diagnostic(OTHER_ROBOT, diagnostic.span, values)
         robots_named.append(diagnostic)
     return robots_named
@@ -126,9 +134,9 @@ def _other_kits() -> dict[str, Kit]:
             kits[name] = kit
     for path, robot in given.profiles():
         try:
-            near = min(path, os.path.relpath(path), key=len)
+            shorter_path = min(path, os.path.relpath(path), key=len)
         except ValueError:  # Windows: the path is on another drive
-            near = path
-        if len(near) <= SHOWN_CHARACTERS and " " not in near:
-            kits[near] = robot.kit
+            shorter_path = path
+        if len(shorter_path) <= SHOWN_CHARACTERS and " " not in shorter_path:
+            kits[shorter_path] = robot.kit
     return kits

@@ -23,7 +23,7 @@ from tiniscript.vm.tasks import machine_of as python_machine
 Value = float | bool | str  # an int where a number has no decimals
 Readings = Mapping[str, "float | bool | Sequence[float | bool]"]
 
-LONGEST_S = 10**9
+LONGEST_RUN_S = 10**9
 MOST_STEPS = 10**15
 LARGEST_SEED = 2**32 - 1
 
@@ -94,10 +94,10 @@ def run(
     """
     ready_program = program_of(program, robot, language)
     profile, image = ready_program._profile, ready_program._image
-    max_ms = round(checked_number("max_time", max_time, 0, LONGEST_S, language) * 1000)
+    max_ms = round(checked_number("max_time", max_time, 0, LONGEST_RUN_S, language) * 1000)
     check_whole_number("max_steps", max_steps, 0, MOST_STEPS, language)
     check_whole_number("seed", seed, 1, LARGEST_SEED, language)
-    lists = thousandths(sensors or {}, profile, language)
+    reading_lists = thousandths(sensors or {}, profile, language)
     if machine not in ("python", "cpp"):
         raise UsageError("bad_choice", language, {"found": printable(repr(machine))})
     machine_of: MachineOf | None = None
@@ -112,18 +112,23 @@ def run(
                 "no_wasmtime", language, {"why": str(why), "how": install_command}
             ) from None
     return _trace(
-        iter_actions(image, profile, lists, max_ms, max_steps, seed, machine_of),
+        iter_actions(image, profile, reading_lists, max_ms, max_steps, seed, machine_of),
         profile.kit,
         ready_program._map,
     )
 
 
 def iter_actions(
-    image: Image, robot: Robot, lists: Mapping[int, Sequence[int]], max_ms: int, max_steps: int,
-    seed: int, machine_of: MachineOf | None = None,
-) -> Iterator[Event | Ending]:  # fmt: skip
-    """Yield the actions of a robot with a verified image. `lists` are readings in thousandths."""
-    senses = Senses(robot.kit, lists)
+    image: Image,
+    robot: Robot,
+    reading_lists: Mapping[int, Sequence[int]],
+    max_ms: int,
+    max_steps: int,
+    seed: int,
+    machine_of: MachineOf | None = None,
+) -> Iterator[Event | Ending]:
+    """Yield the actions of a robot with a verified image. Readings are in thousandths."""
+    senses = Senses(robot.kit, reading_lists)
     return run_code(
         image.code, robot.kit, senses, max_ms, max_steps, seed, machine_of or python_machine
     )
@@ -148,7 +153,7 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
     """Return readings in thousandths, by sensor number. Raises UsageError."""
     devices = robot.kit.readings
     numbers = {device.name: number for number, device in enumerate(devices) if device.name}
-    lists: dict[int, list[int]] = {}
+    reading_lists: dict[int, list[int]] = {}
     for name, readings in sensors.items():
         number = numbers.get(str(name).upper())
         if number is None:
@@ -161,8 +166,8 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
         result = [] if isinstance(reading_list, str | bytes) else list(reading_list)
         if not result:
             raise UsageError("bad_readings", language, {"name": devices[number].name})
-        lists[number] = [_reading(devices[number], item, language) for item in result]
-    return lists
+        reading_lists[number] = [_reading(devices[number], item, language) for item in result]
+    return reading_lists
 
 
 def fault_of(name: str, offset: int, places: Map | None) -> Fault:
@@ -248,6 +253,6 @@ def check_whole_number(name: str, number: object, low: int, high: int, language:
 def _bad_number(
     name: str, number: object, low: float, high: float, language: Language
 ) -> UsageError:
-    allowed = sentence("range", language, {"low": str(low), "high": str(high)})
-    values = {"name": name, "found": printable(repr(number), 60), "range": allowed}
+    range_text = sentence("range", language, {"low": str(low), "high": str(high)})
+    values = {"name": name, "found": printable(repr(number), 60), "range": range_text}
     return UsageError("bad_number", language, values)

@@ -41,12 +41,12 @@ class Shows:
     def __init__(self, places: Map) -> None:
         self._places = places
         expression_by_place = {place[1:]: expression_of(places, place) for place in places.places}
-        named = {place: text for place, text in expression_by_place.items() if text}
-        texts = Counter(named.values())
-        lines = Counter((text, place[0]) for place, text in named.items())
+        named_places = {place: text for place, text in expression_by_place.items() if text}
+        texts = Counter(named_places.values())
+        lines = Counter((text, place[0]) for place, text in named_places.items())
         self._shows = {
             place: Show(text, *place[:2], texts[text] > 1, lines[text, place[0]] > 1)
-            for place, text in named.items()
+            for place, text in named_places.items()
         }
 
     def at(self, offset: int) -> Show | None:
@@ -72,8 +72,8 @@ class Finder:
 
     def map_of(self, run: int, program: int) -> Map | None:
         """Return the map of a run's program."""
-        begun, places = self._runs.get(run, (-1, None))
-        if begun != program:
+        begin_ms, places = self._runs.get(run, (-1, None))
+        if begin_ms != program:
             places = self._own.get(program) or source_map.recall(program)
             if places is not None:
                 self._runs[run] = program, places

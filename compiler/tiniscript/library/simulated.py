@@ -127,8 +127,10 @@ def _make_robot(profile: Robot, world: str, settings: Settings, language: Langua
     try:
         return VirtualRobot(profile.with_language(language), worlds.load(world), settings)
     except NoWebAssembly as why:
-        how = install_advice.command(install_advice.VIRTUAL)
-        raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None
+        install_command = install_advice.command(install_advice.VIRTUAL)
+        raise UsageError(
+            "no_wasmtime", language, {"why": str(why), "how": install_command}
+        ) from None
     except WorldRefused as refused:
         values = {"reasons": "\n".join(describe(refused, language))}
         raise UsageError("world_refused", language, values) from None

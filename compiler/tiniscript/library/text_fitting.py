@@ -22,8 +22,8 @@ from tiniscript.syntax.parser import parse
 
 def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return what a robot of this level lacks for a checked program."""
-    parsed = parse(source)
-    tokens = list(spell_out(parsed.scan.tokens))
+    parsed_program = parse(source)
+    tokens = list(spell_out(parsed_program.scan.tokens))
     ends = ("end", "alias")  # what begins their block says it
     lacked = {word for word in level.lacks if WORDS[word].role.name not in ends}
     diagnostics = [

@@ -9,10 +9,10 @@ from tiniscript.base.source import Span
 from tiniscript.base.words import WORDS, lexicon_meaning
 from tiniscript.recovery.meanings import meant_by, plain
 
-_NEAR = 80  # characters around a value in which its call is looked for
-_BEFORE = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")
-_AFTER = re.compile(r"[^()\r\n;]*\)")
-_ASKED = re.compile(r"([A-Za-z_]\w*)[ \t]*(?:<>|[<>]=?|=)[ \t]*\Z")
+_CALL_REACH = 80  # characters around a value in which its call is looked for
+_CALL_START = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")
+_CALL_END = re.compile(r"[^()\r\n;]*\)")
+_COMPARED_WORD = re.compile(r"([A-Za-z_]\w*)[ \t]*(?:<>|[<>]=?|=)[ \t]*\Z")
 _SAMPLES = {"n": "3", "seconds": "2", "power": "50"}
 _CENTIMETRES, _ANY = "10", "50"  # examples of what a sensor sees, and of a variable
 
@@ -27,13 +27,16 @@ def with_number(text: str, span: Span, own_names: Container[str] = ()) -> dict[s
     All its values in words get one, but for the program's `own_names` names. `DISTANCE < poco` and
     `X = mucho` are shown alone.
     """
-    before = text[max(0, span.start - _NEAR) : span.start]
+    before = text[max(0, span.start - _CALL_REACH) : span.start]
     amount = text[slice(*span)]
-    if match := _ASKED.search(before):
+    if match := _COMPARED_WORD.search(before):
         name = meant_by(match[1].upper()) or match[1].upper()
         sample = _CENTIMETRES if name == "DISTANCE" else _ANY
         return {"amount": amount, "example": f"{name}{match[0][len(match[1]) :]}{sample}"}
-    call, after = _BEFORE.search(before), _AFTER.match(text[span.end : span.end + _NEAR])
+    call, after = (
+        _CALL_START.search(before),
+        _CALL_END.match(text[span.end : span.end + _CALL_REACH]),
+    )
     word = WORDS.get(call[1].upper()) if call else None
     if call is None or after is None or word is None:
         return {}

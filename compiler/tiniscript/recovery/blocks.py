@@ -13,13 +13,13 @@ from tiniscript.base.kit import REMOTE
 from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery.lines import ANY_END, Reading
-from tiniscript.recovery.meanings import ENDED, Lexeme, made, texts
+from tiniscript.recovery.meanings import WORD_OF_END, Lexeme, made, texts
 from tiniscript.recovery.rewrites import negated
 from tiniscript.syntax.outline import Item
 
-_ASKING = ("IF", "WHILE", "WHEN")
-_REMOTE = frozenset(device.name for device in REMOTE)
-LONGEST = 200  # items behind an ELSE whose ends are counted
+_ASKING_WORDS = ("IF", "WHILE", "WHEN")
+_REMOTE_NAMES = frozenset(device.name for device in REMOTE)
+MOST_ITEMS_AFTER_ELSE = 200  # items behind an ELSE whose ends are counted
 
 
 class Line(NamedTuple):
@@ -43,7 +43,7 @@ class Edit(NamedTuple):
     new: list[Lexeme]
 
 
-_UNREAD = [Item("do", "", 0, 0)]  # what a line that cannot be read is taken for
+_UNREADABLE_ITEMS = [Item("do", "", 0, 0)]  # what a line that cannot be read is taken for
 
 
 class _Block:
@@ -73,7 +73,7 @@ def _is_behind(item: Item, reading: Reading) -> bool:
     """
     tokens, items = reading.tokens, reading.items or ()
     before = [entry.kind for entry in items if entry.start < item.start][-1:]
-    if item.word not in _ASKING or before != ["do"] or item.end >= len(tokens):
+    if item.word not in _ASKING_WORDS or before != ["do"] or item.end >= len(tokens):
         return False
     bracket_before, after = tokens[item.start - 1], tokens[item.end]
     return bracket_before.source is None and after.text == ";" and after.source is not None
@@ -91,7 +91,7 @@ class Matching:
         self.flat = [
             (k, item)
             for k, line in enumerate(lines)
-            for item in (_UNREAD if line.reading.items is None else line.reading.items)
+            for item in (_UNREADABLE_ITEMS if line.reading.items is None else line.reading.items)
         ]
         self.flat.append((len(lines), Item("", "", 0, 0)))
         self.open: list[_Block] = []
@@ -105,14 +105,14 @@ class Matching:
         last = -1
         for place, (k, item) in enumerate(self.flat[:-1]):
             self.place, self.k, self.line, self.item = place, k, self.lines[k], item
-            below, self.after = self.flat[place + 1]
+            next_line, self.after = self.flat[place + 1]
             if k != last:
                 self.begin_line(last)
                 last = k
             if not self.read():
                 return False
-            if below != k:
-                self.end_line(self.lines[below].indent if below < len(self.lines) else 0)
+            if next_line != k:
+                self.end_line(self.lines[next_line].indent if next_line < len(self.lines) else 0)
         while self.open:
             block = self.open.pop()
             if not block.word or self.item.kind in ("open", "{"):
@@ -188,8 +188,8 @@ class Matching:
         if self.open or not self.line.is_when or self.item.word != "IF":
             return False
         line, part = next(self.parts(), (self.k, self.item))
-        ended_word = ENDED.get(part.word)
-        if not _REMOTE.isdisjoint(texts(self.line.reading.tokens[slice(*self.item[2:4])])):
+        ended_word = WORD_OF_END.get(part.word)
+        if not _REMOTE_NAMES.isdisjoint(texts(self.line.reading.tokens[slice(*self.item[2:4])])):
             return part.kind != "end" or ended_word != "IF"
         return part.kind == "end" and (
             ended_word == "WHEN" or (line != self.k and ended_word != "IF")
@@ -239,11 +239,11 @@ class Matching:
     def is_before_arm(self) -> bool:
         """Whether an end comes too early, and is dropped: the ELSE behind it belongs to its IF."""
         item = self.item
-        is_its = item.word == ANY_END or ENDED[item.word] == "IF"
+        is_its = item.word == ANY_END or WORD_OF_END[item.word] == "IF"
         if not (is_its and self.after.kind == "arm" and self.open and self.open[-1].word == "IF"):
             return False
         outer = sum(block.word == "IF" for block in self.open[:-1])
-        rest = [it for _, it in self.flat[self.place + 1 : self.place + LONGEST]]
+        rest = [it for _, it in self.flat[self.place + 1 : self.place + MOST_ITEMS_AFTER_ELSE]]
         ends = sum(it.kind == "end" and it.word in (ANY_END, "ENDIF", "END_IF") for it in rest)
         is_too_early = ends - sum(it.kind == "open" and it.word == "IF" for it in rest) > outer
         if is_too_early:
@@ -268,7 +268,7 @@ class Matching:
         return True
 
     def end(self) -> bool:
-        expected_word, k = ENDED[self.item.word], self.k
+        expected_word, k = WORD_OF_END[self.item.word], self.k
         if self.open and self.open[-1].word not in ("", expected_word):
             words = [block.word for block in self.open]
             block = self.open[-1]
@@ -278,8 +278,10 @@ class Matching:
                 is_changed = bool(self.line.reading.steps) or block.is_translated
                 self.is_sure = self.is_sure and is_changed
                 return True
-            comes = next((it for _, it in self.parts() if it.kind == "end"), None)
-            if comes and ENDED.get(comes.word) == block.word:  # the two ends are swapped
+            next_end = next((it for _, it in self.parts() if it.kind == "end"), None)
+            if (
+                next_end and WORD_OF_END.get(next_end.word) == block.word
+            ):  # the two ends are swapped
                 self.is_sure = False
                 del self.open[len(words) - 1 - words[::-1].index(expected_word)]
                 return True
@@ -325,9 +327,13 @@ class Matching:
         items = [it for it in self.line.reading.items or () if block.start <= it.start <= last]
         arm = max((k for k, each in enumerate(items) if each.kind == "arm"), default=0)
         messages = [item for item in items[arm:] if item.kind == "do"]
-        between = self.line.reading.tokens[messages[0].end : messages[-1].start] if messages else []
-        headers = sum(item.kind == "open" and item.word == "IF" for item in items)
-        return headers > 1 or any(each.text == ";" and each.source is not None for each in between)
+        tokens_between = (
+            self.line.reading.tokens[messages[0].end : messages[-1].start] if messages else []
+        )
+        header_count = sum(item.kind == "open" and item.word == "IF" for item in items)
+        return header_count > 1 or any(
+            each.text == ";" and each.source is not None for each in tokens_between
+        )
 
     def parts(self) -> Iterator[tuple[int, Item]]:
         """Give the arms and ends behind a place, but those of blocks that begin behind it."""

@@ -26,9 +26,9 @@ from tiniscript.base.words import (
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import (
-    ASKING,
-    CALLED,
-    LONG_S,
+    ASKING_WORDS,
+    CALL_WORDS,
+    LONG_TIME_S,
     MOST_POWER,
     NEAR,
     Names,
@@ -37,22 +37,22 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.recovery.writing import without_note
 
-_VALUE = r"[^(),;{}\n]*(?:\([^()\n]*\)[^(),;{}\n]*)*"
-_CALL = re.compile(rf"(?<!\w)([A-Za-z]+)[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
+_VALUE_PATTERN = r"[^(),;{}\n]*(?:\([^()\n]*\)[^(),;{}\n]*)*"
+_CALL = re.compile(rf"(?<!\w)([A-Za-z]+)[ \t]*\(({_VALUE_PATTERN}(?:,{_VALUE_PATTERN})*)\)")
 _COMMA = re.compile(r",(?![^()]*\))")  # outside of inner brackets
 _THOUSANDS = re.compile(r"([1-9]\d{0,2})((?:,\d{3})+)")
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
-_ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE}(?:,{_VALUE})*)\)")
-_APART_CALL = re.compile(rf"[ \t]*(?P<call>{_ANY_CALL.pattern})")
-_PIECE = re.compile(r"[^;{}|]+")
+_ANY_CALL = re.compile(rf"\w+[ \t]*\(({_VALUE_PATTERN}(?:,{_VALUE_PATTERN})*)\)")
+_CALL_AFTER_BLANKS = re.compile(rf"[ \t]*(?P<call>{_ANY_CALL.pattern})")
+_INSTRUCTION = re.compile(r"[^;{}|]+")
 _DEF = re.compile(r"(?i)\bDEF\s+(\w+)")
-_POINT = re.compile(r"(?<=\d)[ \t]*\.[ \t]+(?=[-\d.])")
-_PERCENT = re.compile(r"[ \t]*%$")
-_TIMED = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
-_SHORT = 3  # letters: a phone may have added some to one
-_UNIT = rf"(?P<unit>{'|'.join(WAYS)})"
-_UNIT_BEFORE = re.compile(rf"(?i){_UNIT}[ \t]+(?P<value>[\w.]+)")
-_STORED = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(WAYS)})")
+_SPACED_POINT = re.compile(r"(?<=\d)[ \t]*\.[ \t]+(?=[-\d.])")
+_PERCENT_AT_END = re.compile(r"[ \t]*%$")
+_TIME_WITH_UNIT = re.compile(r"(\d+(?:\.\d+)?)[ \t]*([^\W\d]*)")
+_MOST_ADDED_LETTERS = 3  # letters: a phone may have added some to one
+_UNIT_PATTERN = rf"(?P<unit>{'|'.join(WAYS)})"
+_UNIT_BEFORE = re.compile(rf"(?i){_UNIT_PATTERN}[ \t]+(?P<value>[\w.]+)")
+_STORED_WITH_UNIT = re.compile(rf"(?i)(\w+)[ \t]*=[ \t]*(-?[\d.]+)[ \t]*({'|'.join(WAYS)})")
 
 
 class _Call(NamedTuple):
@@ -95,12 +95,15 @@ def run_on(source: Source, names: Names) -> list[Diagnostic]:
     diagnostics = []
     start = 0
     for line in source.text.split("\n"):
-        for piece in _PIECE.finditer(without_note(line)[0]):
+        for piece in _INSTRUCTION.finditer(without_note(line)[0]):
             calls = _only_calls(piece[0])
             words = [plain(call["call"].partition("(")[0].strip()) for call in calls]
             words_meant = [word if names.is_name(word) else names.meant(word) for word in words]
-            near = {*words, *(names.meant(word, NEAR) for word in words)}  # `Antil(LINE_R)`
-            are_calls = {*words_meant} <= {*CALLED, *words, ""} and not near & {*ASKING, "UNTIL"}
+            likely_words = {*words, *(names.meant(word, NEAR) for word in words)}  # `Antil(LINE_R)`
+            are_calls = {*words_meant} <= {*CALL_WORDS, *words, ""} and not likely_words & {
+                *ASKING_WORDS,
+                "UNTIL",
+            }
             if len(calls) > 1 and are_calls and not all(words_meant):
                 begin = start + piece.start()
                 first, last = calls[0].start("call"), calls[-1].end()
@@ -119,7 +122,7 @@ def _only_calls(piece: str) -> list[re.Match[str]]:
     """Return the calls of a text of calls alone, nothing where it has something else."""
     calls: list[re.Match[str]] = []
     at = 0
-    while call := _APART_CALL.match(piece, at):
+    while call := _CALL_AFTER_BLANKS.match(piece, at):
         calls.append(call)
         at = call.end()
     return [] if piece[at:].strip() else calls
@@ -147,7 +150,7 @@ def _call_diagnostic(
 def _points(call: _Call) -> Diagnostic | None:
     """`BEEP(1. 440)`, of a phone: a point before a space is a comma."""
     inside = call.text.partition("(")[2].rpartition(")")[0]
-    values = _split_values(_POINT.sub(",", inside))
+    values = _split_values(_SPACED_POINT.sub(",", inside))
     is_whole = len(call.values) < len(call.word.arguments) == len(values)
     if not is_whole or not all(map(_NUMBER.fullmatch, values)):
         return None
@@ -179,8 +182,8 @@ def _thousands(call: _Call) -> Diagnostic | None:
     if number_match is None or len(call.values) <= len(arguments):
         return None
     joined_text = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
-    inside = joined_text.partition("(")[2].rpartition(")")[0]
-    values = _split_values(inside)
+    arguments_text = joined_text.partition("(")[2].rpartition(")")[0]
+    values = _split_values(arguments_text)
     is_of_time = any(
         argument.unit == "s" and value not in call.values
         for argument, value in zip(arguments, values, strict=False)
@@ -195,7 +198,7 @@ def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
     """`M(50, 80, 3)`, `M(3, 50, 80)`: how long the motors run is said by a W after them."""
     if call.word.text != "M" or len(call.values) != len(call.word.arguments) + 1:
         return None
-    values = [_PERCENT.sub("", value) for value in call.values]
+    values = [_PERCENT_AT_END.sub("", value) for value in call.values]
     splits = [(values[-1], values[:-1]), (values[0], values[1:])]
     candidates = [(_seconds(time), powers) for time, powers in splits if _are_powers(powers)]
     seconds, powers = next((each for each in candidates if each[0]), ("", []))
@@ -209,9 +212,9 @@ def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
 
 def _seconds(value: str) -> str:
     """Return the number of a value that says a time, "" for another one."""
-    match = _TIMED.fullmatch(value)
+    match = _TIME_WITH_UNIT.fullmatch(value)
     unit = lexicon_meaning(plain(match[2]), "unit") if match and match[2] else ("s", "1000")
-    is_time = match is not None and unit == ("s", "1000") and 0 < float(match[1]) < LONG_S
+    is_time = match is not None and unit == ("s", "1000") and 0 < float(match[1]) < LONG_TIME_S
     return match[1] if match and is_time else ""
 
 
@@ -227,7 +230,7 @@ def _are_powers(values: Sequence[str]) -> bool:
 
 def own_example(text: str) -> str:
     """Return how an instruction with CM or DEG in another place is written with its own values."""
-    if stored := _STORED.fullmatch(text):
+    if stored := _STORED_WITH_UNIT.fullmatch(text):
         name, number, unit = stored[1], stored[2], stored[3].upper()
         word = next(word for word, unit_of_word in UNIT_OF.items() if unit_of_word == unit)
         return f"{name} = {number}; {word}({name} {unit}, {POWER.sample})"
@@ -250,14 +253,14 @@ def likely_word(word: str, text: str) -> str:
         return ""
     is_tone = len(values) > 1 and float(numbers[1][0]) > MOST_POWER
     short, similar_word = expand_short(word), "" if lexicon_concept(word) else heard_as(word) or ""
-    if similar_word in CALLED:
+    if similar_word in CALL_WORDS:
         result = similar_word
     elif is_tone:
         result = "BEEP" if word[:1] == "B" or "BEEP" in short else ""
     elif len(short) == 1:
         result = short[0]
     else:
-        result = word[:1] if len(word) <= _SHORT else ""
+        result = word[:1] if len(word) <= _MOST_ADDED_LETTERS else ""
     return result if result in WORDS and len(WORDS[result].arguments) == len(values) else ""
 
 
@@ -267,7 +270,7 @@ def usage_with(word: str, number: str) -> str:
     So much of a turn is degrees; of a way it may be a power.
     """
     word_row = WORDS.get(word)
-    is_long = float(number) >= LONG_S
+    is_long = float(number) >= LONG_TIME_S
     if word_row is None or not word_row.is_call or (is_long and word not in ("L", "R")):
         return ""
     names = [argument.name for argument in word_row.arguments][1:]

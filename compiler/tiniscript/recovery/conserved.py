@@ -32,12 +32,12 @@ from tiniscript.diagnostics.fixing import edits_of
 from tiniscript.recovery.keys import key_edits
 from tiniscript.recovery.labels import labels
 from tiniscript.recovery.meanings import (
-    ASKING,
-    CALLED,
-    ENDED,
+    ASKING_WORDS,
+    CALL_WORDS,
     LAP,
     NEAR,
     NEAR_CM,
+    WORD_OF_END,
     Lexeme,
     Names,
     closed,
@@ -52,44 +52,56 @@ from tiniscript.recovery.writing import PLAIN_SIGNS, instruction_at, without_not
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SUMS
 
-_SENSES = {"<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
-           "=!": "<>", "≤": "<", "≥": ">", "≠": "<>"}  # fmt: skip
+_COMPARISON_SENSES = {
+    "<": "<", "<=": "<", ">": ">", ">=": ">", "<>": "<>", "=<": "<", "=>": ">", "!=": "<>",
+    "=!": "<>", "≤": "<", "≥": ">", "≠": "<>",
+}  # fmt: skip
 _UNITS = ("s", "cm", "°", "%", "Hz")
-_OF_WAYS = tuple(way.unit for way in WAYS.values())
-_STORED = "="  # the unit of what a variable keeps that nothing reads: a move would take seconds
+_WAY_UNITS = tuple(way.unit for way in WAYS.values())
+_STORED_UNIT = "="  # of what a variable keeps that nothing reads: a move would take seconds
 _COUNTED_UNITS = (*_UNITS, "turns")  # with a number before them
 _ARMS = ("ELSE", "ELSEIF")
-_HEADS = frozenset((*BLOCK_ENDS, *_ARMS))
-_DRIVES = frozenset((*MOVES, "M", "W", "BEEP", "S"))
-_COUNTED = frozenset((*_DRIVES, *_HEADS, *FUNCTIONS, "SHOW", "UNTIL", "BREAK", "AND", "OR", "NOT",
-                      "TRUE", "FALSE", "TIME", "FOREVER"))  # fmt: skip
+_HEADER_WORDS = frozenset((*BLOCK_ENDS, *_ARMS))
+_DRIVING_WORDS = frozenset((*MOVES, "M", "W", "BEEP", "S"))
+_COUNTED_WORDS = frozenset((
+    *_DRIVING_WORDS, *_HEADER_WORDS, *FUNCTIONS, "SHOW", "UNTIL", "BREAK", "AND", "OR", "NOT",
+    "TRUE", "FALSE", "TIME", "FOREVER",
+))  # fmt: skip
 # What says the same where a word is gone: `repeat until` is WHILE, `void loop` is FOREVER.
-_AS = {
+_COUNTED_AS = {
     "LOOP": ("WHILE", "BREAK", "FOREVER"), "WHILE": ("BREAK", "UNTIL"), "UNTIL": ("WHILE", "BREAK"),
     "FOREVER": ("TRUE", "LOOP", "WHILE"), "TRUE": ("FOREVER",), "S": ("BREAK", "UNTIL"),
     "IF": ("WHEN",), "WHEN": ("IF", "UNTIL"), "ELSE": ("ELSEIF",), "DEF": ("TASK", "FOREVER"),
 }  # fmt: skip
-_TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
-_NEGATES = ("no", "without", "unless", "different")
+_QUESTION_TURNERS = ("NOT", "UNTIL", "WHILE")  # where one goes, a question may become its opposite
+_NEGATING_KINDS = ("no", "without", "unless", "different")
 # What frames a program and says nothing: its setup, the tags of a page, a function with no name;
 # and labels of lines.
-_FRAME = re.compile(
+_FRAME_PATTERN = re.compile(
     r"(?im)^\s*[S5]\s?[IÍB1Ll]\s*(?:\|+|[¦:/\\!]+)|</?[a-z]+/?>|(?:\bfunction\s*\(\s*\)|\(\s*\)\s*=>)(?=\s*\{)"
 )
-_ESCAPED = {"¡=": "!=", "&lt;": "<", "&gt;": ">", "&nbsp;": " ", "½": ".5", "¼": ".25", "¾": ".75"}
-_PARTS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
-_GLUED = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
+_ESCAPED_SIGNS = {
+    "¡=": "!=",
+    "&lt;": "<",
+    "&gt;": ">",
+    "&nbsp;": " ",
+    "½": ".5",
+    "¼": ".25",
+    "¾": ".75",
+}
+_FRACTIONS = {"1/2": ".5", "1/4": ".25", "3/4": ".75"}
+_GLUED_NUMBER = re.compile(r"\b([A-Za-z_]+?)_?(\d+(?:\.\d+)?)(?:_(?=\d)|(?![\w.]))")
 # Digits, and letters that look like some; and what may stand between two parts of one number.
 _DIGITS = re.compile(r"[0-9oOlI]*[0-9][0-9oOlI]*|\b[oO](?=\.)")
-_BETWEEN = re.compile(r"[.,:;'´`·_ ]*")
-_LETTERS = str.maketrans("oOlI", "0011")
-_WITH_UNIT = re.compile(r"[\d.]+\s*([^\W\d]+|[%°])")
+_GROUP_SEPARATORS = re.compile(r"[.,:;'´`·_ ]*")
+_DIGITS_OF_LETTERS = str.maketrans("oOlI", "0011")
+_NUMBER_WITH_UNIT = re.compile(r"[\d.]+\s*([^\W\d]+|[%°])")
 _SEPARATORS = ";\n"
-_LONGEST = 3  # parts of a number
-_THOUSANDS = 3  # digits of the last part of `1,000`
+_MOST_NUMBER_PARTS = 3  # parts of a number
+_GROUP_DIGITS = 3  # digits of the last part of `1,000`
 # What is written, as far as a change may cut it out; and which messages name what they do.
-_WRITTEN = re.compile(r"\d[\d.]*|[^\W\d]\w*|[<>≤≥≠]=?|[=!]=")
-_NAMING = (
+_COUNTED_TOKEN = re.compile(r"\d[\d.]*|[^\W\d]\w*|[<>≤≥≠]=?|[=!]=")
+_NAMING_CODES = (
     codes.EXTRA_WORD,
     codes.WORDS_AFTER,
     codes.NAMED_ARGUMENT,
@@ -98,11 +110,11 @@ _NAMING = (
 )
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _END = lexemes(";")[0]
-_NUMBERED = ("number", "power", "often", "note")
+_NUMBERED_KINDS = ("number", "power", "often", "note")
 _NUMBER = re.compile(r"(?<![\w.])\d[\d.]*")
 _CALL = re.compile(r"\b([A-Z]+)\(([^()]*)\)")
-_NEAR = f"{NEAR_CM} cm"
-_ASKS_NEAR = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
+_NEAR_SAMPLE = f"{NEAR_CM} cm"
+_NEAR_QUESTION = re.compile(rf"DISTANCE [<>]=? {NEAR_CM}(?![\d.])")
 
 
 class Amount(NamedTuple):
@@ -114,31 +126,34 @@ class Amount(NamedTuple):
     line: int
 
 
-LOOKS = 40  # at what is lost, of one text; and how many characters are looked at in them
-LOOKED_AT = 100_000
-LAYERS = 8
+MOST_LOOKS = 40  # at what is lost, of one text; and how many characters are looked at in them
+MOST_CHARACTERS_LOOKED_AT = 100_000
+MOST_LAYERS = 8
 
 
 class Difference(NamedTuple):
     """What is `lost`, as it is written, and which commands there are `more` of."""
 
-    lost: list[str]
-    more: list[str]
+    losses: list[str]
+    additions: list[str]
 
 
-NOTHING = Difference([], [])
-UNKNOWN = Difference([""], [])  # nobody has looked, or not at this alone
+NO_DIFFERENCE = Difference([], [])
+UNKNOWN_DIFFERENCE = Difference([""], [])  # nobody has looked, or not at this alone
 
 
-def difference(text: str, repaired: str, kit: Kit) -> Difference:
+def difference(text: str, repaired_text: str, kit: Kit) -> Difference:
     """Return what a text says that a repaired one doesn't, and what only that does."""
-    before, after = _words_of_wrong(text, _words_of(repaired), kit), _words_of_right(repaired, kit)
-    lost = [*_amounts(before, after), *_words(before, after), *_questions(before, after)]
-    lost += before.sums() - after.sums()
-    more = [word for word in _DRIVES if after.words[word] > before.meant[word]]
-    more = more if len(more) > before.strange else []
-    more += [name for name in after.names.defs if after.calls(name) > before.calls(name)]
-    return Difference([*dict.fromkeys(lost)], more)
+    before, after = (
+        _words_of_wrong(text, _words_of(repaired_text), kit),
+        _words_of_right(repaired_text, kit),
+    )
+    losses = [*_amounts(before, after), *_words(before, after), *_questions(before, after)]
+    losses += before.sums() - after.sums()
+    additions = [word for word in _DRIVING_WORDS if after.words[word] > before.meant[word]]
+    additions = additions if len(additions) > before.strange else []
+    additions += [name for name in after.names.defs if after.calls(name) > before.calls(name)]
+    return Difference([*dict.fromkeys(losses)], additions)
 
 
 def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diagnostic]:
@@ -149,17 +164,23 @@ def conserving(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[D
     sure_diagnostics = [
         it for it in diagnostics if it.repair and it.repair.is_sure and it.repair.edits
     ]
-    lost = _losses_of_sure_repairs(sure_diagnostics, text, kit)
-    shown_diagnostics = [it for it in diagnostics if id(it) not in lost and "lost" not in it.values
-                         and not (it.repair and it.repair.is_sure) and edits_of(it)]  # fmt: skip
+    loss_of_diagnostic = _losses_of_sure_repairs(sure_diagnostics, text, kit)
+    shown_diagnostics = [
+        it
+        for it in diagnostics
+        if id(it) not in loss_of_diagnostic
+        and "lost" not in it.values
+        and not (it.repair and it.repair.is_sure)
+        and edits_of(it)
+    ]
     losses = zip(shown_diagnostics, _losses(shown_diagnostics, text, kit), strict=True)
     left_out = {
         id(it): unmentioned
         for it, loss in losses
-        if (unmentioned := _unmentioned_losses(it, loss.lost, text))
+        if (unmentioned := _unmentioned_losses(it, loss.losses, text))
     }
     return [
-        _with_losses(it, lost[id(it)].lost) if id(it) in lost
+        _with_losses(it, loss_of_diagnostic[id(it)].losses) if id(it) in loss_of_diagnostic
         else _with_losses(it, left_out[id(it)]) if id(it) in left_out else it
         for it in diagnostics
     ]  # fmt: skip
@@ -170,20 +191,22 @@ def _losses_of_sure_repairs(
 ) -> dict[int, Difference]:
     """Return what is lost by which sure repairs: by one alone, or by all of them together."""
     edits = [it.repair.edits for it in sure_diagnostics if it.repair]
-    joint = [it for k in _layers(dict(enumerate(edits)))[0] for it in edits[k]]
-    if not joint or not any(difference(text, apply_edits(text, joint), kit)):
+    joint_edits = [it for k in _layers(dict(enumerate(edits)))[0] for it in edits[k]]
+    if not joint_edits or not any(difference(text, apply_edits(text, joint_edits), kit)):
         return {}
-    lost = {
+    loss_of_diagnostic = {
         id(it): loss
         for it, loss in zip(sure_diagnostics, _losses(sure_diagnostics, text, kit), strict=True)
     }
-    is_joint = not any(any(item) for item in lost.values())  # none alone: then all together do it
-    return {key: loss for key, loss in lost.items() if is_joint or any(loss)}
+    is_joint = not any(
+        any(item) for item in loss_of_diagnostic.values()
+    )  # none alone: then all together do it
+    return {key: loss for key, loss in loss_of_diagnostic.items() if is_joint or any(loss)}
 
 
 def keeps_all(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[bool]:
     """Return for each diagnostic whether its changes alone lose nothing that was written."""
-    return [not loss.lost for loss in _losses(diagnostics, text, kit)]
+    return [not loss.losses for loss in _losses(diagnostics, text, kit)]
 
 
 def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Difference]:
@@ -193,20 +216,20 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
     what many lose together each loses what stands in its own instructions.
     """
     edits = [edits_of(it) or () for it in diagnostics]
-    changing = [k for k, edits_of_one in enumerate(edits) if edits_of_one]
-    left = min(LOOKS, LOOKED_AT // (len(text) + 1))
-    differences = [NOTHING] * len(edits)
-    groups = deque([k] for k in changing)
-    if len(groups) > left:
-        *layers, rest = _layers({k: edits[k] for k in changing})
+    changing_keys = [k for k, edits_of_one in enumerate(edits) if edits_of_one]
+    looks_left = min(MOST_LOOKS, MOST_CHARACTERS_LOOKED_AT // (len(text) + 1))
+    differences = [NO_DIFFERENCE] * len(edits)
+    groups = deque([k] for k in changing_keys)
+    if len(groups) > looks_left:
+        *layers, last_layer = _layers({k: edits[k] for k in changing_keys})
         groups = deque(layers)
-        for k in rest:
-            differences[k] = UNKNOWN
+        for k in last_layer:
+            differences[k] = UNKNOWN_DIFFERENCE
     while groups:
-        group, left = groups.popleft(), left - 1
+        group, looks_left = groups.popleft(), looks_left - 1
         joint = difference(text, apply_edits(text, [it for k in group for it in edits[k]]), kit)
         half = len(group) // 2
-        if half and any(joint) and left > len(groups) + 1:
+        if half and any(joint) and looks_left > len(groups) + 1:
             groups += [group[:half], group[half:]]
         elif any(joint):
             shares = _split_difference(joint, [_surrounding_text(edits[k], text) for k in group])
@@ -217,17 +240,17 @@ def _losses(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[Diff
 
 def _layers(edits: Mapping[int, Sequence[Edit]]) -> list[list[int]]:
     """Return groups of changes that do not touch, by their keys, and at last those in no group."""
-    layers: list[list[int]] = [[] for _ in range(LAYERS + 1)]
-    spanses: list[list[Span]] = [[] for _ in range(LAYERS)]
+    layers: list[list[int]] = [[] for _ in range(MOST_LAYERS + 1)]
+    spanses: list[list[Span]] = [[] for _ in range(MOST_LAYERS)]
     for k, edits_of_one in edits.items():
         free = (
             at
             for at, spans in enumerate(spanses)
             if not any(_overlaps(it, spans) for it in edits_of_one)
         )
-        at = next(free, LAYERS)
+        at = next(free, MOST_LAYERS)
         layers[at].append(k)
-        for edit in edits_of_one if at < LAYERS else ():
+        for edit in edits_of_one if at < MOST_LAYERS else ():
             insort(spanses[at], edit.span)
     return [layer for layer in layers[:-1] if layer] + layers[-1:]
 
@@ -242,9 +265,9 @@ def _split_difference(joint: Difference, parts: Sequence[str]) -> list[Differenc
     """Return what each of several changes loses, which are in these parts: what stands there."""
     if len(parts) == 1:
         return [joint]
-    own = [[it for it in joint.lost if it in part] for part in parts]
-    is_told = not joint.more and {*joint.lost} == {it for item in own for it in item}
-    return [Difference(item, []) if item or is_told else UNKNOWN for item in own]
+    own = [[it for it in joint.losses if it in part] for part in parts]
+    is_told = not joint.additions and {*joint.losses} == {it for item in own for it in item}
+    return [Difference(item, []) if item or is_told else UNKNOWN_DIFFERENCE for item in own]
 
 
 def _surrounding_text(edits: Sequence[Edit], text: str) -> str:
@@ -255,19 +278,21 @@ def _surrounding_text(edits: Sequence[Edit], text: str) -> str:
     return text[begin : min((it for it in behind if it >= 0), default=len(text))]
 
 
-def _unmentioned_losses(diagnostic: Diagnostic, lost: Sequence[str], text: str) -> list[str]:
+def _unmentioned_losses(diagnostic: Diagnostic, losses: Sequence[str], text: str) -> list[str]:
     """Return what a shown change leaves out and does not say: a unit, or what it only cuts out.
 
     A minus is none of these: a move goes the other way then.
     """
     edits = edits_of(diagnostic) or []
     outcome = " ".join(edit.text for edit in edits).upper()
-    removed_words = {*_WRITTEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())}
-    kept_words = {*_WRITTEN.findall(outcome)}
-    is_cut = kept_words <= removed_words and diagnostic.code not in _NAMING
+    removed_words = {
+        *_COUNTED_TOKEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())
+    }
+    kept_words = {*_COUNTED_TOKEN.findall(outcome)}
+    is_cut = kept_words <= removed_words and diagnostic.code not in _NAMING_CODES
     result = []
-    for item in lost:
-        unit = _WITH_UNIT.fullmatch(item) if diagnostic.repair else None
+    for item in losses:
+        unit = _NUMBER_WITH_UNIT.fullmatch(item) if diagnostic.repair else None
         is_unit = unit is not None and unit[1].upper() not in outcome
         if is_unit or (is_cut and item.upper() in removed_words - kept_words):
             result.append(item)
@@ -287,7 +312,9 @@ def with_sample(diagnostics: Sequence[Diagnostic], text: str, kit: Kit) -> list[
         fix = diagnostic.values.get("fix", "")
         samples = [] if diagnostic.values.get("example") else _samples(fix)
         if samples and len(_NUMBER.findall(fix)) <= _count_numbers(diagnostic, text):
-            samples = [it for it in samples if it[1] == _NEAR]  # one each, in words or nearly so
+            samples = [
+                it for it in samples if it[1] == _NEAR_SAMPLE
+            ]  # one each, in words or nearly so
         if samples and written_numbers is None:
             written_numbers = {it.value for it in _words_of_right(text, kit).amounts}
         samples_text = ", ".join(
@@ -305,16 +332,16 @@ def _count_numbers(diagnostic: Diagnostic, text: str) -> int:
     if ";" not in diagnostic.values.get("fix", ""):
         place = instruction_at(diagnostic.span, Source(text))
     return sum(
-        any(map(str.isdigit, token.text)) or bool(lexicon_meaning(token.text, *_NUMBERED))
+        any(map(str.isdigit, token.text)) or bool(lexicon_meaning(token.text, *_NUMBERED_KINDS))
         for token in lexemes(text[slice(*place)])
     )
 
 
 def _samples(fix: str) -> list[tuple[float, str]]:
     """Return the numbers of what is offered that may be examples, and each with its unit."""
-    samples = [_NEAR] if _ASKS_NEAR.search(fix) else []
+    samples = [_NEAR_SAMPLE] if _NEAR_QUESTION.search(fix) else []
     for match in _CALL.finditer(fix):
-        arguments = WORDS[match[1]].arguments if match[1] in _DRIVES else ()
+        arguments = WORDS[match[1]].arguments if match[1] in _DRIVING_WORDS else ()
         samples += [
             f"{argument.sample} {argument.unit}"
             for argument, value in zip(arguments, match[2].split(","), strict=False)
@@ -323,8 +350,8 @@ def _samples(fix: str) -> list[tuple[float, str]]:
     return [(float(item.split()[0]), item) for item in dict.fromkeys(samples)]
 
 
-def _with_losses(diagnostic: Diagnostic, lost: Sequence[str]) -> Diagnostic:
-    values = {**diagnostic.values, "lost": ", ".join(lost)} if lost else diagnostic.values
+def _with_losses(diagnostic: Diagnostic, losses: Sequence[str]) -> Diagnostic:
+    values = {**diagnostic.values, "lost": ", ".join(losses)} if losses else diagnostic.values
     repair = diagnostic.repair and diagnostic.repair._replace(is_sure=False)
     return diagnostic._replace(values=values, repair=repair)
 
@@ -364,19 +391,19 @@ class _Said:
 
     @staticmethod
     def _without_frame(text: str) -> str:
-        for sign, meant in _ESCAPED.items():
+        for sign, meant in _ESCAPED_SIGNS.items():
             text = re.sub(rf"(?<=\d) ?{sign}", meant, text) if meant[0] == "." else text
             text = text.replace(sign, f"0{meant}" if meant[0] == "." else meant)
         text = apply_edits(text, [Edit(span, "") for span in labels(text)])
-        return _FRAME.sub(";", text)
+        return _FRAME_PATTERN.sub(";", text)
 
     def _apart(self, line: str) -> str:
         """Return a line in which numbers stand alone, but for those of names: `F2,80`, `F_2_80`."""
-        for part, decimals in _PARTS.items():
+        for part, decimals in _FRACTIONS.items():
             line = re.sub(rf"(?<!\d)(\d) {part}(?!\d)", rf"\1{decimals}", line)
             alone = rf"(?i)(?<![\d)] )(?<!\d){part}(?!\d)(?=\s*[a-z])"
             line = re.sub(alone, f"0{decimals}", line)
-        return _GLUED.sub(
+        return _GLUED_NUMBER.sub(
             lambda it: it[0] if it[0].upper() in self.other_words else f"{it[1]} {it[2]} ", line
         )
 
@@ -431,7 +458,7 @@ class _Said:
         while k < len(self.tokens):
             token, before = self.tokens[k], self.tokens[k - 1] if k else _END
             if token.text == "(":
-                open_brackets.append(bool(self._possible_words(before) & CALLED))
+                open_brackets.append(bool(self._possible_words(before) & CALL_WORDS))
             elif token.text == ")":
                 open_brackets = open_brackets[:-1] or [False]
             elif token is _END:
@@ -455,7 +482,7 @@ class _Said:
         """Whether a 1 alone is asked for yes: `while (1)`."""
         head, sign = self.tokens[max(0, k - 2)], self.tokens[k - 1]
         is_alone = (sign.text, self.tokens[k].text, self._next_lexeme(k).text) == ("(", "1", ")")
-        return is_alone and bool(self._possible_words(head) & ASKING)
+        return is_alone and bool(self._possible_words(head) & ASKING_WORDS)
 
     def _take_word(self, k: int, is_in_brackets: bool) -> None:
         token, before, after = (
@@ -473,10 +500,10 @@ class _Said:
         is_joint = (
             word in ("AND", "OR")
             and not is_in_brackets
-            and bool(self._possible_words(after) & _DRIVES)
+            and bool(self._possible_words(after) & _DRIVING_WORDS)
         )
         is_repetition = (word == "IF" and before.text in ("AND", "OR")) or (
-            word == "OR" and before.text in _SENSES
+            word == "OR" and before.text in _COMPARISON_SENSES
         )
         is_repetition |= (
             after.text == "." and self._next_lexeme(k + 1).kind is WORD
@@ -484,13 +511,13 @@ class _Said:
         is_repetition |= word in MOVES and after.kind is WORD and word == self._word(after)
         is_equal = any(text in ("=", "==") or lexicon_meaning(text, "is") for text in neighbours)
         is_needless = (word == "TRUE" and is_equal and is_in_brackets) or (
-            word == "TIME" and not neighbours & _SENSES.keys()
+            word == "TIME" and not neighbours & _COMPARISON_SENSES.keys()
         )
         self.meant.update(self._possible_words(token))
         self.strange += token.text not in WORDS and not self.names.is_name(token.text)
         if is_part or is_sign or is_joint or is_repetition or is_needless:
             return
-        if word in _COUNTED or (word and word not in WORDS):
+        if word in _COUNTED_WORDS or (word and word not in WORDS):
             self.words[word] += 1
             self.foreign[word] += word != token.text
             self.written.setdefault(word, token.source or token.text)
@@ -500,9 +527,9 @@ class _Said:
 
     def _is_label(self, k: int) -> bool:
         """Whether a word after an end says which one ends."""
-        back = k - 2 if k > 1 and self.tokens[k - 1].text in ("-", "_", ".") else k - 1
-        before = self.tokens[back] if k else _END
-        is_end = before.text in ENDED or bool(lexicon_meaning(before.text, "end"))
+        position_before = k - 2 if k > 1 and self.tokens[k - 1].text in ("-", "_", ".") else k - 1
+        before = self.tokens[position_before] if k else _END
+        is_end = before.text in WORD_OF_END or bool(lexicon_meaning(before.text, "end"))
         token = self.tokens[k]
         is_block = token.text in self.names.defs or bool(
             self._possible_words(token) & BLOCK_ENDS.keys()
@@ -596,14 +623,14 @@ class _Said:
         counts = Counter(token.text for token in self.tokens)
         triples = zip(self.tokens, self.tokens[1:], self.tokens[2:], strict=False)
         for k, (one, sign, other) in enumerate(triples):
-            if sign.text in _SENSES or sign.text == "=":
+            if sign.text in _COMPARISON_SENSES or sign.text == "=":
                 at = min(k + 3 if other.text == "-" else k + 2, len(slots) - 1)
                 slots[at] = slots[at] or self.units.get(one.text, "")
                 slots[k] = slots[k] or self.units.get(other.text, "")
                 before = self.tokens[k - 1] if k else _END
                 is_set = sign.text == "=" and before.text in ("|", ";", _END.text)
                 is_stored = is_set and counts[one.text] == 1
-                slots[at] = slots[at] or (_STORED if is_stored else "")
+                slots[at] = slots[at] or (_STORED_UNIT if is_stored else "")
         return slots
 
     def _arguments(self, k: int) -> list[str]:
@@ -646,12 +673,14 @@ class _Said:
         """Return the words that turn a question round, as they are written."""
         negations = []
         for k, token in enumerate(self.tokens):
-            is_no = token.text in ("NOT", "!") or bool(lexicon_meaning(token.text, *_NEGATES))
+            is_no = token.text in ("NOT", "!") or bool(
+                lexicon_meaning(token.text, *_NEGATING_KINDS)
+            )
             if not is_no or self.names.is_name(token.text):
                 continue
             lexemes_before = self.tokens[max(0, k - 4) : k]
             if lexicon_meaning(token.text, "unless") or any(
-                self._possible_words(it) & ASKING for it in lexemes_before
+                self._possible_words(it) & ASKING_WORDS for it in lexemes_before
             ):
                 negations.append(token.source or token.text)
         return negations
@@ -682,11 +711,13 @@ class _Said:
         result = 0
         for k, token in enumerate(left):
             word = self._word(token)
-            if word in _HEADS:
+            if word in _HEADER_WORDS:
                 end = closed(left, k + 1) if texts(left[k + 1 : k + 2]) == ("(",) else k + 1
                 end += word == "DEF"
                 if 0 < end < len(left):
-                    is_over = left[end].text in (*ENDED, "}") or self._word(left[end]) in _ARMS
+                    is_over = (
+                        left[end].text in (*WORD_OF_END, "}") or self._word(left[end]) in _ARMS
+                    )
                     result += is_over
         return result
 
@@ -698,7 +729,9 @@ class _Said:
             if end and "IF" in self._possible_words(token):
                 inside = pairwise(self.tokens[k + 2 : end - 1])
                 begun = [b for a, b in inside if a.text in (",", ";")]
-                result += sum(bool(self._possible_words(lexeme) & _DRIVES) for lexeme in begun) > 1
+                result += (
+                    sum(bool(self._possible_words(lexeme) & _DRIVING_WORDS) for lexeme in begun) > 1
+                )
         return result
 
 
@@ -719,15 +752,15 @@ def _words_of(text: str) -> frozenset[str]:
 
 def _amounts(before: _Said, after: _Said) -> Iterator[str]:
     """Give the numbers that are gone, or have another sign or unit."""
-    left, lost = _Stock(after.amounts), _Stock(before.amounts)
+    new_stock, old_stock = _Stock(after.amounts), _Stock(before.amounts)
     read_parts: list[float] = []  # the parts of the run that was read last, which is one number
     for value, parts in _runs(before.body):
-        is_one_number = parts is not read_parts and left.has([value]) and lost.has(parts)
-        if is_one_number and not left.has(parts):
+        is_one_number = parts is not read_parts and new_stock.has([value]) and old_stock.has(parts)
+        if is_one_number and not new_stock.has(parts):
             read_parts = parts
-            left.take([value])
-            lost.take(parts)
-    lost_amounts, new_amounts = lost.all(), left.all()
+            new_stock.take([value])
+            old_stock.take(parts)
+    lost_amounts, new_amounts = old_stock.all(), new_stock.all()
     for is_near in (True, False):  # first what stays in its line: another line's 50 is no 50 %
         lost_amounts, new_amounts = _apart(lost_amounts, new_amounts, is_near)
     yield from (amount.source_text for amount in lost_amounts)
@@ -767,7 +800,7 @@ def _apart(
     for k, amount in enumerate(after):
         key = _thousandths(amount.value), amount.line * is_near
         places.setdefault(key, {}).setdefault(amount.unit, deque()).append(k)
-    lost: list[Amount] = []
+    unmatched_amounts: list[Amount] = []
     matched_positions: set[int] = set()
     for amount in before:
         scale = LAP if amount.unit == "turns" else 1
@@ -787,8 +820,10 @@ def _apart(
             )
             matched_positions.add(nearest.popleft())
         else:
-            lost.append(amount)
-    return lost, [amount for k, amount in enumerate(after) if k not in matched_positions]
+            unmatched_amounts.append(amount)
+    return unmatched_amounts, [
+        amount for k, amount in enumerate(after) if k not in matched_positions
+    ]
 
 
 def _thousandths(value: float) -> int:
@@ -800,7 +835,7 @@ def _is_same(before: Amount, after: Amount) -> bool:
         return _thousandths(before.value * LAP) == _thousandths(after.value)
     units = {*after.unit.split("/")} - {""}
     is_unit = not before.unit or units <= {*before.unit.split("/")}
-    is_unit |= units == {_STORED} and before.unit not in _OF_WAYS
+    is_unit |= units == {_STORED_UNIT} and before.unit not in _WAY_UNITS
     return is_unit and _thousandths(before.value) == _thousandths(after.value)
 
 
@@ -808,15 +843,15 @@ def _runs(text: str) -> Iterator[tuple[float, list[float]]]:
     """Give what digits may mean as one number, and as several: `2,5`, `8 0`, `8O`, `1:30`."""
     pieces = [*_DIGITS.finditer(text)]
     for first in range(len(pieces)):
-        for last in range(first, min(first + _LONGEST, len(pieces))):
+        for last in range(first, min(first + _MOST_NUMBER_PARTS, len(pieces))):
             run = pieces[first : last + 1]
             gaps = [text[a.end() : b.start()] for a, b in pairwise(run)]
-            if not all(_BETWEEN.fullmatch(gap) for gap in gaps):
+            if not all(_GROUP_SEPARATORS.fullmatch(gap) for gap in gaps):
                 break
-            digits = [match[0].translate(_LETTERS) for match in run]
+            digits = [match[0].translate(_DIGITS_OF_LETTERS) for match in run]
             sentence = text[run[0].start() : run[-1].end()]
             parts = [float(item) for item in re.findall(r"\d+(?:\.\d+)?|\.\d+", sentence)]
-            is_thousands = len(digits[-1]) == _THOUSANDS
+            is_thousands = len(digits[-1]) == _GROUP_DIGITS
             is_decimal = not is_thousands and all("," in gap or "." in gap for gap in gaps)
             values = _values(digits, is_decimal, ":" in sentence)
             yield from ((value, parts) for value in values)
@@ -837,7 +872,9 @@ def _words(before: _Said, after: _Said) -> Iterator[str]:
     is_turned = _senses(before) != _senses(after)
     for word, count in before.words.items():
         missing = count - after.words[word]
-        instead = max((after.words[it] - before.words[it] for it in _AS.get(word, ())), default=0)
+        instead = max(
+            (after.words[it] - before.words[it] for it in _COUNTED_AS.get(word, ())), default=0
+        )
         instead = max(instead, min(noted[word], before.foreign[word]))
         if missing > instead and not (word == "NOT" and is_turned):
             yield before.written.get(word, word)
@@ -846,13 +883,13 @@ def _words(before: _Said, after: _Said) -> Iterator[str]:
 def _questions(before: _Said, after: _Said) -> Iterator[str]:
     """Give the comparisons that are gone, or turned round, and branches that nothing is in."""
     lost_senses = _senses(before) - (after.notes - before.notes)
-    left = _senses(after)
-    turners = ({word: item.words[word] for word in _TURNERS} for item in (before, after))
+    new_senses = _senses(after)
+    turners = ({word: item.words[word] for word in _QUESTION_TURNERS} for item in (before, after))
     negated = (before.negations, after.negations)
     may_turn = bool(negated[0] or negated[1]) or len({str(turner) for turner in turners}) > 1
-    if lost_senses.total() > left.total() or (lost_senses - left and not may_turn):
-        yield from (lost_senses - left) or lost_senses
-    elif lost_senses == left and len(negated[0]) > len(
+    if lost_senses.total() > new_senses.total() or (lost_senses - new_senses and not may_turn):
+        yield from (lost_senses - new_senses) or lost_senses
+    elif lost_senses == new_senses and len(negated[0]) > len(
         negated[1]
     ):  # nothing is turned round instead
         yield negated[0][0]
@@ -862,18 +899,23 @@ def _questions(before: _Said, after: _Said) -> Iterator[str]:
 
 def _senses(words_said: _Said) -> Counter[str]:
     senses: Counter[str] = Counter()
-    in_call = [False]
+    is_call_bracket = [False]
     for one, sign, other in zip(
         words_said.tokens, words_said.tokens[1:], words_said.tokens[2:], strict=False
     ):
         if sign.text == "(":
-            in_call.append(one.text in CALLED)
+            is_call_bracket.append(one.text in CALL_WORDS)
         elif sign.text == ")":
-            in_call = in_call[:-1] or [False]
+            is_call_bracket = is_call_bracket[:-1] or [False]
         elif sign is _END:
-            in_call = [False]
+            is_call_bracket = [False]
         is_comparison = one.kind in (WORD, NUMBER) or one.text == ")"
         is_comparison &= other.kind in (WORD, NUMBER) or other.text in ("(", "-", "+")
-        if sign.text in _SENSES and is_comparison and not in_call[-1] and one.text not in CALLED:
-            senses[_SENSES[sign.text]] += 1
+        if (
+            sign.text in _COMPARISON_SENSES
+            and is_comparison
+            and not is_call_bracket[-1]
+            and one.text not in CALL_WORDS
+        ):
+            senses[_COMPARISON_SENSES[sign.text]] += 1
     return senses

@@ -20,8 +20,8 @@ from tiniscript.recovery.trailing_tokens import width
 from tiniscript.recovery.writing import without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_BEGINS = (";", "{", "}", "|")
-_IN = ("IN", "EN", "EM")
+_INSTRUCTION_STARTS = (";", "{", "}", "|")
+_IN_WORDS = ("IN", "EN", "EM")
 
 
 class _Counter(NamedTuple):
@@ -35,7 +35,7 @@ class _Counter(NamedTuple):
     end: int
     name: str
     first: int
-    times: int
+    loop_count: int
     step: int
 
 
@@ -53,8 +53,8 @@ def counters(source: Source) -> list[Diagnostic]:
     for row, headers, line in zip(rows, headers_by_row, source.text.split("\n"), strict=True):
         spans = _counter_spans(row, start)
         for item in headers:
-            in_header = [it.text for it in row[item.start : item.end]].count(item.name)
-            is_used = words[item.name] > in_header + ends[item.name]
+            uses_in_header = [it.text for it in row[item.start : item.end]].count(item.name)
+            is_used = words[item.name] > uses_in_header + ends[item.name]
             header = row[item.start : item.end]
             is_of_c = any(it.text == ";" for it in header) and not row[item.end :]
             if is_used or is_of_c or any(lexicon_meaning(it.text, "each") for it in header):
@@ -87,7 +87,7 @@ def _spans_text(source: Source, spans: Sequence[Span]) -> str:
 
 def _loop(counter: _Counter, is_used: bool) -> str:
     name, step, before = counter.name, counter.step, counter.first - counter.step
-    loop = f"LOOP({counter.times})"
+    loop = f"LOOP({counter.loop_count})"
     return f"{name} = {before};{loop};{name} = {name} + {step}" if is_used else loop
 
 
@@ -105,7 +105,7 @@ def _is_end(end: Lexeme, name: Lexeme, counter: str) -> bool:
 
 def _headers(row: Sequence[Lexeme]) -> Iterator[_Counter]:
     for k in range(len(row)):
-        is_begun = k == 0 or row[k - 1].text in _BEGINS
+        is_begun = k == 0 or row[k - 1].text in _INSTRUCTION_STARTS
         if is_begun and (counter := _header(row, k)):
             yield counter
 
@@ -123,7 +123,7 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
         return None
     rest.k += 1
     step: int | None = 1
-    if rest.text() in _IN and rest.text(1) == "RANGE" and rest.text(2) == "(":
+    if rest.text() in _IN_WORDS and rest.text(1) == "RANGE" and rest.text(2) == "(":
         rest.k += 3
         numbers = [rest.number()]
         numbers += [rest.number()] if rest.take(",") else []

@@ -10,16 +10,16 @@ from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery.consequences import without_consequences
 from tiniscript.syntax.lexer import QUOTES
 
-MANY = 6  # calls that an example has
+MOST_EXAMPLE_CALLS = 6  # calls that an example has
 # What is said once for the same values, these or all of them: with the lines of the others, and
 # their repairs, or without.
-_WITH_LINES: dict[Code, tuple[str, ...] | None] = {
+_GAPS_WITH_LINES: dict[Code, tuple[str, ...] | None] = {
     codes.EMPTY_BRACKETS: ("word",),
     **dict.fromkeys((codes.BAD_NAME, codes.NAME_WITH_SPACE), ("found", "right")),
     **dict.fromkeys((codes.RESERVED, codes.SAME_AGAIN)),
 }
-_UNKNOWN = (codes.UNKNOWN_WORD, codes.UNTAUGHT)  # one word: of each its first place
-_ONCE = _WITH_LINES | {
+_UNKNOWN_WORD_CODES = (codes.UNKNOWN_WORD, codes.UNTAUGHT)  # one word: of each its first place
+_MERGED_CODES = _GAPS_WITH_LINES | {
     **dict.fromkeys((codes.BRACES, codes.CASES), ()),
     **dict.fromkeys(
         (codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME, codes.SWITCH_WHAT)
@@ -50,12 +50,12 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
             and (values.get("fix") or values.get("example"))
         ):
             key = ""  # a word that has values
-        elif code in _UNKNOWN and not (diagnostic.repair or values.get("near")):
+        elif code in _UNKNOWN_WORD_CODES and not (diagnostic.repair or values.get("near")):
             code, key = codes.UNKNOWN_WORD, (values.get("found") or values["name"]).upper()
-        elif code in _ONCE and not (
+        elif code in _MERGED_CODES and not (
             code is codes.UNKNOWN_NAME and values.get("found") in words_meant
         ):
-            names = _ONCE[code]
+            names = _MERGED_CODES[code]
             key = tuple(
                 values.get(name, "").upper() for name in (values if names is None else names)
             )
@@ -82,8 +82,8 @@ def _unquoted(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnos
         edits = sorted(edit for repair in repairs for edit in repair.edits)
         if len(group) > 1 and any(diagnostic.code is codes.QUOTE for diagnostic in group):
             line = source.line_span(row)
-            shift = [Edit(Span(a - line.start, b - line.start), it) for (a, b), it in edits]
-            fix = apply_edits(source[line], shift).strip("\r\n \t")
+            shifted_edits = [Edit(Span(a - line.start, b - line.start), it) for (a, b), it in edits]
+            fix = apply_edits(source[line], shifted_edits).strip("\r\n \t")
             repair = Repair(tuple(edits), all(repair.is_sure for repair in repairs))
             span = Span(edits[0].span.start, edits[-1].span.end)
             group = [Diagnostic(codes.QUOTE, span, {"fix": fix}, span, repair)]
@@ -93,13 +93,13 @@ def _unquoted(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnos
 
 def _merge_diagnostics(group: Sequence[Diagnostic], source: Source) -> Diagnostic:
     first = group[0]
-    if len(group) == 1 or first.code not in (*_WITH_LINES, codes.MISSING_OPEN):
+    if len(group) == 1 or first.code not in (*_GAPS_WITH_LINES, codes.MISSING_OPEN):
         return first
     if first.code is codes.MISSING_OPEN:
         words = ", ".join(dict.fromkeys(diagnostic.values["word"] for diagnostic in group))
         calls = (
             diagnostic.values.get("fix") or diagnostic.values["example"]
-            for diagnostic in group[:MANY]
+            for diagnostic in group[:MOST_EXAMPLE_CALLS]
         )
         values = {**first.values, "words": words, "fix": "", "example": "; ".join(calls)}
         return first._replace(values=values, place=None, repair=None)

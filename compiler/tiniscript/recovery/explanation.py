@@ -20,7 +20,7 @@ from tiniscript.recovery import search, slips
 from tiniscript.recovery.ends import added_end, header_of, places_text, possible_places
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import (
-    ENDED,
+    WORD_OF_END,
     Lexeme,
     lexemes,
     lexicon_meaning,
@@ -29,25 +29,25 @@ from tiniscript.recovery.meanings import (
     texts,
 )
 from tiniscript.recovery.search import Candidate
-from tiniscript.recovery.slips import OF_BLOCKS, Change, Slip, alike, instructions
+from tiniscript.recovery.slips import BLOCK_WORDS, Change, Slip, alike, instructions
 from tiniscript.recovery.writing import in_one_line, laid_out, spoken_signs, tokens_of, without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_FEW = 3  # names of signs that a message shows
-_DEDUPED = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
+_MOST_SIGN_NAMES = 3  # names of signs that a message shows
+_CODES_OF_EACH_WORD = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)
 # Codes of what belongs to the beginning of its block, where something is wrong with that, too.
-_OF_BLOCK = (codes.NEVER_ENDS, codes.END_ALONE, codes.END_SPLIT, codes.BRACES,
-             codes.ASKED_AFTER, codes.OTHER_LANGUAGE)  # fmt: skip
-_SHOW_WHOLE = frozenset((
+_BLOCK_CODES = (codes.NEVER_ENDS, codes.END_ALONE, codes.END_SPLIT, codes.BRACES,
+                codes.ASKED_AFTER, codes.OTHER_LANGUAGE)  # fmt: skip
+_CODES_SHOWN_WHOLE = frozenset((
     codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_OPEN, codes.MISSING_CLOSE,
     codes.END_SPLIT, codes.END_ALONE, codes.FOREVER_NOT_HERE, codes.SPANISH_IF,
     codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_AFTER, codes.GROUPED, codes.OTHER_LANGUAGE,
 ))  # fmt: skip
-_OF_ARM = (codes.BRACES, codes.OTHER_LANGUAGE, codes.HEADER_SEPARATOR)
+_ARM_CODES = (codes.BRACES, codes.OTHER_LANGUAGE, codes.HEADER_SEPARATOR)
 _WORD, _WORD_BEFORE = re.compile(r"\w+"), re.compile(r"\w+\Z")
-_BEHIND = re.compile(r"\W*\w+[\s;]+(\w+)")
+_SECOND_WORD = re.compile(r"\W*\w+[\s;]+(\w+)")
 _ARMS = ("ELSE", "ELSEIF")
-_SIGNS = ("BEEP", "SHOW", "S", "STOP")
+_WORDS_OF_SIGNS = ("BEEP", "SHOW", "S", "STOP")
 
 
 class Slipped(NamedTuple):
@@ -188,14 +188,14 @@ class _Explainer:
         """Whether nothing that an explanation changes is a guess."""
         places = (place for edit in explanation.edits for place in edit.span)
         lines = {self.program.count("\n", 0, place) for place in places}
-        touched = [
+        touched_changes = [
             change for change in self.changes if lines & {*range(change.first, change.last + 1)}
         ]
-        touched += [self.changes[k] for k in (explanation.first, *explanation.opened)]
-        text = " ".join(f"{item.text} {self.lines[item.first]}" for item in touched)
-        has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & OF_BLOCKS)
+        touched_changes += [self.changes[k] for k in (explanation.first, *explanation.opened)]
+        text = " ".join(f"{item.text} {self.lines[item.first]}" for item in touched_changes)
+        has_blocks = bool({*re.findall(r"\w+|[{}]", text.upper())} & BLOCK_WORDS)
         is_block_sure = self.candidate.has_sure_blocks or not has_blocks
-        return is_block_sure and all(item.is_sure for item in touched)
+        return is_block_sure and all(item.is_sure for item in touched_changes)
 
     def words(self, span: Span) -> Span:
         """Return a span with all of the words that it begins and ends in."""
@@ -233,14 +233,18 @@ class _Explainer:
             code, step = slips.code_of(part)
             is_brace = code is codes.BRACES and before[0].text in BRACES
             is_arm = bool(after) and after[0].text in _ARMS
-            is_more = code in (_OF_ARM if is_arm else _OF_BLOCK) and (closed or is_brace or is_arm)
+            is_more = code in (_ARM_CODES if is_arm else _BLOCK_CODES) and (
+                closed or is_brace or is_arm
+            )
             message = self.added(closed or enclosing, edit, (k, 1), after) if is_more else None
             message = message or self.new(k, part, code, step)
             message.opened |= {closed.first} if closed else set()
             if code is codes.WRONG_END and isinstance(details := message.about, Slipped):
                 right = slips.right_of(details.slip)
                 line = str(self.changes[closed.first if closed else k].first + 1)
-                message.about = details._replace(word=ENDED.get(right, ""), line=line, fix=right)
+                message.about = details._replace(
+                    word=WORD_OF_END.get(right, ""), line=line, fix=right
+                )
             for block in self.open:
                 if block.first == k or is_brace:
                     block.explanation = block.explanation or message
@@ -249,7 +253,7 @@ class _Explainer:
             self.end((k, count), change, end.strip(), line_end + end)
 
     def parts(
-        self, k: int, old: str, own: str, before: Sequence[Lexeme], after: Sequence[Lexeme]
+        self, k: int, old: str, own_text: str, before: Sequence[Lexeme], after: Sequence[Lexeme]
     ) -> list[Change]:
         """Return the instructions of a line that change; nothing for one, or for others."""
         steps: dict[int, list[Step]] = {}
@@ -261,7 +265,7 @@ class _Explainer:
             n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(one) - 1)
             steps.setdefault(n, []).append(Step(step.code, one[n], other[n]))
         old_instructions, new_instructions = instructions(before), instructions(after)
-        notes = (without_note(item)[1] for item in (old, own))
+        notes = (without_note(item)[1] for item in (old, own_text))
         if (
             len(old_instructions) != len(new_instructions)
             or len({*notes}) > 1
@@ -296,13 +300,15 @@ class _Explainer:
         """Open and close blocks; return the first one that began in an earlier change."""
         closed = None
         if self.open and tokens:
-            inside, head = self.open[-1].inside, tokens[0].text
-            inside[:] = [] if head in _ARMS else [*inside, head]
+            block_instructions, head = self.open[-1].inside, tokens[0].text
+            block_instructions[:] = [] if head in _ARMS else [*block_instructions, head]
         for token in tokens:
             if token.text in BLOCK_ENDS:
                 self.open.append(_Block(token.text, k))
-            elif token.text in ENDED and self.open:
-                ending_blocks = (item for item in self.open[::-1] if item.word == ENDED[token.text])
+            elif token.text in WORD_OF_END and self.open:
+                ending_blocks = (
+                    item for item in self.open[::-1] if item.word == WORD_OF_END[token.text]
+                )
                 block = next(ending_blocks, self.open[-1])  # ends may be crossed
                 self.open.remove(block)
                 closed = closed or (block if block.first < k else None)
@@ -315,14 +321,14 @@ class _Explainer:
     ) -> Explanation | None:
         """Make an edit part of what is told of the beginning of its block, None where too long."""
         explanation = block.explanation if block else None
-        if block is None or explanation is None or explanation.code not in _SHOW_WHOLE:
+        if block is None or explanation is None or explanation.code not in _CODES_SHOWN_WHOLE:
             return None
         first = min(explanation.first, block.first)
         if not self.joined_changes(first, last):
             return None
         explanation.edits.append(edit)
         explanation.first, explanation.last = first, max(explanation.last, last)
-        ends = next((item.text for item in after if item.text in ENDED), "")
+        ends = next((item.text for item in after if item.text in WORD_OF_END), "")
         explanation.ends = explanation.ends or ends
         return explanation
 
@@ -335,7 +341,8 @@ class _Explainer:
         ):
             code = codes.OTHER_SIGN
             details: Slipped | Unended = Slipped(
-                slips.slip_of(part, code, step), spoken=", ".join(spoken_signs_found[:_FEW])
+                slips.slip_of(part, code, step),
+                spoken=", ".join(spoken_signs_found[:_MOST_SIGN_NAMES]),
             )
         else:
             details = self.unended(k, part) if is_end else self.slipped(k, part, code, step)
@@ -349,14 +356,14 @@ class _Explainer:
         if code is codes.OTHER_NOTE:
             return Slipped(slip, right=self.changes[k].text.strip())
         if code is codes.EXTRA_WORD and not step:
-            arm_match = _BEHIND.match(self.program, self.words(part.edit.span).start)
+            arm_match = _SECOND_WORD.match(self.program, self.words(part.edit.span).start)
             arm = arm_match[1].upper() if arm_match else ""
             is_early = bool({arm, meant_by(arm)} & {*_ARMS})
             return Slipped(slip, early=slips.found_in(slip) if is_early else "")
         if code is codes.OTHER_CALL and (words := _words_of_numbers(part)):
             is_tone = all(lexicon_meaning(plain(word), "note") for word in words)
             return Slipped(slip, **{"tones" if is_tone else "digits": ", ".join(words)})
-        if code in _DEDUPED:  # LIGHT_L and LIGHT_R
+        if code in _CODES_OF_EACH_WORD:  # LIGHT_L and LIGHT_R
             steps = (it for it in self.changes[k].steps if it.code is code)
             pairs = ((texts(it.before), texts(it.after)) for it in steps)
             names = [
@@ -372,12 +379,16 @@ class _Explainer:
     def unended(self, k: int, part: Change) -> Unended:
         """Return what is said of a block that lacks its end on the line where it begins."""
         new_texts, at = texts(part.after), added_end(part.before, part.after)
-        end = next((it for it in new_texts if it in ENDED), "") if at is None else new_texts[at]
-        unended = Unended(ENDED.get(end, ""), end)
-        inside = [instruction for instruction in instructions(part.after[:at]) if instruction]
+        end = (
+            next((it for it in new_texts if it in WORD_OF_END), "") if at is None else new_texts[at]
+        )
+        unended = Unended(WORD_OF_END.get(end, ""), end)
+        block_instructions = [
+            instruction for instruction in instructions(part.after[:at]) if instruction
+        ]
         above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
         if at is not None and unended.word in new_texts[:at]:
-            unended.behind = laid_out(inside[-1]) if inside else ""
+            unended.behind = laid_out(block_instructions[-1]) if block_instructions else ""
             unended.places = places_text(
                 possible_places(part.after[header_of(part.after, at) : at])
             )
@@ -427,13 +438,16 @@ class _Explainer:
 
         A sign or a stop behind others may as well come when a LOOP or a DEF is over.
         """
-        inside = block.inside
+        block_instructions = block.inside
         header, end = (self.changes[k].text.split("\n")[0] for k in (block.first, last))
         is_deeper = end[:1].isspace() > header[:1].isspace()
         is_endless = {*texts(lexemes(header))} & {"FOREVER", "TRUE"}
-        if len(inside) < 2 or self.candidate.has_sure_blocks or is_deeper or is_endless:
+        if len(block_instructions) < 2 or self.candidate.has_sure_blocks or is_deeper or is_endless:
             return False
-        is_sign = inside[-1] in _SIGNS and inside[-1] not in inside[:-1]
+        is_sign = (
+            block_instructions[-1] in _WORDS_OF_SIGNS
+            and block_instructions[-1] not in block_instructions[:-1]
+        )
         return is_sign or block.word not in ("LOOP", "DEF")
 
 
@@ -446,9 +460,9 @@ def _words_of_numbers(part: Change) -> list[str]:
     if len(part.before) != len(part.after):
         return []
     pairs = zip(part.before, part.after, strict=True)
-    changed = [(was, now) for was, now in pairs if was.text != now.text]
-    are_words = all(was.kind is WORD and now.kind is NUMBER for was, now in changed)
-    return list(dict.fromkeys(was.source or "" for was, _ in changed)) if are_words else []
+    changed_pairs = [(was, now) for was, now in pairs if was.text != now.text]
+    are_words = all(was.kind is WORD and now.kind is NUMBER for was, now in changed_pairs)
+    return list(dict.fromkeys(was.source or "" for was, _ in changed_pairs)) if are_words else []
 
 
 def _is_closed(tokens: Sequence[Lexeme]) -> bool:

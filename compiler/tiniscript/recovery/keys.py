@@ -18,19 +18,24 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import BLOCK_ENDS, WORDS, lexicon, lexicon_concept, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.meanings import ASKING, ENDED, Names, lexemes, plain, words_of
+from tiniscript.recovery.meanings import ASKING_WORDS, WORD_OF_END, Names, lexemes, plain, words_of
 from tiniscript.recovery.writing import without_note
 
 KEYS = tuple(device.name for device in REMOTE if device.is_yes_no)
-_SIDES = {"F": "UP", "B": "DOWN", "L": "LEFT", "R": "RIGHT"}  # what arrows say alone
-_STICK = {"LEFT": "PAD_X < 0", "RIGHT": "PAD_X > 0", "UP": "PAD_Y > 0", "DOWN": "PAD_Y < 0"}
-_PART = re.compile(r"([^;{}|]*)(\|?)")
+_SIDE_OF_MOVE = {"F": "UP", "B": "DOWN", "L": "LEFT", "R": "RIGHT"}  # what arrows say alone
+_STICK_CONDITIONS = {
+    "LEFT": "PAD_X < 0",
+    "RIGHT": "PAD_X > 0",
+    "UP": "PAD_Y > 0",
+    "DOWN": "PAD_Y < 0",
+}
+_INSTRUCTION_AND_BAR = re.compile(r"([^;{}|]*)(\|?)")
 _PIECE = re.compile(r"\d[\d.]*|[^\W\d_]+|<>|!=|==|\S")
-_HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # of `upKey`
-_EQUAL = ("=", "==", "_", "-", ".", '"', "'", "<>", "!=", "(")
-_GIVEN = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
-_SET = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
-_LINKS = ("the", "of", "to", "is", "filler", "small", "pressed")
+_WORD_HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-ZÀ-Ý])")  # of `upKey`
+_EQUAL_SIGNS = ("=", "==", "_", "-", ".", '"', "'", "<>", "!=", "(")
+_ORDER_OF_KEY = re.compile(r"(?i)\s*(?:=>?|:|->)\s*((?:[FBLRSMW]|BEEP|STOP)\b[^;{}\n]*)")
+_ASSIGNMENT = re.compile(r"(?m)(?:^|[;|{}])\s*(\w+)\s*=(?!=|>|\s*(?:[FBLRSMW]|BEEP|STOP)\b)")
+_LINK_KINDS = ("the", "of", "to", "is", "filler", "small", "pressed")
 _BEFORE, _BEHIND = ("(", "AND", "OR", "NOT"), (")", "AND", "OR")  # what is asked alone
 
 
@@ -60,18 +65,20 @@ def asked_keys(source: Source, kit: Kit) -> list[Diagnostic]:
         return []
     rows = [without_note(line)[0] for line in source.text.split("\n")]
     names = Names([lexemes(row) for row in rows], kit)
-    own_names = names.defs.union(*names.parameters.values(), _SET.findall(plain(source.text)))
+    own_names = names.defs.union(
+        *names.parameters.values(), _ASSIGNMENT.findall(plain(source.text))
+    )
     diagnostics: list[Diagnostic] = []
     start = depth = 0
     for row, line in zip(rows, source.text.split("\n"), strict=True):
-        for part in _PART.finditer(row):
+        for part in _INSTRUCTION_AND_BAR.finditer(row):
             if part[2]:
                 continue  # `SI|`
             diagnostics += _Part(part[1], start + part.start(), names, own_names).diagnostics(
                 depth > 0
             )
             words = [lexeme.text for lexeme in lexemes(part[1])]
-            depth += sum((it in BLOCK_ENDS) - (it in ENDED) for it in map(names.meant, words))
+            depth += sum((it in BLOCK_ENDS) - (it in WORD_OF_END) for it in map(names.meant, words))
         start += len(line) + 1
     return diagnostics
 
@@ -101,17 +108,19 @@ class _Part:
             if token.text in self.own_names:
                 yield _Piece("", Span(start, end))  # a variable may be called KEY
                 continue
-            for piece in _PIECE.finditer(_HUMP.sub(" ", source)):
-                humps = len(_HUMP.findall(source[: piece.end()]))
-                at = start + piece.start() - min(humps, piece.start())
-                yield from _split_key(plain(piece[0]), at if humps else start + piece.start())
+            for piece in _PIECE.finditer(_WORD_HUMP.sub(" ", source)):
+                hump_count = len(_WORD_HUMP.findall(source[: piece.end()]))
+                at = start + piece.start() - min(hump_count, piece.start())
+                yield from _split_key(plain(piece[0]), at if hump_count else start + piece.start())
 
     def diagnostics(self, is_inside: bool) -> Iterator[Diagnostic]:
         """Give what is told of an instruction, which is inside a block or not."""
         if order := self._assigned_key():
             yield self._order(*order, "IF" if is_inside else "WHEN")
             return
-        asking_positions = (k for k, each in enumerate(self.pieces) if self._key_of(each) in ASKING)
+        asking_positions = (
+            k for k, each in enumerate(self.pieces) if self._key_of(each) in ASKING_WORDS
+        )
         k = next(asking_positions, len(self.pieces))
         key_before = None
         while k < len(self.pieces):
@@ -144,7 +153,7 @@ class _Part:
         key = (self._key(0) or self._stick(0)) if self.pieces else None
         if key is None or not key.right:
             return None
-        match = _GIVEN.fullmatch(self.text, self.pieces[key.end - 1].span.end)
+        match = _ORDER_OF_KEY.fullmatch(self.text, self.pieces[key.end - 1].span.end)
         return (key, match[1].strip()) if match else None
 
     def _order(self, key: _Key, order: str, head: str) -> Diagnostic:
@@ -168,7 +177,7 @@ class _Part:
         if self._word(k).isalpha() and self._word(k + 1) == "." and not _is_key(self._word(k)):
             key = self._key(k + 2)  # of a thing: `input.buttonIsPressed(Button.A)`
             return key and key._replace(first=k)
-        side_position = self._while(k, lambda it: it.isalpha() and _is_key_word(it, *_LINKS))
+        side_position = self._while(k, lambda it: it.isalpha() and _is_key_word(it, *_LINK_KINDS))
         side = _side(self._word(side_position))
         at = (
             self._while(side_position + 1, lambda it: _is_key_word(it, "the", "of") or it == "_")
@@ -184,9 +193,9 @@ class _Part:
             end_position = self._while(
                 end,
                 lambda it: (
-                    it in _EQUAL
+                    it in _EQUAL_SIGNS
                     or _is_key(it)
-                    or _is_key_word(it, *_LINKS)
+                    or _is_key_word(it, *_LINK_KINDS)
                     or bool(lexicon_meaning(it, "to"))
                 ),
             )
@@ -220,7 +229,7 @@ class _Part:
             is_not, end = self._word(end + 1) == "0", end + 2
         first = k if self._mentions_pressed(k, side_position) else side_position
         before = self.pieces[k - 1] if k else _Piece("", Span(0, 0))
-        if before.word == "(" or self._key_of(before) in ASKING:
+        if before.word == "(" or self._key_of(before) in ASKING_WORDS:
             first = k  # with its article
         return _Key(first, end, f"{'NOT ' if is_not else ''}KEY_{side}" if side else "")
 
@@ -241,7 +250,7 @@ class _Part:
         is_negated = False
         if not side:
             end_position = self._while(
-                end, lambda it: it in _EQUAL or bool(lexicon_meaning(it, *_LINKS))
+                end, lambda it: it in _EQUAL_SIGNS or bool(lexicon_meaning(it, *_LINK_KINDS))
             )
             side = _side(self._word(end_position))
             signs = {self._word(n) for n in range(end, end_position)}
@@ -256,7 +265,9 @@ class _Part:
         end = self._while(end, lambda it: _is_key_word(it, "is", "pressed"))
         is_no, end = self._as_yes_no(end)
         no, arrow = "NOT " * (is_negated or is_no), "" if has_axis else f"KEY_{side}"
-        return _Key(k, end, f"{no}{_STICK[side]}", arrow and f"{no}{arrow}", is_sure=False)
+        return _Key(
+            k, end, f"{no}{_STICK_CONDITIONS[side]}", arrow and f"{no}{arrow}", is_sure=False
+        )
 
     def _side(self, k: int, before: _Key | None) -> _Key | None:
         """Return the key that a side alone says, which nothing else is asked with: `WHEN(UP)`.
@@ -269,14 +280,14 @@ class _Part:
         stands_alone = self._word(k - 1) in _BEFORE and self._word(end) in _BEHIND
         is_call = self._word(k - 1) == "(" and self._word(k - 2).isalpha()
         stands_alone = stands_alone and not (
-            is_call and self._key_of(self.pieces[k - 2]) not in ASKING
+            is_call and self._key_of(self.pieces[k - 2]) not in ASKING_WORDS
         )
         is_upright = side in ("UP", "DOWN") or self._mentions_pressed(k + 1, end)
         if not side or not stands_alone or not (is_upright or "LINE_L" not in self.names.sensors):
             return None
         no, arrow = "NOT " * is_negated, f"KEY_{side}"
         if before and before.arrow:
-            return _Key(k, end, f"{no}{_STICK[side]}", f"{no}{arrow}", is_sure=False)
+            return _Key(k, end, f"{no}{_STICK_CONDITIONS[side]}", f"{no}{arrow}", is_sure=False)
         return _Key(k, end, f"{no}{arrow}", is_sure=is_upright)
 
     def _as_yes_no(self, k: int) -> tuple[bool, int]:
@@ -307,7 +318,7 @@ class _Part:
 def _is_key_word(word: str, *kinds: str) -> bool:
     return bool(lexicon_meaning(word, *kinds)) and not {word, lexicon_concept(word)} & {
         *WORDS,
-        *ASKING,
+        *ASKING_WORDS,
     }
 
 
@@ -321,7 +332,7 @@ def _is_stick(word: str) -> bool:
 
 def _side(word: str) -> str:
     if word and not word.isascii():
-        return _SIDES.get(lexicon_concept(word) or "", "")
+        return _SIDE_OF_MOVE.get(lexicon_concept(word) or "", "")
     return "".join(lexicon_meaning(word, "up", "down", "left", "right")).upper()
 
 

@@ -19,11 +19,11 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import meanings, rewrites, rows
 from tiniscript.recovery.meanings import (
-    CALLED,
+    CALL_WORDS,
     KNOWN,
-    LONG_S,
+    LONG_TIME_S,
     NEAR,
-    REMEMBERED,
+    REMEMBERED_LINES,
     Lexeme,
     Meaning,
     Names,
@@ -36,23 +36,23 @@ from tiniscript.syntax.lexer import DEGREES, NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
 
-STATES = 80  # of one line that are looked at
-SLIP_STATES = 40
-QUICK_STATES = 8
-FARTHEST = 1.05  # what a rival may cost more than the cheapest reading
-MARGIN = 0.15  # what it has to cost more, for the cheapest to be sure
+MOST_STATES = 80  # of one line that are looked at
+MOST_SLIP_STATES = 40
+MOST_QUICK_STATES = 8
+RIVAL_MARGIN = 1.05  # what a rival may cost more than the cheapest reading
+SURE_MARGIN = 0.15  # what it has to cost more, for the cheapest to be sure
 SLIP_MARGIN = 0.3
-RIVALS = 4
-LONGEST = 300  # tokens of a line
+MOST_RIVALS = 4
+MOST_TOKENS = 300  # tokens of a line
 ANY_END = "?"  # the word of an end that names no block: END, FIN
 BRACES = ("{", "}")
-LONGEST_WITH_SLIPS = 80
-_FIRST_STEPS = 30
-_CALCULATES = SIGNS | {"°"}  # without it another number would be meant
-_NEEDLESS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
-_PLAIN_DIGITS = 4
-_AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
-_EDGES = {word for word in WORDS if WORDS[word].role.is_of_blocks} | {";", "UNTIL", *BRACES}
+MOST_TOKENS_WITH_SLIPS = 80
+_MOST_FIRST_STEPS = 30
+_CALCULATION_SIGNS = SIGNS | {"°"}  # without it another number would be meant
+_NEEDLESS_BRACKETS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
+_MOST_PLAIN_DIGITS = 4
+_WORDS_AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
+_EDGE_WORDS = {word for word in WORDS if WORDS[word].role.is_of_blocks} | {";", "UNTIL", *BRACES}
 
 
 class Step(NamedTuple):
@@ -92,7 +92,7 @@ class Reading(NamedTuple):
     def text_read(self) -> str:
         """The tokens without those that change nothing: separators, brackets around one value."""
         text = " ".join(item for item in self.text if item != ";")
-        while (bare := _NEEDLESS.sub(r"\1\2", text)) != text:
+        while (bare := _NEEDLESS_BRACKETS.sub(r"\1\2", text)) != text:
             text = bare
         return text
 
@@ -111,11 +111,11 @@ def _normalized(token: Lexeme) -> tuple[str, str]:
     text = token.text
     if text in DEGREES:
         return (WORD, "DEG")
-    is_plain = text.isdecimal() and text[0] != "0" and len(text) <= _PLAIN_DIGITS
+    is_plain = text.isdecimal() and text[0] != "0" and len(text) <= _MOST_PLAIN_DIGITS
     return token.kind, "1" if is_plain else text
 
 
-@lru_cache(REMEMBERED)
+@lru_cache(REMEMBERED_LINES)
 def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] | Failure:
     items: list[Item] = []
     start = 0
@@ -141,12 +141,17 @@ def _parse_items(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[
 
 def _joined_names(tokens: Sequence[tuple[str, str]]) -> int:
     """Return where a word joins the names of a DEF, 0 for nowhere: `DEF SIDE(X and Y)`."""
-    inside = is_def = False
+    is_in_brackets = is_def = False
     for k, (kind, text) in enumerate(tokens[1:-1], 1):
         is_def = (is_def or tokens[k - 1][1] == "DEF") and text != ";"
-        inside = is_def and (inside or text == "(") and text != ")"
-        around = {tokens[k - 1][0], tokens[k + 1][0]}
-        if inside and kind == WORD and around == {WORD} and lexicon_meaning(text, "then"):
+        is_in_brackets = is_def and (is_in_brackets or text == "(") and text != ")"
+        neighbours = {tokens[k - 1][0], tokens[k + 1][0]}
+        if (
+            is_in_brackets
+            and kind == WORD
+            and neighbours == {WORD}
+            and lexicon_meaning(text, "then")
+        ):
             return k
     return 0
 
@@ -159,12 +164,12 @@ def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list
     return _read(tuple(tokens), names, is_quick)
 
 
-@lru_cache(REMEMBERED)
+@lru_cache(REMEMBERED_LINES)
 def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Reading]:
     setup = meanings.setup_of(tokens)
     readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
-    whole = [reading._replace(tokens=[*setup, *reading.tokens]) for reading in readings]
-    message = ((reading, right(reading.tokens, names)) for reading in whole)
+    whole_readings = [reading._replace(tokens=[*setup, *reading.tokens]) for reading in readings]
+    message = ((reading, right(reading.tokens, names)) for reading in whole_readings)
     return [reading._replace(items=its) for reading, its in message if not isinstance(its, Failure)]
 
 
@@ -179,10 +184,12 @@ class _Search:
 
     def read(self, tokens: list[Lexeme], is_quick: bool) -> list[Reading]:
         first = self.at_once(Reading(0, tokens, (), True, False))
-        readings = self.search(first, QUICK_STATES if is_quick else STATES, self.rewritten)
+        readings = self.search(
+            first, MOST_QUICK_STATES if is_quick else MOST_STATES, self.rewritten
+        )
         has_words = any(token.kind in (WORD, NUMBER) for token in tokens)
-        if not is_quick and not readings and has_words and len(tokens) < LONGEST_WITH_SLIPS:
-            readings_found = self.search(first, SLIP_STATES, self.with_slips)
+        if not is_quick and not readings and has_words and len(tokens) < MOST_TOKENS_WITH_SLIPS:
+            readings_found = self.search(first, MOST_SLIP_STATES, self.with_slips)
             readings_found = [
                 reading
                 for reading in readings_found
@@ -203,7 +210,9 @@ class _Search:
         readings: list[Reading] = []
         while heap and len(texts_seen) < states:
             cost, _, reading = heapq.heappop(heap)
-            if readings and (cost > readings[0].cost + FARTHEST or len(readings) >= RIVALS):
+            if readings and (
+                cost > readings[0].cost + RIVAL_MARGIN or len(readings) >= MOST_RIVALS
+            ):
                 break
             text = reading.text
             if text in texts_seen:
@@ -215,7 +224,7 @@ class _Search:
                     readings.append(reading._replace(items=items))
                 continue
             for after in successors(reading, items):
-                if len(after.tokens) < LONGEST:
+                if len(after.tokens) < MOST_TOKENS:
                     heapq.heappush(heap, (after.cost, next(order), after))
         return readings
 
@@ -233,7 +242,7 @@ class _Search:
 
     def at_once(self, reading: Reading) -> Reading:
         """Make the rewrites that come before all others, and make words one that are one."""
-        for _ in range(_FIRST_STEPS):
+        for _ in range(_MOST_FIRST_STEPS):
             one = rewrites.one_word(reading.tokens, self.names)
             if one is not None:
                 tokens, is_name = one
@@ -261,7 +270,7 @@ class _Search:
                     continue
                 tokens = line.rewritten(row, match)
                 if tokens is not None:
-                    is_new = ";" in row.becomes
+                    is_new = ";" in row.replacement
                     yield reading.with_change(
                         tokens, row.cost, row.code, not row.is_offered, is_new
                     )
@@ -299,7 +308,7 @@ class _Search:
                     concept == "TIME"
                     and k > 1
                     and padded_texts[k] == "("
-                    and padded_texts[k - 1] in CALLED
+                    and padded_texts[k - 1] in CALL_WORDS
                 ):
                     continue  # for the first value of a call: `F(tiempo, 80)`
                 is_sure = cost < 2 and concept != "TIME"
@@ -324,7 +333,7 @@ class _Search:
                 code = codes.MISSING_SEPARATOR if sign == ";" else codes.OTHER_CALL
                 line = [*head, made(sign), *rest]
                 yield reading.with_change(line, rows.CONFUSED_COST, code, sign not in neighbours)
-            is_kept = _CALCULATES & {token.text, *texts(rest[:1])} or _is_group(tokens, k)
+            is_kept = _CALCULATION_SIGNS & {token.text, *texts(rest[:1])} or _is_group(tokens, k)
             if is_sign and not is_kept and category(token.text[0]) != "Sm":
                 code = codes.EXTRA_CLOSE if token.text == ")" else codes.OTHER_CALL
                 yield reading.with_change([*head, *rest], rows.EXTRA_COST, code, is_bracket)
@@ -338,7 +347,7 @@ def _is_group(tokens: Sequence[Lexeme], k: int) -> bool:
     """Whether a bracket groups a part of a sum: without it the sum is another one."""
     before = tokens[k - 1].text if k else ""
     rest = [token.text for token in tokens[k + 1 :]]
-    return tokens[k].text == "(" and before in ("=", *SIGNS) and bool(_CALCULATES & {*rest})
+    return tokens[k].text == "(" and before in ("=", *SIGNS) and bool(_CALCULATION_SIGNS & {*rest})
 
 
 def _code_of_call(words: Sequence[Lexeme]) -> Code:
@@ -363,7 +372,7 @@ def _is_near(failure: Failure, start: int, end: int) -> bool:
 def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
     """Whether the number after a translated word is rarely meant for seconds: `move(50, 50)`."""
     numbers = [token for token in tokens[k + 1 : k + 3] if token.kind is NUMBER]
-    least = LONG_S if concept in (*MOVES, "BEEP") else MILLISECONDS_FROM
+    least = LONG_TIME_S if concept in (*MOVES, "BEEP") else MILLISECONDS_FROM
     is_timed = concept in (*MOVES, "BEEP", "W")
     return is_timed and bool(numbers) and float(numbers[0].text) >= least
 
@@ -372,12 +381,12 @@ def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
     """Give the pieces of a line in which a call may be told: between separators and headers."""
     start = 0
     for k, token in enumerate([*tokens, made(";")]):
-        is_edge = token.text in _EDGES
-        is_next = k > 0 and tokens[k - 1].text == ")" and token.text in CALLED
+        is_edge = token.text in _EDGE_WORDS
+        is_next = k > 0 and tokens[k - 1].text == ")" and token.text in CALL_WORDS
         if (is_edge or is_next) and start < k:
             yield start, k
             start = k
         if is_edge:
             start = max(start, k + 1)
-        if token.text in _AT_END:
+        if token.text in _WORDS_AT_END:
             start = max(start, closed(tokens, k + 1) or k + 2)

@@ -16,18 +16,18 @@ from tiniscript.base.source import Edit, Source, Span
 from tiniscript.base.words import BLOCK_ENDS, POWER, UNIT_OF, WORDS, lexicon_meaning
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
-from tiniscript.recovery.meanings import LONG_S, Names, lexemes, plain
+from tiniscript.recovery.meanings import LONG_TIME_S, Names, lexemes, plain
 from tiniscript.recovery.writing import without_note
 
 _TOKEN = re.compile(
     r"(?P<word>[^\W\d]\w*)|(?P<number>\d+(?:\.\d+)?)|(?P<sign>[\[\]])"
     r"|(?P<apart>[ \t]*[;|][ \t;]*)|[ \t,]+"
 )
-_TAUGHT = re.compile(r"\s*(?P<to>[^\W\d]\w*)[ \t]+(?P<name>[^\W\d]\w*)[ \t]*")
-_ALONE = re.compile(r"\s*([^\W\d]\w*)[ \t]*")
+_TAUGHT_WORD = re.compile(r"\s*(?P<to>[^\W\d]\w*)[ \t]+(?P<name>[^\W\d]\w*)[ \t]*")
+_LONE_WORD = re.compile(r"\s*([^\W\d]\w*)[ \t]*")
 _LEAST_STEPS = 5  # fewer are rather seconds
-_DEEPEST = 4  # loops
-_MOST = 12  # instructions that are read as one
+_MOST_NESTED_LOOPS = 4  # loops
+_MOST_INSTRUCTIONS = 12  # instructions that are read as one
 
 
 class _Token(NamedTuple):
@@ -44,7 +44,7 @@ def turtle(source: Source, kit: Kit) -> list[Diagnostic]:
     for line in source.text.split("\n"):
         pieces = _pieces(without_note(line)[0], start)
         while pieces:
-            ends = range(min(len(pieces), _MOST), 0, -1)
+            ends = range(min(len(pieces), _MOST_INSTRUCTIONS), 0, -1)
             attempts = ((end, [token for piece in pieces[:end] for token in piece]) for end in ends)
             ends_and_diagnostics = (
                 (end, _diagnostic(tokens, source, names)) for end, tokens in attempts
@@ -64,7 +64,7 @@ def _taught(source: Source) -> list[Diagnostic]:
     start = 0
     for line in source.text.split("\n"):
         body = without_note(line)[0]
-        definition, lone_word = _TAUGHT.fullmatch(body), _ALONE.fullmatch(body)
+        definition, lone_word = _TAUGHT_WORD.fullmatch(body), _LONE_WORD.fullmatch(body)
         if definition and lexicon_meaning(plain(definition["to"]), "teach"):
             span = Span(start + definition.start("to"), start + definition.end("name"))
             name = plain(definition["name"])
@@ -144,12 +144,12 @@ class _Reader:
             if word.kind != "word" or not after or after[0].kind != "number":
                 return [], k
             order = self._meant(word.text)
-            if order == "LOOP" and depth < _DEEPEST and self._sign(k + 2) == "[":
+            if order == "LOOP" and depth < _MOST_NESTED_LOOPS and self._sign(k + 2) == "[":
                 self.is_bracketed = True
-                inside, end = self.orders(k + 3, depth + 1)
-                if not inside or self._sign(end) != "]":
+                inner_orders, end = self.orders(k + 3, depth + 1)
+                if not inner_orders or self._sign(end) != "]":
                     return [], k
-                result += [f"LOOP({after[0].text})", *inside, BLOCK_ENDS["LOOP"]]
+                result += [f"LOOP({after[0].text})", *inner_orders, BLOCK_ENDS["LOOP"]]
                 k = end + 1
                 continue
             move = self._move(order, after[0].text)
@@ -170,7 +170,7 @@ class _Reader:
 
     def _move(self, word: str, number: str) -> str:
         unit = UNIT_OF.get(word, "")
-        if not unit or float(number) < (_LEAST_STEPS if unit == "CM" else LONG_S):
+        if not unit or float(number) < (_LEAST_STEPS if unit == "CM" else LONG_TIME_S):
             return ""
         self.moves += 1
         self.is_turned |= unit == "DEG"

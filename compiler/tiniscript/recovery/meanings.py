@@ -22,21 +22,21 @@ from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.outline import KnownNames
 
-ENDED = ENDS
+WORD_OF_END = ENDS
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
-STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
+BLOCK_STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
 SEPARATORS = frozenset(";|{}")
 SOME_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
-CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)
-DONE = CALLED | {"S", "STOP", "BREAK"}
-ASKING = frozenset(("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL"))
+CALL_WORDS = frozenset(word.text for word in WORDS.values() if word.is_call)
+INSTRUCTION_WORDS = CALL_WORDS | {"S", "STOP", "BREAK"}
+ASKING_WORDS = frozenset(("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL"))
 
 _TOKEN = re.compile(
     r"(\d+(?:\.\d+)?|(?<!\d)\.\d+)|([A-Za-zÀ-ÿ_][\wÀ-ÿ]*)"
     r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|--(?=\s*(?:$|[;)]))|\+=|-=|\*=|\S\uFE0F?)"
 )
 _SIGNS = SIGNS | frozenset("(),;|")
-_LONGEST = 4  # words of a name
+_MOST_NAME_WORDS = 4  # words of a name
 # Classes by what the lexicon says of a word that is none of the language.
 _CLASSES = {
     LexiconEntry("unit", "cm", "1000"): "@in_cm", LexiconEntry("unit", "cm", "100000"): "@in_m",
@@ -46,17 +46,17 @@ _CLASSES = {
     LexiconEntry("number", "1"): "@one", LexiconEntry("number", "100"): "@hundred",
 }  # fmt: skip
 NEAR_CM = "10"  # an example of what is near
-LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
+LONG_TIME_S = 20  # so much without a unit may be a power, degrees or centimetres
 MOST_POWER = 100
 _EIGHTH, LAP = 45, 360  # degrees: eighths of a turn, and what is no power, are rather an angle
 # Classes of numbers by what they may be.
-_MAY_BE: dict[str, Callable[[float], bool]] = {
-    "@whole": float.is_integer, "@time": lambda it: it < LONG_S,
-    "@power": lambda it: LONG_S <= it <= MOST_POWER,
+_CHECK_OF_UNIT: dict[str, Callable[[float], bool]] = {
+    "@whole": float.is_integer, "@time": lambda it: it < LONG_TIME_S,
+    "@power": lambda it: LONG_TIME_S <= it <= MOST_POWER,
     "@angle": lambda it: MOST_POWER < it <= LAP or (it >= _EIGHTH and it % _EIGHTH == 0),
 }  # fmt: skip
-_YEAR = ("ANO", "ANOS")  # nobody writes AÑO so
-REMEMBERED = 500  # lines: each is asked for often while one program is read
+_YEAR_WORDS = ("ANO", "ANOS")  # nobody writes AÑO so
+REMEMBERED_LINES = 500  # lines: each is asked for often while one program is read
 
 
 class Lexeme(NamedTuple):
@@ -83,7 +83,7 @@ def lexemes(line: str) -> list[Lexeme]:
     return [*_lexemes(line)]
 
 
-@lru_cache(REMEMBERED)
+@lru_cache(REMEMBERED_LINES)
 def _lexemes(line: str) -> tuple[Lexeme, ...]:
     result, end = [], 0
     for match in _TOKEN.finditer(line):
@@ -92,7 +92,7 @@ def _lexemes(line: str) -> tuple[Lexeme, ...]:
             text = plain(text)
             if "Ñ" in match[0].upper() and not lexicon().get(text):
                 other = plain(re.sub("[ñÑ]", "ni", match[0]))
-                text = other if lexicon().get(other) or text in _YEAR else text
+                text = other if lexicon().get(other) or text in _YEAR_WORDS else text
         elif text in _SIGNS or text in DASHES:
             kind = text = "-" if text in DASHES else text
         elif lexicon_concept(text[0]):
@@ -145,7 +145,7 @@ def words_of(*kinds: str) -> str:
     return f"(?:{'|'.join(map(re.escape, sorted(result, key=len, reverse=True)))})"
 
 
-_END = re.compile(words_of("end") + "_?")
+_END_PATTERN = re.compile(words_of("end") + "_?")
 
 
 @cache
@@ -162,9 +162,9 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         return (Meaning(found, KNOWN),)
     if word in WORDS or word in lexicon():
         return ()
-    less = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
-    if less != word:
-        return (Meaning(less, MISSPELT),) if less in WORDS else meanings(less)
+    shortened = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
+    if shortened != word:
+        return (Meaning(shortened, MISSPELT),) if shortened in WORDS else meanings(shortened)
     parts = word.split("_")
     if (
         len(parts) > 1
@@ -174,10 +174,10 @@ def meanings(word: str) -> tuple[Meaning, ...]:
         return meanings("_".join(kept_parts))  # `SENSOR_LUZ_DERECHA`
     if found := _sensor_with_side(parts):
         return (Meaning(found, KNOWN),)
-    near = _speller().find_near_miss(word)
+    near_miss = _speller().find_near_miss(word)
     guesses = (
         (heard_as(word), KNOWN),
-        (lexicon_concept(near or ""), MISSPELT),
+        (lexicon_concept(near_miss or ""), MISSPELT),
         (_in_two_words(word), KNOWN),
         (nearest(word, WORDS), NEAR),
     )
@@ -194,8 +194,8 @@ def heard_as(word: str) -> str | None:
 
 def _sensor_with_side(parts: Sequence[str]) -> str:
     """Return the sensor that two words say: `LEFT_LIGHT`, `luzDer`, `JOYSTICK_X`."""
-    glued = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
-    pairs = [tuple(parts)] if len(parts) == 2 else glued if len(parts) == 1 else []
+    splits = [(parts[0][:k], parts[0][k:]) for k in range(3, len(parts[0]) - 2)]
+    pairs = [tuple(parts)] if len(parts) == 2 else splits if len(parts) == 1 else []
     for stem, side in (*pairs, *(pair[::-1] for pair in pairs)):
         sensor_stem = next((it.value for it in lexicon().get(stem, ()) if it.kind == "stem"), "")
         ways = ("X", "Y") if sensor_stem == "PAD" else ("L", "R")
@@ -246,7 +246,7 @@ class _OfLine(NamedTuple):
     pairs: set[tuple[str, ...]]  # the name of a DEF, or one and those of its values
     block_starts: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
     called: set[str]  # words that are an instruction alone
-    compared: set[str]  # words beside a sign that compares them with a number
+    compared_words: set[str]  # words beside a sign that compares them with a number
     counted_starts: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
     open_headers: int  # headers that lack an end
     units_given: set[
@@ -254,12 +254,12 @@ class _OfLine(NamedTuple):
     ]  # units of what is no time, and the numbers that calls give: % 50
 
 
-@lru_cache(REMEMBERED)
+@lru_cache(REMEMBERED_LINES)
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
-    block_starts, counted_starts, left = _block_counts(line)
+    block_starts, counted_starts, open_headers = _block_counts(line)
     of_line = _OfLine(
         set(), set(), set(), set(), {}, set(), block_starts, _standalone_words(line),
-        _compared_words(line), counted_starts, left, _given(line),
+        _compared_words(line), counted_starts, open_headers, _given(line),
     )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
@@ -300,7 +300,7 @@ def _given(line: tuple[Lexeme, ...]) -> set[tuple[str, str]]:
         (WORDS[word.text].arguments[1].unit, value.text)
         for word, is_open, _, comma, value, is_closed in rows
         if (is_open.text, comma.text, is_closed.text) == ("(", ",", ")") and value.kind is NUMBER
-        if word.text in CALLED and word.text != "M" and len(WORDS[word.text].arguments) > 1
+        if word.text in CALL_WORDS and word.text != "M" and len(WORDS[word.text].arguments) > 1
     }
 
 
@@ -331,7 +331,7 @@ def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
         name.text
         for head, before, name, after in rows
         if (before.text, after.text) == ("(", ")") and name.kind is head.kind is WORD
-        if name.text not in lexicon() and (lexicon_concept(head.text) or head.text) in ASKING
+        if name.text not in lexicon() and (lexicon_concept(head.text) or head.text) in ASKING_WORDS
     }
     return lone_words | {
         name.text
@@ -346,9 +346,13 @@ def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
     """Return a name of several words that ends before `after`: `mi vel = 5`, `DEF paso 1`."""
     row: list[str] = []
     is_glued = after == ";" and len(tokens) > 1 and tokens[1].kind is WORD and tokens[1].space == ""
-    for token in tokens[: _LONGEST + 1]:
+    for token in tokens[: _MOST_NAME_WORDS + 1]:
         text = token.text
-        if token.kind not in (WORD, NUMBER, "-") or text in STARTS or text in DONE:
+        if (
+            token.kind not in (WORD, NUMBER, "-")
+            or text in BLOCK_STARTS
+            or text in INSTRUCTION_WORDS
+        ):
             break
         if not row and (lexicon_meaning(text, "count") or (token.kind is NUMBER and not is_glued)):
             break
@@ -402,10 +406,12 @@ class Names:
         values, instructions = self.sensors | self.variables, self.sensors | defs_without_values
         self.known = KnownNames(frozenset(values), instructions, frozenset(calls))
         # What nobody knows, and is compared, is no reason not to read what is around it.
-        compared_names = {name for line in of_lines for name in line.compared if name not in WORDS}
+        compared_names = {
+            name for line in of_lines for name in line.compared_words if name not in WORDS
+        }
         word_of_name = {name: self.meant(name, NEAR) for name in compared_names - values}
         self.strange = {
-            name for name, concept in word_of_name.items() if not concept or concept in CALLED
+            name for name, concept in word_of_name.items() if not concept or concept in CALL_WORDS
         }
         self.read_as = self.known._replace(values=frozenset(values | self.strange))
         words = (frozenset(item) for item in (self.defs, self.in_brackets, self.rows))
@@ -451,11 +457,11 @@ class Names:
     def sided(self, word: str) -> str:
         """Return the sensor of a side that `SENSOR_L` says, "" for none."""
         parts = word.split("_")
-        bare = [part for part in parts if not lexicon_meaning(part, "sensing")]
-        if len(bare) != 1 or len(parts) == 1:
+        kept_parts = [part for part in parts if not lexicon_meaning(part, "sensing")]
+        if len(kept_parts) != 1 or len(parts) == 1:
             return ""
-        side = "".join(lexicon_meaning(bare[0], "left", "right"))[:1].upper()
-        return self.on_side(side or lexicon_concept(bare[0]) or bare[0])
+        side = "".join(lexicon_meaning(kept_parts[0], "left", "right"))[:1].upper()
+        return self.on_side(side or lexicon_concept(kept_parts[0]) or kept_parts[0])
 
     def _lamp(self, word: str) -> str:
         """Return the lamp that a word for light says of a robot which sees none."""
@@ -480,7 +486,7 @@ class Names:
 
     def takes_values(self, word: str) -> bool:
         """Whether a word is an instruction with values in brackets."""
-        return word in CALLED or word in self.actuators or bool(self.parameters.get(word))
+        return word in CALL_WORDS or word in self.actuators or bool(self.parameters.get(word))
 
     def label(self, token: Lexeme) -> str:
         """Return all classes of a token, as one text that a pattern finds them in."""
@@ -497,10 +503,10 @@ class Names:
     def _classes(self, token: Lexeme) -> list[str]:
         text = token.text
         if token.kind is NUMBER:
-            fitting = (name for name, fits in _MAY_BE.items() if fits(float(text)))
-            return [text, "@num", *ANY, *fitting]
+            fitting = (name for name, fits in _CHECK_OF_UNIT.items() if fits(float(text)))
+            return [text, "@num", *ANY_LABELS, *fitting]
         if token.kind is not WORD:
-            fitting = (name for name, without in _BUT.items() if text not in without)
+            fitting = (name for name, without in _EXCLUSIONS.items() if text not in without)
             own = ["@close"] if text == ")" else ["@unit"] if text in "%°" else []
             return [f"s{text}", *fitting, *own]
         return [text, "@word", *self._classes_of_word(text)]
@@ -520,7 +526,11 @@ class Names:
         classes += [ALIASES[word]] if word in ALIASES else []
         is_name = self.is_name(text)
         classes += meant
-        classes += [item for item in ANY if not lexicon_meaning(text, "do") or item not in _NO_DO]
+        classes += [
+            item
+            for item in ANY_LABELS
+            if not lexicon_meaning(text, "do") or item not in _LABELS_WITHOUT_DO
+        ]
         if text in self.read_as.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
             classes.append("@val")
             classes += ["@measured"] if {word, text} & self.asked.keys() else []
@@ -529,15 +539,15 @@ class Names:
             own = ["@defw", "@callw"] if self.takes_values(text) else ["@step", "@close"]
             classes += ["@def", "@start", "@startm", *own]
         is_device = word in self.actuators or text in self.actuators
-        if (word in DONE or is_device) and (not is_name or is_device):
+        if (word in INSTRUCTION_WORDS or is_device) and (not is_name or is_device):
             classes += ["@start", *(["@startm"] if word != "BEEP" else [])]
             classes += ["@callw"] if self.takes_values(word or text) else ["@close"]
             classes += ["@device"] if is_device else []
-        if word in STARTS and not is_name:
+        if word in BLOCK_STARTS and not is_name:
             classes.append("@start")
         if "turn" in classes and not is_name:
             classes += ["@start", "@startm"]
-        if word in ENDED:
+        if word in WORD_OF_END:
             classes.append("@close")
         if text in self.variables or (text not in WORDS and not meant):
             classes.append("@name")
@@ -553,15 +563,15 @@ def _block_counts(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], 
     open_headers = 0
     for k, (one, other) in enumerate(pairwise([made(";"), *line])):
         pair = [one.text, other.text] if lexicon_meaning(one.text, "end") else [other.text]
-        block = ENDED.get(lexicon_concept("_".join(pair)) or "", "")
-        word = _END.sub("", "_".join(pair), count=1)
-        if block and lexicon_concept(word) in DONE:
+        block = WORD_OF_END.get(lexicon_concept("_".join(pair)) or "", "")
+        word = _END_PATTERN.sub("", "_".join(pair), count=1)
+        if block and lexicon_concept(word) in INSTRUCTION_WORDS:
             block_of_word[word] = block
         is_called = k + 1 < len(line) and line[k + 1].text == "("
         if is_called and lexicon_meaning(other.text, "count") and lexicon_concept(other.text):
             counted_starts.append(other.text)
         open_headers += (lexicon_concept(other.text) or other.text) in BLOCK_ENDS
-        open_headers -= bool(lexicon_meaning(other.text, "end") or other.text in ENDED)
+        open_headers -= bool(lexicon_meaning(other.text, "end") or other.text in WORD_OF_END)
     return block_of_word, counted_starts, open_headers
 
 
@@ -573,11 +583,11 @@ def joined_name(row: Iterable[str]) -> str:
 
 
 # Classes of pieces: any token but these.
-_BUT: dict[str, tuple[str, ...]] = {
+_EXCLUSIONS: dict[str, tuple[str, ...]] = {
     "@all": ("{", "}"), "@flat": ("{", "}", "(", ")"), "@any": (";", "{", "}"),
     "@cond": (";", ":", "{", "}", "?"), "@nobrace": ("{", "}", "(", ")", "<", ">"),
     "@noparen": (";", "{", "}", "(", ")"),
 }  # fmt: skip
-ANY = tuple(_BUT)
-SEPARATOR = "|".join(("s;", *(name for name, without in _BUT.items() if ";" not in without)))
-_NO_DO = ("@cond", "@noparen")
+ANY_LABELS = tuple(_EXCLUSIONS)
+SEPARATOR = "|".join(("s;", *(name for name, without in _EXCLUSIONS.items() if ";" not in without)))
+_LABELS_WITHOUT_DO = ("@cond", "@noparen")

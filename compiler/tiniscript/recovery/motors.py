@@ -19,19 +19,19 @@ from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.recovery.meanings import meanings, number_text, plain
 from tiniscript.recovery.writing import without_note
 
-_SET = re.compile(r"(?P<name>[^\W\d][\w.]*)[ \t]*\([ \t]*(?P<power>-?\d+)[ \t]*%?[ \t]*\)")
-_SWITCHED = re.compile(
+_MOTOR_CALL = re.compile(r"(?P<name>[^\W\d][\w.]*)[ \t]*\([ \t]*(?P<power>-?\d+)[ \t]*%?[ \t]*\)")
+_SWITCH_CALL = re.compile(
     r"(?P<name>[^\W\d][\w.]*)[ \t]*"
     r"(?:\([ \t]*(?:(?P<number>\d+(?:\.\d+)?|\.\d+)[ \t]*(?:%[ \t]*)?)?\))?"
 )
 _DEF = re.compile(r"(?i)\bDEF\s+(\w+)")
-_LEAST_MS = 100  # of a wait: less are seconds
-_POWERS = range(10, 101)  # of a motor that is switched on: less is rather a time
+_LEAST_WAIT_MS = 100  # of a wait: less are seconds
+_LIKELY_POWERS = range(10, 101)  # of a motor that is switched on: less is rather a time
 _PIECE = re.compile(r"[^;{}|\n]+")
-_PART = re.compile(r"[^\W\d_]+?(?=[A-Z](?:[a-z]|$)|[_.\d]|$)|[^\W\d_]+")
+_WORD_PART = re.compile(r"[^\W\d_]+?(?=[A-Z](?:[a-z]|$)|[_.\d]|$)|[^\W\d_]+")
 _SEPARATORS = " \t\r\n;"
-_SIDES = {"L": "left", "R": "right"}
-_OFF = ("S", "STOP")
+_SIDE_OF_LETTER = {"L": "left", "R": "right"}
+_STOP_WORDS = ("S", "STOP")
 
 
 class _Motor(NamedTuple):
@@ -70,7 +70,7 @@ def switched(source: Source) -> list[Diagnostic]:
             seconds = _seconds(calls[end + 1].number)
             moves.append(f"{calls[end].word}({seconds}, {calls[end].number})")
             end += 2
-        is_ended = moves and end < len(calls) and calls[end].word in _OFF
+        is_ended = moves and end < len(calls) and calls[end].word in _STOP_WORDS
         is_ended = is_ended and _are_together(text, calls[end - 1], calls[end])
         if is_ended or len(moves) > 1:
             whole_span = Span(calls[k].span.start, calls[end - (not is_ended)].span.end)
@@ -90,7 +90,9 @@ def switched(source: Source) -> list[Diagnostic]:
 
 def _is_on(call: _Switch) -> bool:
     is_whole = call.number.isdecimal()
-    return call.word in MOVES and call.word != "W" and is_whole and int(call.number) in _POWERS
+    return (
+        call.word in MOVES and call.word != "W" and is_whole and int(call.number) in _LIKELY_POWERS
+    )
 
 
 def _is_wait(call: _Switch) -> bool:
@@ -103,7 +105,7 @@ def _are_together(text: str, one: _Switch, other: _Switch) -> bool:
 
 def _seconds(number: str) -> str:
     """Return how long a wait lasts: 500 are milliseconds."""
-    return number_text(float(number) / 1000) if float(number) >= _LEAST_MS else number
+    return number_text(float(number) / 1000) if float(number) >= _LEAST_WAIT_MS else number
 
 
 def _switches(text: str) -> Iterator[_Switch]:
@@ -111,7 +113,7 @@ def _switches(text: str) -> Iterator[_Switch]:
     def_names = {plain(match[1]) for match in _DEF.finditer(text)}
     for line in text.split("\n"):
         for piece in _PIECE.finditer(without_note(line)[0]):
-            match = _SWITCHED.fullmatch(piece[0].strip())
+            match = _SWITCH_CALL.fullmatch(piece[0].strip())
             if match:
                 begin = start + piece.start() + piece[0].index(match[0])
                 word = plain(match["name"].rpartition(".")[2])
@@ -157,7 +159,7 @@ def _motors(text: str) -> Iterator[_Motor]:
     start = 0
     for line in text.split("\n"):
         for piece in _PIECE.finditer(without_note(line)[0]):
-            match = _SET.fullmatch(piece[0].strip())
+            match = _MOTOR_CALL.fullmatch(piece[0].strip())
             side = _side_of(match["name"]) if match else ""
             if match and side and not re.search(rf"(?i)\bDEF\s+{match['name']}\b", text):
                 begin = start + piece.start() + piece[0].index(match[0])
@@ -168,7 +170,7 @@ def _motors(text: str) -> Iterator[_Motor]:
 
 def _side_of(name: str) -> str:
     """Return the side of the motor that a name says, "" where it says no motor or no side."""
-    parts = [plain(part) for part in _PART.findall(name)]
+    parts = [plain(part) for part in _WORD_PART.findall(name)]
     sides = {side for side in map(_side, parts) if side}
     is_motor = any(
         lexicon_concept(part) == "M" or lexicon_meaning(part, "engine") for part in parts
@@ -177,5 +179,5 @@ def _side_of(name: str) -> str:
 
 
 def _side(part: str) -> str:
-    sides_meant = (side for side in _SIDES.values() if lexicon_meaning(part, side))
-    return next(sides_meant, _SIDES.get(lexicon_concept(part) or part, ""))
+    sides_meant = (side for side in _SIDE_OF_LETTER.values() if lexicon_meaning(part, side))
+    return next(sides_meant, _SIDE_OF_LETTER.get(lexicon_concept(part) or part, ""))

@@ -11,12 +11,12 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
-from tiniscript.recovery.meanings import ENDED
+from tiniscript.recovery.meanings import WORD_OF_END
 from tiniscript.recovery.writing import without_note
 
 _SETUP = re.compile(r"\s*S[IB]\s*\|\s*", re.IGNORECASE)
 _MOST_MOVES = 20
-_FIRST = re.compile(r"\s*(\w*)[ \t]*(\w*)")
+_FIRST_WORDS = re.compile(r"\s*(\w*)[ \t]*(\w*)")
 
 
 class Moved(NamedTuple):
@@ -80,10 +80,10 @@ def _pieces(text: str) -> Iterator[_Piece]:
         body, note = without_note(row)
         parts = [part for part in body.split(";") if part.strip()] or [""]
         for k, part in enumerate(parts):
-            match = _FIRST.match(part.upper())
+            match = _FIRST_WORDS.match(part.upper())
             word, name = match.groups() if match else ("", "")
-            shown = part + note if note and k + 1 == len(parts) else part.rstrip()
-            yield _Piece(shown, line, ALIASES.get(word, word), name)
+            piece_text = part + note if note and k + 1 == len(parts) else part.rstrip()
+            yield _Piece(piece_text, line, ALIASES.get(word, word), name)
 
 
 def _join_pieces(pieces: list[_Piece]) -> str:
@@ -102,7 +102,7 @@ def _outermost(pieces: list[_Piece], k: int, start: int = 0) -> int:
         if pieces[place].word in BLOCK_ENDS:
             result = place if not depth else result
             depth += 1
-        elif pieces[place].word in ENDED:
+        elif pieces[place].word in WORD_OF_END:
             depth -= 1
         result = k if not depth else result
     return result
@@ -130,7 +130,7 @@ def _swapped_ends(pieces: list[_Piece]) -> _Move | None:
     for k, piece in enumerate(pieces):
         if piece.word in BLOCK_ENDS:
             open_words.append(BLOCK_ENDS[piece.word])
-        elif piece.word in ENDED and open_words:
+        elif piece.word in WORD_OF_END and open_words:
             after = pieces[k + 1].word if k + 1 < len(pieces) else ""
             if open_words[-2:] == [piece.word, after] and piece.word != after:
                 return k + 1, k + 1, k

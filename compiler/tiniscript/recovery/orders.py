@@ -12,9 +12,9 @@ from typing import NamedTuple
 from tiniscript.base.words import BLOCK_ENDS, MOVES, POWER
 from tiniscript.recovery import lines, rewrites
 from tiniscript.recovery.meanings import (
-    CALLED,
-    ENDED,
+    CALL_WORDS,
     NEAR_CM,
+    WORD_OF_END,
     Lexeme,
     Names,
     closed,
@@ -27,9 +27,9 @@ from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 
-LONGEST = 40  # words of a sentence
-_ASIDE = ("L", "R", "B")  # DISTANCE looks ahead
-_SIDES = _ASIDE[:2]
+MOST_WORDS = 40  # words of a sentence
+_SIDEWAYS_MOVES = ("L", "R", "B")  # DISTANCE looks ahead
+_TURNS = _SIDEWAYS_MOVES[:2]
 
 
 class Order(NamedTuple):
@@ -57,7 +57,7 @@ def made_up(orders: Sequence[Order]) -> str:
 def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     """Return the orders of a sentence, in turn."""
     result: list[Order] = []
-    if len(words) > LONGEST:
+    if len(words) > MOST_WORDS:
         return []
     words = [
         one
@@ -82,10 +82,10 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
             not result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in part)
         ):
             continue  # `Hola robot, …`
-        own = _orders(part, names)
-        if not own or any(order.is_repeated for order in own[bool(not result) :]):
+        part_orders = _orders(part, names)
+        if not part_orders or any(order.is_repeated for order in part_orders[bool(not result) :]):
             return []  # nobody knows how much of it is done so often
-        result += own
+        result += part_orders
     return result
 
 
@@ -111,8 +111,8 @@ def _orders_with_condition(
     if stop in ("S", "STOP") and first[-1].word in MOVES and "UNTIL" not in first[-1].text:
         move, made_of = first[-1], first[-1].samples + samples
         stopped = move._replace(text=f"{move.text} UNTIL{header[2:]}", samples=made_of)
-        left = [Order("IF", ";".join((header, *rest)), ())] if len(rest) > 1 else []
-        return [*first[:-1], stopped, *left]
+        branch_orders = [Order("IF", ";".join((header, *rest)), ())] if len(rest) > 1 else []
+        return [*first[:-1], stopped, *branch_orders]
     return [*first, Order("IF", question, samples)]
 
 
@@ -145,7 +145,7 @@ def _orders(words: list[Lexeme], names: Names) -> list[Order]:
 def _begins_order(token: Lexeme, names: Names) -> bool:
     """Whether a word begins an order."""
     is_turn = bool(lexicon_meaning(token.text, "turn"))
-    return is_turn or names.meant(token.text) in (*CALLED, "S", "STOP")
+    return is_turn or names.meant(token.text) in (*CALL_WORDS, "S", "STOP")
 
 
 def _order(words: list[Lexeme], names: Names) -> Order | None:
@@ -162,8 +162,8 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
     call = filled(words, names, has_until=False, is_order=True)
     is_free_turn = call is None and any(lexicon_meaning(lexeme.text, "turn") for lexeme in words)
     if is_free_turn:
-        unturned = [lexeme for lexeme in words if not lexicon_meaning(lexeme.text, "turn")]
-        call = filled([made("R"), *unturned], names, has_until=False, is_order=True)
+        other_words = [lexeme for lexeme in words if not lexicon_meaning(lexeme.text, "turn")]
+        call = filled([made("R"), *other_words], names, has_until=False, is_order=True)
     if call is None:
         return None
     text, word = laid_out(call.tokens), call.tokens[0].text
@@ -197,7 +197,7 @@ def _parse_condition(
     text = (worded(words, names) if is_ahead else None) or {}
     condition = text.get("asked") or text.get("question", "")
     has_other_question = any(
-        names.meant(it.text) in _ASIDE or it.text in COMPARISONS for it in words
+        names.meant(it.text) in _SIDEWAYS_MOVES or it.text in COMPARISONS for it in words
     )
     if has_other_question or not condition.startswith("DISTANCE"):
         return "", ()
@@ -210,11 +210,11 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     `is_open`: it goes on further down.
     """
     word = names.meant(tokens[0].text)
-    if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > LONGEST:
+    if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > MOST_WORDS:
         return ""
     is_when = bool(lexicon_meaning(tokens[0].text, "whenever"))
     tokens = [tokens[0], *_join_words(tokens[1:], names)]  # `si no hay` is no ELSE
-    while tokens[-1].text in ENDED or lexicon_meaning(tokens[-1].text, "end"):
+    while tokens[-1].text in WORD_OF_END or lexicon_meaning(tokens[-1].text, "end"):
         tokens = tokens[:-1]
     texts = [token.text for token in tokens]
     arm = next((k for k, each in enumerate(texts) if names.meant(each) == "ELSE"), len(texts))
@@ -229,7 +229,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
             return ""  # another order than the words after it say
         if not body or any(order.is_side_free for order in (*body, *other)):
             continue
-        is_side = names.meant(texts[k]) in _SIDES and texts[k + 1 : k + 2] != ["("]
+        is_side = names.meant(texts[k]) in _TURNS and texts[k + 1 : k + 2] != ["("]
         if word != "LOOP" and tokens[k].source and is_side:
             return ""  # where the wall is, or where to go
         place = next((j for j in range(k, arm) if not lexicon_meaning(texts[j], "filler")), k)

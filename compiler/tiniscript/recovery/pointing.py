@@ -12,22 +12,25 @@ from tiniscript.diagnostics.rendering import names_found
 from tiniscript.recovery.meanings import plain
 
 # what they found is a calculated number
-_COUNTED = (codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE)
-_WAYS = (codes.QUESTION_AFTER, codes.NOT_CALLABLE)  # without a place they ask for no change
+_COUNTING_CODES = (codes.ARGUMENT_COUNT, codes.CALL_VALUES, codes.OUT_OF_RANGE)
+_CODES_WITH_WAYS = (
+    codes.QUESTION_AFTER,
+    codes.NOT_CALLABLE,
+)  # without a place they ask for no change
 
 
 def pointed(diagnostic: Diagnostic, source: Source) -> Diagnostic:
     """Return a diagnostic at what it names, and with the place that it had for what to try."""
     code, span, place = diagnostic.code, diagnostic.span, diagnostic.place
     found_text = diagnostic.values.get("found", "").strip()
-    if not found_text or code in _COUNTED or not names_found(diagnostic):
+    if not found_text or code in _COUNTING_CODES or not names_found(diagnostic):
         return diagnostic
     if _normalized(source[span]) == _normalized(found_text):
         return diagnostic
     result = _nearest(found_text, span, source)
     if result is None:
         return diagnostic
-    if place is None and code not in _WAYS:
+    if place is None and code not in _CODES_WITH_WAYS:
         place = span
     return diagnostic._replace(span=result, place=place)
 
@@ -55,8 +58,8 @@ def _nearest(found_text: str, span: Span, source: Source) -> Span | None:
 
 def _distance(one: Span, other: Span) -> tuple[int, int]:
     """Return how far a place is from another, 0 where it is in it or around it."""
-    apart = max(0, other.start - one.end, one.start - other.end)
-    return apart, abs(one.start - other.start)
+    gap = max(0, other.start - one.end, one.start - other.end)
+    return gap, abs(one.start - other.start)
 
 
 @lru_cache(16)

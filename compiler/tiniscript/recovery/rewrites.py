@@ -17,10 +17,10 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.recovery import rows
 from tiniscript.recovery.meanings import (
-    ANY,
-    ENDED,
+    ANY_LABELS,
     NEAR,
     SEPARATOR,
+    WORD_OF_END,
     Lexeme,
     Names,
     closed,
@@ -34,18 +34,18 @@ from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 
 _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")
-_PART = re.compile(r"<(\w+)>")
-_CONTINUED = re.compile(r"\n    ")
+_PART_REFERENCE = re.compile(r"<(\w+)>")
+_CONTINUATION = re.compile(r"\n    ")
 # Where an instruction begins and ends, by the labels around it; and a line.
-_EDGES = {
+_EDGE_PATTERNS = {
     "^": rf"(?:\A|(?<=\x01\|{re.escape(SEPARATOR)}\|\x02)|(?<=\x01\|s[{{}}]\|\x02))",
     "$": r"(?:\Z|(?=\x01\|s[;}]\|))",
     "^^": r"\A",
     "$$": r"\Z",
 }
 _EDGE = re.compile(r"\\.|\[\^?\]?(?:\\.|[^]\\])*\]|[$^]")  # or what has none: `\$`, `[^;]`
-_DEEPEST = 3  # brackets in a body: `F(RANDOM(1, (X + 1)), 60)`
-_OF_NUMBERS = re.compile(r"@(?:dec|cat|own|ms|mmss|xn|same)\b|(?<![\w@])\d")
+_MOST_NESTED_BRACKETS = 3  # brackets in a body: `F(RANDOM(1, (X + 1)), 60)`
+_NUMBER_LABEL = re.compile(r"@(?:dec|cat|own|ms|mmss|xn|same)\b|(?<![\w@])\d")
 _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
 _HEADER_OF = {"FOREVER": "LOOP", "ELSEIF": "IF"}
 
@@ -57,7 +57,7 @@ class Row(NamedTuple):
     """
 
     pattern: Pattern
-    becomes: tuple[str, ...]
+    replacement: tuple[str, ...]
     cost: float
     code: Code
     is_first: bool
@@ -70,7 +70,7 @@ class SignRow(NamedTuple):
     """A row of the table of signs: a pattern of characters, of which no token is made."""
 
     pattern: re.Pattern[str]
-    becomes: str
+    replacement: str
     code: Code
     is_offered: bool
     example: tuple[str, str]
@@ -78,7 +78,7 @@ class SignRow(NamedTuple):
 
 def cells(table: str) -> Iterator[list[str]]:
     """Give the cells of each row, which indented lines go on with; of one with choices, of each."""
-    for row in _CONTINUED.sub(" ", table.strip("\n")).split("\n"):
+    for row in _CONTINUATION.sub(" ", table.strip("\n")).split("\n"):
         if row.strip() and not row.startswith("# "):
             parts = [part.split("¦") for part in re.split("[⟨⟩]", row)]
             assert len({*map(len, parts)} - {1}) < 2, row
@@ -90,10 +90,10 @@ def cells(table: str) -> Iterator[list[str]]:
 @cache
 def of_tokens() -> tuple[Row, ...]:
     token_rows = []
-    for pattern, becomes, cost, code, how, example in cells(rows.TOKENS):
-        parts = tuple(_expanded(becomes, rows.PARTS).split())
+    for pattern, replacement, cost, code, how, example in cells(rows.TOKENS):
+        parts = tuple(_expanded(replacement, rows.PARTS).split())
         is_offered = "offered" in how
-        may_lose = is_offered or bool(_OF_NUMBERS.search(f"{pattern} {becomes}"))
+        may_lose = is_offered or bool(_NUMBER_LABEL.search(f"{pattern} {replacement}"))
         row = Row(compiled(pattern, rows.PARTS), parts, float(cost), CODES[code], "first" in how,
                   is_offered, may_lose, _texts(example))  # fmt: skip
         token_rows.append(row)
@@ -149,21 +149,21 @@ class Pattern(NamedTuple):
 def compiled(pattern: str, pieces: Mapping[str, str]) -> Pattern:
     """Return a row's pattern, in which `pieces` stand for its `<parts>`."""
     atoms = [_atom(word) for word in _expanded(pattern, pieces).split()]
-    needed = tuple(labels for _, labels in atoms if labels and not labels & {*ANY, "s|"})
+    needed = tuple(labels for _, labels in atoms if labels and not labels & {*ANY_LABELS, "s|"})
     return Pattern(re.compile("".join(text for text, _ in atoms)), needed)
 
 
 def _expanded(pattern: str, pieces: Mapping[str, str]) -> str:
     """Return a pattern with its `<parts>` written out."""
-    while _PART.search(pattern):
-        pattern = _PART.sub(lambda match: pieces[match[1]], pattern)
+    while _PART_REFERENCE.search(pattern):
+        pattern = _PART_REFERENCE.sub(lambda match: pieces[match[1]], pattern)
     return pattern
 
 
 def _atom(atom: str) -> tuple[str, frozenset[str]]:
     """Return the pattern of one token, and labels of which there is one, none where it may miss."""
-    if atom in _EDGES:
-        return _EDGES[atom], frozenset()
+    if atom in _EDGE_PATTERNS:
+        return _EDGE_PATTERNS[atom], frozenset()
     capture = _CAPTURE.match(atom) if len(atom) > 2 else None
     name, atom = (capture[1], atom[2:]) if capture else ("", atom)
     often = ""
@@ -183,7 +183,7 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
         body = f"(?:{body}{often}?)"
         return f"(?P<{name}>{body})" if name else body, frozenset()
     one = _token(labels)
-    choices = [*([one] if labels else []), *([_EDGES["$"]] if "$" in result else [])]
+    choices = [*([one] if labels else []), *([_EDGE_PATTERNS["$"]] if "$" in result else [])]
     body = f"(?:{'|'.join(choices)}){often}{'?' if often and often in '+*' else ''}"
     is_needed = often in ("", "+") and "$" not in result
     return f"(?P<{name}>{body})" if name else body, frozenset(labels if is_needed else ())
@@ -192,7 +192,7 @@ def _atom(atom: str) -> tuple[str, frozenset[str]]:
 def _closing_pattern(labels: Sequence[str]) -> str:
     """Return the pattern of a token of these labels, or of brackets that such tokens are in."""
     body = _token(labels)
-    for _ in range(_DEEPEST):
+    for _ in range(_MOST_NESTED_BRACKETS):
         body = rf"(?:{_token(labels)}|{_token(['s('])}{body}*{_token(['s)'])})"
     return body
 
@@ -254,7 +254,7 @@ class Encoded:
     def rewritten(self, row: Row, match: re.Match[str]) -> list[Lexeme] | None:
         """Return the line after a row, or None where it does not hold here."""
         new: list[Lexeme] = []
-        for part in row.becomes:
+        for part in row.replacement:
             made_of = self._replacement(part, match)
             if made_of is None:
                 return None
@@ -323,7 +323,7 @@ def negated(condition: Sequence[Lexeme]) -> list[Lexeme]:
 def _end_of(place: _Place) -> _Made:
     word = place.line.translated(place.captured[0][0]).text
     word = "LOOP" if lexicon_meaning(word, "count") else _HEADER_OF.get(word, word)
-    end = BLOCK_ENDS.get(word, word if word in ENDED else "")
+    end = BLOCK_ENDS.get(word, word if word in WORD_OF_END else "")
     return [made(end)] if end else None
 
 

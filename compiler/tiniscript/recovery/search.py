@@ -18,10 +18,10 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matching
-from tiniscript.recovery.lines import BRACES, MARGIN, Reading, Step, is_right
+from tiniscript.recovery.lines import BRACES, SURE_MARGIN, Reading, Step, is_right
 from tiniscript.recovery.meanings import (
-    ENDED,
     NEAR,
+    WORD_OF_END,
     Lexeme,
     Names,
     lexemes,
@@ -42,17 +42,19 @@ from tiniscript.recovery.writing import (
 )
 from tiniscript.syntax.outline import Failure
 
-UNREAD = 5  # lines that nobody can read, after which others are read quickly
-ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
+MOST_UNREAD_LINES = 5  # lines that nobody can read, after which others are read quickly
+MOST_ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
 # A line that begins a block whose condition comes at its end, and its last line.
-_DO_ALONE = re.compile(rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$")
+_LONE_LOOP_START = re.compile(
+    rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$"
+)
 _END_UNTIL = re.compile(rf"\b{words_of('end')}[ _]?{words_of('until')}\b")
-_SETUP = re.compile(r"^\s*SI\s*\|\s*(?=\w)", re.IGNORECASE)
-_WHEN = re.compile(rf"\s*(S[IB]\s*\|)?\s*{words_of('whenever')}\b")
+_SETUP_AT_START = re.compile(r"^\s*SI\s*\|\s*(?=\w)", re.IGNORECASE)
+_WHEN_AT_START = re.compile(rf"\s*(S[IB]\s*\|)?\s*{words_of('whenever')}\b")
 
 # What begins a block or ends one, as far as a word says it.
-_OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", "FOREVER", "UNTIL"))
-_BEGIN = ("count", "each", "every", "unless", "when", "end", "repeat", "main")
+_BLOCK_WORDS = frozenset((*BLOCK_ENDS, *WORD_OF_END, "ELSE", "ELSEIF", "FOREVER", "UNTIL"))
+_BLOCK_START_KINDS = ("count", "each", "every", "unless", "when", "end", "repeat", "main")
 
 Mistakes = Callable[[str], Sequence[Code]]  # the codes of a program's mistakes
 
@@ -82,7 +84,7 @@ class Candidate(NamedTuple):
     move: Moved | None = None
 
 
-_UNREAD = Reading(0, [], (), True, False)
+_UNREAD_LINE = Reading(0, [], (), True, False)
 
 
 class _Text:
@@ -94,7 +96,7 @@ class _Text:
         self.body, self.note = without_note(source)
         self.steps: list[Step] = []
         self.is_sure = True
-        self.reading = _UNREAD
+        self.reading = _UNREAD_LINE
         self.rivals: list[Reading] = []
 
     @property
@@ -169,7 +171,7 @@ class Recovery:
                 continue
             for row in rewrites.of_signs():
                 for _ in row.pattern.findall(body):  # a step each, which is told at its place
-                    new = row.pattern.sub(row.becomes, body, count=1)
+                    new = row.pattern.sub(row.replacement, body, count=1)
                     before, after = lexemes(body), lexemes(new)
                     is_lost = names.defs & ({*texts(before)} - {*texts(after)})
                     if (
@@ -186,13 +188,13 @@ class Recovery:
     def has_signs(self, start: int) -> bool:
         """Whether rewrites of signs alone make the line right that a place is in."""
         at = self.program.count("\n", 0, start)
-        near = (line for line in self.lines if line.steps and line.first <= at <= line.last)
-        return any(is_right(lexemes(text.body), self.names) for text in near)
+        lines_near = (line for line in self.lines if line.steps and line.first <= at <= line.last)
+        return any(is_right(lexemes(text.body), self.names) for text in lines_near)
 
     def drop_setups(self) -> None:
         """Drop a `SI|` below the first line."""
         for line in [text for text in self.lines if text.body.strip()][1:]:
-            body = _SETUP.sub("", line.body)
+            body = _SETUP_AT_START.sub("", line.body)
             if body != line.body:
                 line.steps.append(Step(codes.SETUP_TWICE, lexemes(line.body), lexemes(body)))
                 line.body = body
@@ -206,15 +208,26 @@ class Recovery:
             return  # there is none, or it is taken for a block
         is_do = False
         for line in self.lines:
-            above = next((text for text in reversed(texts) if text.body.strip()), None)
-            body = above.body.rstrip().rstrip(";") if above and not above.note.strip() else ""
-            if above and body.endswith(")") and not is_do and until_pattern.match(plain(line.body)):
-                above.body, above.note = f"{body} {line.body.strip()}", line.note
-                above.last = line.last
-                above.steps.append(Step(codes.UNTIL_ALONE, lexemes(line.body), lexemes(above.body)))
+            text_above = next((text for text in reversed(texts) if text.body.strip()), None)
+            body = (
+                text_above.body.rstrip().rstrip(";")
+                if text_above and not text_above.note.strip()
+                else ""
+            )
+            if (
+                text_above
+                and body.endswith(")")
+                and not is_do
+                and until_pattern.match(plain(line.body))
+            ):
+                text_above.body, text_above.note = f"{body} {line.body.strip()}", line.note
+                text_above.last = line.last
+                text_above.steps.append(
+                    Step(codes.UNTIL_ALONE, lexemes(line.body), lexemes(text_above.body))
+                )
             else:
                 texts.append(line)
-            is_do = is_do or _DO_ALONE.match(plain(line.body)) is not None
+            is_do = is_do or _LONE_LOOP_START.match(plain(line.body)) is not None
         self.lines = texts
 
     def read_line(self, line: _Text) -> None:
@@ -224,7 +237,7 @@ class Recovery:
         if not isinstance(items, Failure):
             line.reading = Reading(0, tokens, (), True, False, items)
             return
-        readings = lines.read(tokens, names, is_quick=self.unread > UNREAD)
+        readings = lines.read(tokens, names, is_quick=self.unread > MOST_UNREAD_LINES)
         if not readings:
             self.unread += 1
             line.reading = self.parts(tokens, names)
@@ -233,7 +246,7 @@ class Recovery:
         line.rivals = [reading for reading in readings[1:] if reading.text_read != first.text_read]
         is_close = any(
             rival.is_sure
-            and rival.cost < first.cost + MARGIN
+            and rival.cost < first.cost + SURE_MARGIN
             and _count_kept(rival) >= _count_kept(first)
             for rival in line.rivals
         )
@@ -254,7 +267,7 @@ class Recovery:
                     Step(code, [*head, *before, *tail], [*head, *after, *tail])
                     for code, before, after in reading.steps
                 ]
-        return Reading(0, tokens, tuple(steps), True, False) if steps else _UNREAD
+        return Reading(0, tokens, tuple(steps), True, False) if steps else _UNREAD_LINE
 
     @cached_property
     def whole(self) -> Candidate | None:
@@ -276,9 +289,9 @@ class Recovery:
         if not (self.whole and self.whole.is_whole) or self.whole.is_applied:
             return ()
         candidates = {self.whole.text: self.whole}
-        for cost, k, rival in self.rivals()[:ALTERNATIVES]:
+        for cost, k, rival in self.rivals()[:MOST_ALTERNATIVES]:
             readings = [rival if it is self.lines[k] else it.reading for it in self.lines]
-            other = self.candidate(readings, True) if cost < MARGIN else None
+            other = self.candidate(readings, True) if cost < SURE_MARGIN else None
             if other and other.is_whole:
                 candidates.setdefault(other.text, other)
         return [*candidates.values()][1:]
@@ -292,16 +305,16 @@ class Recovery:
         has_sure_blocks, move = blocks.is_sure, None
         is_sure = has_sure_blocks and all(change.is_sure for change in changes)
         text = "\n".join(change.text for change in changes)
-        left = self.mistakes(text)
-        if left and set(left) & rows.MISPLACED:
+        mistakes_left = self.mistakes(text)
+        if mistakes_left and set(mistakes_left) & rows.MISPLACED:
             for moved_program in ordered(text):
-                if left and not self.mistakes(moved_program.text):
-                    text, left, changes, move = moved_program.text, [], [], moved_program
+                if mistakes_left and not self.mistakes(moved_program.text):
+                    text, mistakes_left, changes, move = moved_program.text, [], [], moved_program
         is_better_alone = has_sure_blocks and _count_ends(text) == self.ends
-        if left and not ((is_sure or is_better_alone) and len(left) < self.count):
+        if mistakes_left and not ((is_sure or is_better_alone) and len(mistakes_left) < self.count):
             return None
         is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
-        return Candidate(text, is_applied, not left, changes, has_sure_blocks, move)
+        return Candidate(text, is_applied, not mistakes_left, changes, has_sure_blocks, move)
 
     def rivals(self) -> list[tuple[float, int, Reading]]:
         """Return readings that are not the cheapest ones: how much more they cost, and the line."""
@@ -316,9 +329,9 @@ class Recovery:
         """Give what each line may be read as; at last without the blocks of a program."""
         cheapest = [line.reading for line in self.lines]
         yield cheapest, True
-        for _, k, rival in self.rivals()[:ALTERNATIVES]:
+        for _, k, rival in self.rivals()[:MOST_ALTERNATIVES]:
             yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
-        sure_readings = [reading if reading.is_sure else _UNREAD for reading in cheapest]
+        sure_readings = [reading if reading.is_sure else _UNREAD_LINE for reading in cheapest]
         unread = (
             one
             for one, reading in zip(self.lines, sure_readings, strict=True)
@@ -331,7 +344,7 @@ class Recovery:
             any(it.kind != "do" for it in reading.items or ()) for reading in sure_readings
         ]
         without_blocks = [
-            _UNREAD if has_block else reading
+            _UNREAD_LINE if has_block else reading
             for reading, has_block in zip(sure_readings, has_blocks, strict=True)
         ]
         if without_blocks != sure_readings:
@@ -341,15 +354,15 @@ class Recovery:
         """Whether a line that nobody can read may begin a block, or end one."""
         return any(
             word in BRACES
-            or lexicon_meaning(word, *_BEGIN)
-            or self.names.meant(word, NEAR) in _OF_BLOCKS
+            or lexicon_meaning(word, *_BLOCK_START_KINDS)
+            or self.names.meant(word, NEAR) in _BLOCK_WORDS
             for word in texts(lexemes(line.body))
         )
 
     def matched(self, readings: Sequence[Reading]) -> Matching | None:
         """Return what all blocks of the lines need, or None where they fit in no way."""
         read = [
-            Line(line.indent, _WHEN.match(line.source.upper()) is not None, reading)
+            Line(line.indent, _WHEN_AT_START.match(line.source.upper()) is not None, reading)
             for line, reading in zip(self.lines, readings, strict=False)
         ]
         matching = Matching(read)
@@ -359,7 +372,7 @@ class Recovery:
         changes = []
         for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True)):
             text = line.source
-            if reading is not _UNREAD:
+            if reading is not _UNREAD_LINE:
                 edits, tails = blocks.edits.get(k, []), blocks.tails.get(k, [])
                 text = _line(line, reading, edits, tails) + line.note
             text = "\n".join((text, *blocks.behind.get(k, [])))
@@ -386,7 +399,7 @@ def _open_brackets(tokens: Sequence[Lexeme]) -> int:
 
 
 def _count_ends(text: str) -> int:
-    return sum(lexeme.text in ENDED for lexeme in lexemes(text))
+    return sum(lexeme.text in WORD_OF_END for lexeme in lexemes(text))
 
 
 def _rank(candidate: Candidate) -> tuple[bool, bool]:

@@ -12,20 +12,20 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
-from tiniscript.recovery.meanings import CALLED, Lexeme, Names, lexemes, made, plain, texts
+from tiniscript.recovery.meanings import CALL_WORDS, Lexeme, Names, lexemes, made, plain, texts
 from tiniscript.recovery.orders import block, made_up, orders, written
 from tiniscript.recovery.writing import without_note
 from tiniscript.syntax.operators import COMPARISONS
 
 SEAL = "~"  # begins a checksum: what has one is copied again
-_LONGEST = 4_000  # characters of a first line that are read
-_LONGEST_START = 8  # words that say how a program starts
+_MOST_CHARACTERS = 4_000  # characters of a first line that are read
+_MOST_START_WORDS = 8  # words that say how a program starts
 _CALL = re.compile(r"(?i)\s*(?:[FBLRMW]|BEEP)\s*\(")
 _BEGUN, _ROW = re.compile(r"(?im)^\s*S[IB]\s*\|"), re.compile(r"\S[^\n]*")
 _HEAD_IN_WORDS = re.compile(r"(?i)(s[ií]|sb)[ \t]*[,.:!]?[ \t]+(?=[^\W\d])")
-_FRAME = re.compile(r"\s*((?:\w+[ \t]+)?(\w+)[ \t]*\([ \t]*(?:void[ \t]*)?\))\s*\{")
-_BEGUN_INSIDE = re.compile(r"(?i)\s*(S[IB])\b[ \t]*\|?[ \t]*")
-_INSIDE = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that are open before it
+_FRAME_HEADER = re.compile(r"\s*((?:\w+[ \t]+)?(\w+)[ \t]*\([ \t]*(?:void[ \t]*)?\))\s*\{")
+_SETUP_INSIDE = re.compile(r"(?i)\s*(S[IB])\b[ \t]*\|?[ \t]*")
+_BRACKET_CONTENT = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that are open before it
 
 
 Check = Callable[[str], Sequence[Diagnostic]]
@@ -50,7 +50,7 @@ def beginning(
 
 def other_word(source: Source, diagnostics: Sequence[Diagnostic]) -> Diagnostic | None:
     """Return what is told of a word before the bar that is no `SI`."""
-    first = lexemes(source.text[:_LONGEST].lstrip().partition("\n")[0])[:1]
+    first = lexemes(source.text[:_MOST_CHARACTERS].lstrip().partition("\n")[0])[:1]
     is_own = SEAL in source.text or (first and first[0].text in ("SI", "SB"))
     message = (diagnostic for diagnostic in diagnostics if diagnostic.code is codes.SETUP_UNKNOWN)
     return None if is_own else next(message, None)
@@ -75,7 +75,7 @@ def setup(text: str) -> Diagnostic | None:
     fix = head_meant + "|"
     span = Span(start, start + end)
     edits = [Edit(span, fix)]
-    if sign == "(" and (inside := _INSIDE.match(rest)):
+    if sign == "(" and (inside := _BRACKET_CONTENT.match(rest)):
         close = start + match.end() + inside.end()
         edits.append(Edit(Span(close, close + 1), ""))
         fix += text[span.end : close]
@@ -89,7 +89,7 @@ def _framed(source: Source) -> Diagnostic | None:
 
     What is in its brackets begins the program; `void loop()` after it is a loop.
     """
-    head = _FRAME.match(source.text)
+    head = _FRAME_HEADER.match(source.text)
     if head is None or lexicon_concept(plain(head[2])) != "START":
         return None
     depth = at = 0
@@ -103,11 +103,11 @@ def _framed(source: Source) -> Diagnostic | None:
 
 
 def _unframed(source: Source, head: re.Match[str], close: int) -> Diagnostic:
-    inside = source.text[head.end() : close]
-    start_match = _BEGUN_INSIDE.match(inside)
+    body = source.text[head.end() : close]
+    start_match = _SETUP_INSIDE.match(body)
     setup_text = f"{start_match[1].upper()}|" if start_match else "SI|"
-    start = head.end() + (start_match.end() if start_match else len(inside) - len(inside.lstrip()))
-    end = close if start >= close else head.end() + len(inside.rstrip(" \t"))
+    start = head.end() + (start_match.end() if start_match else len(body) - len(body.lstrip()))
+    end = close if start >= close else head.end() + len(body.rstrip(" \t"))
     name = Span(head.start(1), head.end(1))
     edits = (Edit(Span(name.start, min(start, close)), setup_text), Edit(Span(end, close + 1), ""))
     values = {"begun": source[name], "fix": setup_text}
@@ -157,13 +157,13 @@ def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
         return "", 0
     if names.meant(words[0].text) == "START":
         return "SI", 1
-    first = words[:_LONGEST_START]
+    first = words[:_MOST_START_WORDS]
     button_positions = [k for k, it in enumerate(first) if lexicon_concept(it.text) == "BUTTON"]
     press_positions = [k for k, it in enumerate(first) if lexicon_meaning(it.text, "pressed")]
     if not button_positions or not press_positions or "BUTTON" in names.sensors:
         return "", 0
     end = max(button_positions[0], press_positions[0]) + 1
-    actions = {names.meant(it.text) for it in first[:end]} & {*CALLED, "UNTIL", "S", "STOP"}
+    actions = {names.meant(it.text) for it in first[:end]} & {*CALL_WORDS, "UNTIL", "S", "STOP"}
     return ("SB", end) if actions in (set(), {"W"}, {"W", "UNTIL"}) else ("", 0)
 
 

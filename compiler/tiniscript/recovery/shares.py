@@ -20,8 +20,8 @@ from tiniscript.recovery.writing import without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS
 
-_WHOLE = 100
-_COMPARING = ("less", "more", "than", "is", "equal", "to", "extra", "or", "one")
+_HUNDRED_PERCENT = 100
+_COMPARING_KINDS = ("less", "more", "than", "is", "equal", "to", "extra", "or", "one")
 
 
 def shares(source: Source, kit: Kit) -> tuple[list[Diagnostic], list[Edit]]:
@@ -44,7 +44,7 @@ def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic
     ends = [*accumulate(map(width, tokens))]
     for k, token in enumerate(tokens):
         size = _percent(tokens, k + 1, names) if token.kind is NUMBER else 0
-        at = _compared(tokens, k) if size and float(token.text) <= _WHOLE else -1
+        at = _compared(tokens, k) if size and float(token.text) <= _HUNDRED_PERCENT else -1
         side = "".join(lexicon_meaning(tokens[at].text, "left", "right")) if at > 0 else ""
         at -= bool(side)  # `luz izquierda`
         sensor_word = "_".join((tokens[at].text, *([side[0].upper()] if side else [])))
@@ -54,7 +54,7 @@ def _shares_of(body: str, start: int, names: Names) -> Iterator[tuple[Diagnostic
         begin, end = ends[k] - len(token.source or ""), ends[k + size]
         name_start = ends[at] - len(tokens[at].source or "")
         before = body[name_start:begin] if tokens[at].text in names.asked else ""
-        share = number_text(round(sensor.high * float(token.text) / _WHOLE, -3) / ONE)
+        share = number_text(round(sensor.high * float(token.text) / _HUNDRED_PERCENT, -3) / ONE)
         values = {
             "sensor": body[name_start : ends[at]],
             "low": "0",
@@ -83,7 +83,7 @@ def _compared(tokens: Sequence[Lexeme], k: int) -> int:
     """Return the place of the word that is compared with the number at a place, -1 for none."""
     at = k - 1
     while at >= 0 and (
-        tokens[at].text in COMPARISONS or lexicon_meaning(tokens[at].text, *_COMPARING)
+        tokens[at].text in COMPARISONS or lexicon_meaning(tokens[at].text, *_COMPARING_KINDS)
     ):
         at -= 1
     return at if at < k - 1 and tokens[at].kind is WORD else -1

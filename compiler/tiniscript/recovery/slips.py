@@ -1,6 +1,6 @@
 """Slips: how an instruction differs from what it becomes, its code, and what a message says of it.
 
-A message names few things of a slip: `NAMED` says which, by code, `_VALUES` how each is written.
+A message names few things of a slip: `NAMES_OF_CODE` says which, `_VALUE_GAPS` how each is written.
 Knows no block and no sentence of any language.
 """
 
@@ -19,8 +19,8 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 from tiniscript.recovery.lines import BRACES, Step
 from tiniscript.recovery.meanings import (
-    ENDED,
     SOME_END,
+    WORD_OF_END,
     Lexeme,
     lexemes,
     lexicon_meaning,
@@ -31,9 +31,9 @@ from tiniscript.recovery.meanings import (
 from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
+BLOCK_WORDS = frozenset((*BLOCK_ENDS, *WORD_OF_END, "ELSE", "ELSEIF", *BRACES))
 # What messages name, and what they offer: of two codes `dedupe` asks for `found`, too.
-_NAMED_BY: dict[tuple[str, ...], tuple[Code, ...]] = {
+_CODES_BY_NAMES: dict[tuple[str, ...], tuple[Code, ...]] = {
     ("fix",): (
         codes.DECIMAL_COMMA, codes.SEMICOLON_INSIDE, codes.ARGUMENT_COUNT, codes.UNTIL_ALONE,
         codes.FOREVER_NOT_HERE, codes.CHAINED, codes.EXTRA_CLOSE, codes.SPANISH_IF,
@@ -64,7 +64,7 @@ _NAMED_BY: dict[tuple[str, ...], tuple[Code, ...]] = {
     ("found", "right", "letter", "fix"): (codes.BAD_NUMBER,),
     ("found", "right", "usage", "takes", "fix"): (codes.OTHER_LANGUAGE,),
 }  # fmt: skip
-NAMED = {code: names for names, its in _NAMED_BY.items() for code in its}
+NAMES_OF_CODE = {code: names for names, its in _CODES_BY_NAMES.items() for code in its}
 
 
 class Change(NamedTuple):
@@ -100,7 +100,7 @@ class Slip(NamedTuple):
 
 def values_of(slip: Slip, code: Code) -> dict[str, str]:
     """Return what a message with this code says of a slip."""
-    return {name: _VALUES[name](slip) for name in NAMED.get(code, ())}
+    return {name: _VALUE_GAPS[name](slip) for name in NAMES_OF_CODE.get(code, ())}
 
 
 def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
@@ -122,11 +122,11 @@ def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
         for parts in (old_lexemes, new_lexemes)
     )
     start, found, right = first_difference(old, new)
-    has_end = bool(head) and any(lexeme.text in ENDED for lexeme in new_part)
+    has_end = bool(head) and any(lexeme.text in WORD_OF_END for lexeme in new_part)
     parts = new_lexemes[0 if has_end else head : len(new_lexemes) - tail]
     until = len(new_lexemes[head]) if len(old_lexemes) < len(new_lexemes) else None
     slip = Slip(code, old, new, start, found, right, old_part, new_part, change.after, parts, until)
-    return _EXACTLY[code](slip) if code in _EXACTLY else slip
+    return _EXACT_SLIPS[code](slip) if code in _EXACT_SLIPS else slip
 
 
 # -- which code ---------------------------------------------------------------------------------
@@ -139,13 +139,13 @@ def code_of(change: Change) -> tuple[Code, Step | None]:
     added_words = {*texts(after)} - {*texts(before)}
     if "SI" in fewer and "IF" in added_words:
         return codes.SPANISH_IF, None
-    dropped = {item for item in fewer if {item, meant_by(item)} & {*ENDED}}
+    dropped = {item for item in fewer if {item, meant_by(item)} & {*WORD_OF_END}}
     if dropped and not added_words and fewer.keys() <= dropped | {";"}:
         return codes.EXTRA_WORD, None
     code, step = _code_of_steps(change) if steps else (_code_of_words(before, after), None)
     if (
         code is codes.EXTRA_WORD
-        and added_words & {*ENDED}
+        and added_words & {*WORD_OF_END}
         and any(lexicon_meaning(it, "end") for it in fewer)
     ):
         return codes.END_ALONE, None  # it is no word too many: it ends a block
@@ -170,8 +170,10 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
     own_steps.sort(key=lambda it: (it.code is not codes.ASKED_AFTER, it.code is codes.OTHER_SIGN))
     if own_steps and own_steps[0].code in (codes.ASKED_AFTER, codes.UNTIL_NOT_HERE):
         return own_steps[0].code, own_steps[0]
-    lost = (lexeme.text for lexeme in before if lexeme.kind is WORD and lexeme.text not in new)
-    foreign = next((item for item in lost if meant_by(item) in new - words), "")
+    lost_words = (
+        lexeme.text for lexeme in before if lexeme.kind is WORD and lexeme.text not in new
+    )
+    foreign = next((item for item in lost_words if meant_by(item) in new - words), "")
     translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
     if translated and (foreign or not own_steps):
         is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
@@ -197,7 +199,7 @@ def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
         )
         return codes.BAD_NAME if has_word else codes.OTHER_SIGN
     _, found, right = first_difference(before, after)
-    if len(found) == len(right) == 1 and {*texts(found), *texts(right)} <= {*ENDED}:
+    if len(found) == len(right) == 1 and {*texts(found), *texts(right)} <= {*WORD_OF_END}:
         return codes.WRONG_END
     ends = [lexeme.text for lexeme in before if lexicon_meaning(lexeme.text, "end")]
     if ends and ends[-1] not in texts(after):
@@ -273,7 +275,7 @@ def _whole_sign(slip: Slip) -> Slip:
     return slip._replace(found=[before, *found], right=[slip.new[k - 1], *right], start=k - 1)
 
 
-_EXACTLY: dict[Code, Callable[[Slip], Slip]] = {
+_EXACT_SLIPS: dict[Code, Callable[[Slip], Slip]] = {
     codes.OTHER_LANGUAGE: _foreign_words, codes.BAD_NUMBER: _split_number, codes.UNIT: _measured,
     codes.QUESTION_AFTER: _header, codes.OTHER_ASSIGNMENT: _sign_alone,
     codes.OTHER_SIGN: _whole_sign,
@@ -308,19 +310,23 @@ def _has_gap(slip: Slip) -> bool:
 
 def right_of(slip: Slip) -> str:
     """Return how that is written in TiniScript."""
-    shown = _changed_text(slip)
-    now = laid_out(slip.right) or shown
-    now = shown if now == SOME_END and shown in ENDED else now  # of a block, whose end is known
+    changed_text = _changed_text(slip)
+    right_text = laid_out(slip.right) or changed_text
+    right_text = (
+        changed_text if right_text == SOME_END and changed_text in WORD_OF_END else right_text
+    )  # of a block, whose end is known
     if slip.code is codes.OTHER_LANGUAGE:
-        now = _word_in(now)
-    if slip.code is codes.OTHER_SIGN and now.split()[-1:] in (["AND"], ["OR"]):
-        now = now.split()[-1]  # `A O B > 5`: what A lacks before it is no part of the sign
-    return f"{now} )" if now.endswith("(") else now
+        right_text = _word_in(right_text)
+    if slip.code is codes.OTHER_SIGN and right_text.split()[-1:] in (["AND"], ["OR"]):
+        right_text = right_text.split()[
+            -1
+        ]  # `A O B > 5`: what A lacks before it is no part of the sign
+    return f"{right_text} )" if right_text.endswith("(") else right_text
 
 
 def _word_in(text: str) -> str:
     """Return the one word that a text is about: LOOP of `I = 0;LOOP(5)`, F of `va F`."""
-    heads = (part for part in text.split(";") if re.split(r"\W", part)[0] in OF_BLOCKS)
+    heads = (part for part in text.split(";") if re.split(r"\W", part)[0] in BLOCK_WORDS)
     text = re.split("[()]", next(heads, text), maxsplit=1)[0]
     text = next((word for word in text.split() if word in WORDS), text)
     return text if text in WORDS else meant_by(text) or text  # of `bot.forward`
@@ -332,9 +338,9 @@ def before_it(slip: Slip) -> str:
         return text_of(slip.old[slip.start - 1 : slip.start])
     result = text_of(slip.was[: alike(texts(slip.was), texts(slip.now[: slip.until]))[0]])
     if slip.code is codes.HEADER_SEPARATOR and (
-        not result or result[-1] == "(" or lexemes(result)[0].text not in OF_BLOCKS
+        not result or result[-1] == "(" or lexemes(result)[0].text not in BLOCK_WORDS
     ):
-        block_parts = (part for part in without_setup(slip.line) if part[0].text in OF_BLOCKS)
+        block_parts = (part for part in without_setup(slip.line) if part[0].text in BLOCK_WORDS)
         return laid_out(next(block_parts)) if result else slip.now[0].text  # `CADA VEZ QUE … S`
     return result
 
@@ -352,7 +358,7 @@ def fix_of(slip: Slip) -> str:
 
 def _word(slip: Slip) -> str:
     """Return the word that is told of: the one before its brackets, else the first one."""
-    word = _WORD_OF.get(slip.code, _first_word)(slip)
+    word = _WORD_GAPS.get(slip.code, _first_word)(slip)
     is_def = slip.code is codes.EMPTY_BRACKETS and "DEF" in texts(slip.line)
     return f"DEF {word}" if is_def else word
 
@@ -399,7 +405,7 @@ def _rest_of_line(slip: Slip) -> str:
     return _known_word(message[2:] if texts(message[1:2]) == ("=",) else message)  # `Y = SIDE(3)`
 
 
-_WORD_OF: dict[Code, Callable[[Slip], str]] = {
+_WORD_GAPS: dict[Code, Callable[[Slip], str]] = {
     codes.EMPTY_BRACKETS: _called_word, codes.GROUPED: _grouping, codes.BAD_NAME: _accented_word,
     codes.MISSING_OPEN: _opened, codes.NO_VALUE: _rest_of_line,
     codes.NO_BRACKETS_HERE: _rest_of_line,
@@ -429,7 +435,7 @@ def _usage_if_longer(slip: Slip) -> str:
     return usage if needed_count > number_count else ""
 
 
-_VALUES: dict[str, Callable[[Slip], str]] = {
+_VALUE_GAPS: dict[str, Callable[[Slip], str]] = {
     "found": found_in, "right": right_of, "before": before_it, "word": _word, "usage": _usage,
     "fix": fix_of, "example": fix_of, "letter": _letter, "takes": _usage_if_longer,
 }  # fmt: skip
@@ -440,10 +446,10 @@ _VALUES: dict[str, Callable[[Slip], str]] = {
 
 def alike(old: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
     """Return how much two texts, or two lines, have alike at their beginning and at their end."""
-    most = min(len(old), len(new))
-    head = next((k for k in range(most) if old[k] != new[k]), most)
-    most -= head
-    return head, next((k for k in range(most) if old[-1 - k] != new[-1 - k]), most)
+    most_lexemes = min(len(old), len(new))
+    head = next((k for k in range(most_lexemes) if old[k] != new[k]), most_lexemes)
+    most_lexemes -= head
+    return head, next((k for k in range(most_lexemes) if old[-1 - k] != new[-1 - k]), most_lexemes)
 
 
 def first_difference(

@@ -22,10 +22,10 @@ from tiniscript.base.words import (
 from tiniscript.base.words import names_argument as is_called
 from tiniscript.recovery import rows
 from tiniscript.recovery.meanings import (
-    CALLED,
-    DONE,
+    CALL_WORDS,
+    INSTRUCTION_WORDS,
     LAP,
-    LONG_S,
+    LONG_TIME_S,
     NEAR,
     Lexeme,
     Names,
@@ -35,11 +35,11 @@ from tiniscript.recovery.meanings import (
 )
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-_STEPS_FROM = 10  # so many are as many centimetres
+_LEAST_STEPS = 10  # so many are as many centimetres
 MILLISECONDS_FROM = 100  # no wait is so many seconds
 _SIDES = ("left", "right")
-_LETTERS = {"T": "s", "P": "%", "V": "%"}  # how a value of a move is called, in one letter
-_PASSED = frozenset("(),:=.-_") | {"->", "%"}
+_UNIT_OF_LETTER = {"T": "s", "P": "%", "V": "%"}  # how a value of a move is called, in one letter
+_PASSED_SIGNS = frozenset("(),:=.-_") | {"->", "%"}
 
 
 class Filled(NamedTuple):
@@ -121,7 +121,7 @@ class _Reader:
                 return False
             is_odd = sign == "," and after in (",", ")")
             has_second_group = sign == "(" and k > 2 and "(" in signs[:k]
-            is_call = sign == "(" and self.names.meant(after, NEAR) in CALLED
+            is_call = sign == "(" and self.names.meant(after, NEAR) in CALL_WORDS
             if is_odd or has_second_group or (is_call and self.names.meant(signs[0], NEAR) != "M"):
                 self.is_sure = False
         return True
@@ -219,7 +219,7 @@ class _Reader:
             is_back = self.command in MOVES and not self.is_back and not self.values
             self.is_sure, self.is_back = False, True
             return k + 1 if is_back else None  # nobody drops a sign
-        if sign not in _PASSED or (sign == "=" and not self.mark):
+        if sign not in _PASSED_SIGNS or (sign == "=" and not self.mark):
             return None
         if sign == "," and self.mark and before != ",":
             return None  # a value that is only named
@@ -235,12 +235,14 @@ class _Reader:
     def _word(self, k: int) -> int | None:
         word, after = self.text(k), self.text(k + 1)
         names, marked = self.names, lexicon_meaning(word, "value")
-        is_command = word in names.actuators or (word in DONE and word != "BREAK")
+        is_command = word in names.actuators or (word in INSTRUCTION_WORDS and word != "BREAK")
         text = [word] if is_command else [meaning.concept for meaning in names.meanings(word)]
-        command = next((item for item in text if is_command or item in CALLED or item == "S"), None)
+        command = next(
+            (item for item in text if is_command or item in CALL_WORDS or item == "S"), None
+        )
         is_before_number = self._is_number(k + 1) or after in ("=", ":")
-        if self.command in MOVES and word in _LETTERS and is_before_number:
-            self.mark = _LETTERS[word]
+        if self.command in MOVES and word in _UNIT_OF_LETTER and is_before_number:
+            self.mark = _UNIT_OF_LETTER[word]
         elif lexicon_meaning(word, "turn"):
             if self.command in ("F", "B") and self.values:
                 return None  # another order
@@ -298,7 +300,7 @@ class _Reader:
         self.mark = None
 
     def _take_command(self, word: str, command: str) -> bool:
-        meanings = () if word in DONE else self.names.meanings(word)
+        meanings = () if word in INSTRUCTION_WORDS else self.names.meanings(word)
         cost = meanings[0].cost if meanings else 0
         self.is_sure = self.is_sure and cost < 2
         before = self.command
@@ -369,13 +371,14 @@ class _Reader:
 
     def _in_seconds(self, values: list[_Value] | None) -> list[_Value] | None:
         """Take a plain number after a command that counts milliseconds for these."""
-        plain = [it for it in values or () if it.unit is None and not it.text.isidentifier()]
-        if plain and values and lexicon_meaning(self.words[0].text, "milliseconds"):
+        plain_values = [it for it in values or () if it.unit is None and not it.text.isidentifier()]
+        if plain_values and values and lexicon_meaning(self.words[0].text, "milliseconds"):
             self.is_sure = False
             return [
-                _Value(number_text(it.number / 1000), "s") if it in plain else it for it in values
+                _Value(number_text(it.number / 1000), "s") if it in plain_values else it
+                for it in values
             ]
-        is_long = any(it.number >= MILLISECONDS_FROM for it in plain)
+        is_long = any(it.number >= MILLISECONDS_FROM for it in plain_values)
         return None if self.command == "W" and is_long else values
 
     def _slots(
@@ -388,7 +391,7 @@ class _Reader:
         for k, value in enumerate(values):
             unit = value.unit
             is_of_scratch = unit == "steps" and self.words[0].text not in WORDS
-            if is_of_scratch and way == "CM" and value.number >= _STEPS_FROM:
+            if is_of_scratch and way == "CM" and value.number >= _LEAST_STEPS:
                 unit, self.is_sure = WAYS[way].unit, False
             if unit == "turns" and way == "DEG":
                 unit, self.is_sure = WAYS[way].unit, False
@@ -409,7 +412,7 @@ class _Reader:
                 slots[place], order[k] = value, place
         rest = [k for k in range(len(values)) if k not in order]
         if self.command == "BEEP" and len(rest) == 2:
-            rest.sort(key=lambda k: values[k].number >= LONG_S)
+            rest.sort(key=lambda k: values[k].number >= LONG_TIME_S)
         if has_until and slots[0] is None and arguments[0].unit == "s" and not rest:
             slots[0] = _Value("FOREVER", None)
         for k in rest:
@@ -422,16 +425,16 @@ class _Reader:
         places = [order[k] for k in sorted(order)]
         self.is_sure = self.is_sure and places == sorted(places)
         for k, place in order.items():
-            is_long = values[k].number >= LONG_S and values[k].unit is None
+            is_long = values[k].number >= LONG_TIME_S and values[k].unit is None
             if is_long and arguments[place].unit == "s" and len(arguments) > 1:
                 if self.words[0].text not in WORDS:
                     return None  # of another language: rarely seconds, as in `move(50, 50)`
                 self.is_sure = False
         if None in slots:
-            if any(value.unit == "%" and value.number < LONG_S for value in values):
+            if any(value.unit == "%" and value.number < LONG_TIME_S for value in values):
                 return None  # `F(2 VEL)`: the name of a power, and a time
             is_move = self.command in MOVES and rest == [0]
-            if self.command == "SHOW" or (is_move and values[0].number >= LONG_S):
+            if self.command == "SHOW" or (is_move and values[0].number >= LONG_TIME_S):
                 return None  # a power, degrees or centimetres
             self.is_sure, self.cost = False, self.cost + 2
         for slot, argument in zip(slots, arguments, strict=True):

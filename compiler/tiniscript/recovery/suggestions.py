@@ -22,9 +22,9 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code, Diagnostic
 from tiniscript.recovery import lines, rewrites, suggestion_rows
 from tiniscript.recovery.meanings import (
-    ASKING,
-    ENDED,
+    ASKING_WORDS,
     NEAR,
+    WORD_OF_END,
     Lexeme,
     Names,
     lexemes,
@@ -47,23 +47,23 @@ from tiniscript.syntax.free_names import free_number_name
 from tiniscript.syntax.lexer import QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 
-LONGEST = 24  # words behind an instruction that are read
-MOST = 1_000  # instructions of a text that are read
+MOST_WORDS = 24  # words behind an instruction that are read
+MOST_INSTRUCTIONS = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
-_ASIDE = (codes.REPEATED, codes.WORDS_AFTER)
-_MAY_BE_NOTES = (codes.WORDS_AFTER, codes.SEVERAL_ORDERS)
-_MEASURES = (("s",), ("cm",), ("°",), ("%",), ("Hz",))
-_IN_PROSE = frozenset((",", ".", ":", "!", "\u00a1", *QUOTES))
-_MOST_BEFORE = 8  # instructions that an example repeats
-_FARTHEST = 40  # lines and instructions that are looked at for what is done again
-_BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
+_SECONDARY_CODES = (codes.REPEATED, codes.WORDS_AFTER)
+_NOTE_CODES = (codes.WORDS_AFTER, codes.SEVERAL_ORDERS)
+_UNIT_MEANINGS = (("s",), ("cm",), ("°",), ("%",), ("Hz",))
+_PROSE_SIGNS = frozenset((",", ".", ":", "!", "\u00a1", *QUOTES))
+_MOST_REPEATED = 8  # instructions that an example repeats
+_MOST_LINES_BACK = 40  # lines and instructions that are looked at for what is done again
+_BODY_STARTS = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 # An instruction of a line, and the bar of a `SI|`.
-_PART = re.compile(r"((?:[^;{}|]|\|\|)+)(\|?)")
-_ONCE = re.compile(r"(.+?;)\1*")  # orders that the others repeat
-_CHOICE = re.compile(r"\s*(\w+)\s*(\([0-9., ]*\))?\s*")
-_COUNTED = re.compile(r"^\s*\d{1,2}\s*[.)]\s*(?=[A-Za-z])")
+_INSTRUCTION_AND_BAR = re.compile(r"((?:[^;{}|]|\|\|)+)(\|?)")
+_REPEATED_ORDERS = re.compile(r"(.+?;)\1*")  # orders that the others repeat
+_CHOICE_CALL = re.compile(r"\s*(\w+)\s*(\([0-9., ]*\))?\s*")
+_LINE_COUNT = re.compile(r"^\s*\d{1,2}\s*[.)]\s*(?=[A-Za-z])")
 _SHORTEST_WORD = 3  # letters: X is rather a variable
-_BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
+_NEEDLESS_SIGNS = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
 
 class Row(NamedTuple):
@@ -109,11 +109,11 @@ class Suggestion(NamedTuple):
 def rows() -> tuple[Row, ...]:
     compiled_rows = []
     for pattern, code, values, example in rewrites.cells(suggestion_rows.SUGGESTIONS):
-        named = dict(item.split("=", 1) for item in values.split("; ") if item)
+        named_values = dict(item.split("=", 1) for item in values.split("; ") if item)
         wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
         compiled = rewrites.compiled(pattern, suggestion_rows.PARTS)
         number, *how = code.split()
-        compiled_rows.append(Row(compiled, CODES.get(number), how, named, (wrong, right)))
+        compiled_rows.append(Row(compiled, CODES.get(number), how, named_values, (wrong, right)))
     return tuple(compiled_rows)
 
 
@@ -127,16 +127,19 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
     bodies = [without_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     suggestions: list[Suggestion] = []
-    above: list[str | None] = []
+    orders_above: list[str | None] = []
     start = depth = 0
-    left = MOST
+    instructions_left = MOST_INSTRUCTIONS
     for body, line in zip(bodies, text.split("\n"), strict=True):
         suggestions_of_line: list[Suggestion] = []
         words = lexemes(body)
         is_right = lines.is_right(words, names)
         if "~" not in body and not is_right:
-            for part in islice(_parts(body, start, LineContext(text, names, depth, above)), left):
-                left -= 1
+            for part in islice(
+                _parts(body, start, LineContext(text, names, depth, orders_above)),
+                instructions_left,
+            ):
+                instructions_left -= 1
                 each = _suggestion_for(part)
                 if each and not (
                     suggestions_of_line and overlap([suggestions_of_line[-1].passed], [each.passed])
@@ -146,10 +149,10 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
         if body.strip() and not any(
             each.diagnostic.code is codes.SAME_AGAIN for each in suggestions_of_line
         ):
-            uncounted = _COUNTED.sub("", body)  # `2. S`
+            uncounted = _LINE_COUNT.sub("", body)  # `2. S`
             is_right = is_right or (uncounted != body and lines.is_right(lexemes(uncounted), names))
-            above.append(_as_orders(uncounted.partition("|")[2] or uncounted, is_right))
-        depth += sum((word.text in BLOCK_ENDS) - (word.text in ENDED) for word in words)
+            orders_above.append(_as_orders(uncounted.partition("|")[2] or uncounted, is_right))
+        depth += sum((word.text in BLOCK_ENDS) - (word.text in WORD_OF_END) for word in words)
         start += len(line) + 1
     return suggestions
 
@@ -157,9 +160,9 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
 def _as_orders(line: str, is_right: bool) -> str | None:
     """Return a line of orders, "" for another one, None for one that begins a block."""
     heads = [item[0].text for item in map(lexemes, line.split(";")) if item]
-    if heads and heads[-1] in _BEGIN_BODY:
+    if heads and heads[-1] in _BODY_STARTS:
         return None
-    is_right = is_right and not {*heads} & {*_BEGIN_BODY, *ENDED}
+    is_right = is_right and not {*heads} & {*_BODY_STARTS, *WORD_OF_END}
     return line.strip().rstrip(" ;") if is_right else ""
 
 
@@ -167,12 +170,12 @@ def _parts(body: str, start: int, line_context: LineContext) -> Iterator[_Words]
     """Give each instruction of a line that has words behind it, and words without one."""
     names = line_context.names
     before: list[str | None] = []
-    for match in _PART.finditer(body):
+    for match in _INSTRUCTION_AND_BAR.finditer(body):
         tokens, at = lexemes(match[1]), start + match.start()
         if not tokens or match[2]:
             continue
-        is_block = tokens[0].text in (*_BEGIN_BODY, *ENDED)
-        while 0 < len(tokens) <= lines.LONGEST:
+        is_block = tokens[0].text in (*_BODY_STARTS, *WORD_OF_END)
+        while 0 < len(tokens) <= lines.MOST_TOKENS:
             size = instruction_length(tokens, names)
             rest = tokens[size:]
             if not size and (spoken_call := _spoken_call(tokens, names)):
@@ -181,7 +184,7 @@ def _parts(body: str, start: int, line_context: LineContext) -> Iterator[_Words]
             if not size or not rest:
                 yield _Words(line_context, at, tokens, 0, before)
                 break
-            if any(token.text in ASKING for token in tokens[:size]):
+            if any(token.text in ASKING_WORDS for token in tokens[:size]):
                 is_ended = all(lexicon_meaning(item.text, "do") for item in rest)  # by a THEN
                 yield _Words(line_context, at, tokens if is_ended else tokens[:size], 0, before)
             if not instruction_length(rest, names) or rest[0].text in ("IF", "WHILE"):
@@ -205,10 +208,10 @@ def holding(place: Place) -> Iterator[tuple[Row, Gaps]]:
 
 
 def _suggestion_for(part: _Words) -> Suggestion | None:
-    if len(part.row) > LONGEST or not part.is_aside():
+    if len(part.row) > MOST_WORDS or not part.is_aside():
         return None
     for row, gaps in holding(part):
-        is_aside = row.code in _ASIDE and part.tokens and _is_read_surely(part)
+        is_aside = row.code in _SECONDARY_CODES and part.tokens and _is_read_surely(part)
         return None if is_aside else _suggestion(row, gaps)
     return None
 
@@ -229,7 +232,7 @@ class _Words(Trailing):
         before: Sequence[str | None], spoken: str = "",
     ) -> None:  # fmt: skip
         super().__init__(line_context, start, tokens, size, before, spoken)
-        self.gaps = _GAPS
+        self.gaps = _GAP_FUNCTIONS
 
     def values(self) -> dict[str, str]:
         return {"before": shortened(self.call), "words": shortened(self.words), "fix": ""}
@@ -251,7 +254,7 @@ def _suggestion(row: Row, gaps: Gaps) -> Suggestion:
     assert code is not None
     has_other_values = any(values[gap] for gap in values if gap not in ("before", "words", "order"))
     is_noted = "//" in values["fix"] or not has_other_values
-    if code in _MAY_BE_NOTES and part.tokens and not is_noted:
+    if code in _NOTE_CODES and part.tokens and not is_noted:
         values = {**values, **_as_note(part)}  # what changes no movement comes first
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
@@ -353,15 +356,15 @@ class Gaps(dict[str, str]):
 def _loop_over_all(gaps: Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
     part, before = gaps.part, [item for item in gaps.part.before if item]
-    has_all_orders = len(before) == len(part.before) <= _FARTHEST
+    has_all_orders = len(before) == len(part.before) <= _MOST_LINES_BACK
     if not has_all_orders or part.is_in_block or times in ("", "0", "1"):
         return ""
     messages = [item.strip() for line in (*before, part.call) for item in line.split(";")]
     orders = [item for item in messages if item.upper() not in ("", "START")]
     text = "".join(f"{order};" for order in orders)
-    if once := _ONCE.fullmatch("".join(text.split()).upper()):  # F and L of `F; L; F; L`
+    if once := _REPEATED_ORDERS.fullmatch("".join(text.split()).upper()):  # F and L of `F; L; F; L`
         orders = orders[: once[1].count(";")]
-    if not 0 < len(orders) <= _MOST_BEFORE:
+    if not 0 < len(orders) <= _MOST_REPEATED:
         return ""
     return ";".join((f"LOOP({times})", *orders, BLOCK_ENDS["LOOP"]))
 
@@ -425,7 +428,7 @@ def _choice(gaps: Gaps, is_exact: bool = False) -> str:
     """An IF that asks RANDOM which of two orders or more is done; `is_exact`: by no example."""
     text = f"{gaps.part.call},{gaps['l']}".lstrip(",")
     orders = []
-    for match in map(_CHOICE.fullmatch, re.split(r",(?![^(]*\))", text)):
+    for match in map(_CHOICE_CALL.fullmatch, re.split(r",(?![^(]*\))", text)):
         word_row = WORDS.get(gaps.part.means(plain(match[1]))) if match else None
         if match is None or word_row is None or not word_row.role.is_instruction:
             return ""
@@ -493,7 +496,7 @@ def _orders(gaps: Gaps) -> str:
 
 def _note(gaps: Gaps) -> str:
     part = gaps.part
-    return f"{part.call} // {part.words.strip(_BARE)}" if _is_last(part) else ""
+    return f"{part.call} // {part.words.strip(_NEEDLESS_SIGNS)}" if _is_last(part) else ""
 
 
 def _is_last(part: Trailing) -> bool:
@@ -511,19 +514,19 @@ def _as_note(part: Trailing) -> dict[str, str]:
         "AND",
         "OR",
     )
-    is_prose = all(it.kind is WORD or it.text in _IN_PROSE for it in part.row)
-    words = part.words.strip(_BARE)
+    is_prose = all(it.kind is WORD or it.text in _PROSE_SIGNS for it in part.row)
+    words = part.words.strip(_NEEDLESS_SIGNS)
     if is_joined or not is_prose or not words or not lines.is_right(part.tokens, part.names):
         return {}
     is_order = any(it.text in WORDS and it.source == it.text for it in part.row)
-    is_order |= any(lexicon_meaning(it.text, "unit")[:1] in _MEASURES for it in part.row)
+    is_order |= any(lexicon_meaning(it.text, "unit")[:1] in _UNIT_MEANINGS for it in part.row)
     if is_order:
         return {}
     note = f"// {words}"
     return {"note": f"{part.call} {note}"} if _is_last(part) else {"last_note": note}
 
 
-_GAPS: dict[str, Callable[[Gaps], str]] = {
+_GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "above": lambda gaps: ["", *gaps.part.before][-1] or "",
     "all": lambda gaps: _loop_over_all(gaps, gaps["n?"]),
     "often": lambda gaps: _loop_over_all(gaps, "4"),

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, apply_edits, overlap
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import ENOUGH, Code, Diagnostic, Repair
+from tiniscript.diagnostics.codes import MOST_DIAGNOSTICS, Code, Diagnostic, Repair
 from tiniscript.diagnostics.fixing import Check, drop_wrong_offers
 from tiniscript.recovery import slips
 from tiniscript.recovery.bracketed import answered, bracketed
@@ -41,9 +41,9 @@ from tiniscript.recovery.shares import shares
 from tiniscript.recovery.suggestions import suggested
 from tiniscript.recovery.usage import with_usage
 
-ROUNDS = 20  # of reading what follows a mistake from the repaired text
-_CR_ALONE = re.compile(r"\r(?!\n)")
-LONGEST = 4_000  # characters of a text that is read as a whole
+MOST_ROUNDS = 20  # of reading what follows a mistake from the repaired text
+_LONE_CR = re.compile(r"\r(?!\n)")
+MOST_CHARACTERS = 4_000  # characters of a text that is read as a whole
 
 
 class Findings(NamedTuple):
@@ -68,7 +68,7 @@ class WrongText:
     def recovery(self) -> Recovery | None:
         """The readings of the text; nothing for a long one, or one that is copied again."""
         text = self.source.text.replace("\r\n", "\n").replace("\r", "\n")
-        if len(text) > LONGEST or SEAL in text:
+        if len(text) > MOST_CHARACTERS or SEAL in text:
             return None
         return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own=to == text))
 
@@ -84,11 +84,11 @@ def told_of(
 
     The readers know one end of a line that is a character: what the text has instead takes as much.
     """
-    text = _CR_ALONE.sub("\n", source.text)
+    text = _LONE_CR.sub("\n", source.text)
     source = Source(text, source.name)
-    diagnostics_told = _read(WrongText(source, diagnostics, check, kit), ROUNDS)
-    if len(diagnostics_told) > ENOUGH:
-        diagnostics_told = sorted(diagnostics_told, key=lambda it: it.span)[: ENOUGH + 1]
+    diagnostics_told = _read(WrongText(source, diagnostics, check, kit), MOST_ROUNDS)
+    if len(diagnostics_told) > MOST_DIAGNOSTICS:
+        diagnostics_told = sorted(diagnostics_told, key=lambda it: it.span)[: MOST_DIAGNOSTICS + 1]
     diagnostics_told = [bracketed(item, text, kit, is_offered=True) for item in diagnostics_told]
     diagnostics_told = drop_wrong_offers(diagnostics_told, text, check)  # what is offered is right
     diagnostics_told = conserving(
@@ -109,7 +109,7 @@ def _read(wrong_text: WrongText, rounds: int) -> list[Diagnostic]:
     diagnostics, edits = next((each for each in findings if each.diagnostics), Findings([], []))
     if not diagnostics:
         diagnostics = with_usage(wrong_text.diagnostics, wrong_text.source, wrong_text.kit)
-    elif len(diagnostics) <= ENOUGH:
+    elif len(diagnostics) <= MOST_DIAGNOSTICS:
         repaired_text = apply_edits(wrong_text.source.text, edits)
         diagnostics_left = wrong_text.check(repaired_text)
         if any(
@@ -255,7 +255,7 @@ def _words_of_blocks(wrong_text: WrongText) -> Findings:
     Else what is inside would be told of as well.
     """
     diagnostics = [each for each in wrong_text.diagnostics if each.code is codes.UNKNOWN_WORD
-            and each.values.get("near") in slips.OF_BLOCKS]  # fmt: skip
+                   and each.values.get("near") in slips.BLOCK_WORDS]  # fmt: skip
     return Findings(diagnostics, [Edit(each.span, each.values["near"]) for each in diagnostics])
 
 

@@ -22,22 +22,30 @@ from tiniscript.base.words import (
     lexicon_meaning,
 )
 from tiniscript.recovery import lines
-from tiniscript.recovery.meanings import ASKING, ENDED, NEAR, Lexeme, Names, closed, lexemes
+from tiniscript.recovery.meanings import (
+    ASKING_WORDS,
+    NEAR,
+    WORD_OF_END,
+    Lexeme,
+    Names,
+    closed,
+    lexemes,
+)
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
 DOTS = ".…"
-_NOTHING = re.compile(r"\s*\Z")
-_BEGUN = re.compile(r"(?i)\s*(?:S[IB]|PING)\s*\|")
+_BLANK_TEXT = re.compile(r"\s*\Z")
+_SETUP_AT_START = re.compile(r"(?i)\s*(?:S[IB]|PING)\s*\|")
 MARKS = f"{QUOTES}-–—_,"  # below a line that is meant again
 # The first value of a call, and the last one where that is a whole number.
-_PART = r"(?:[^\s(),]|\([^()]*\))"
-_TIME = re.compile(rf"\w+\s*\(\s*({_PART}(?:\s*{_PART})*)(?=\s*[,)])")
-_POWER = re.compile(r"(?i)[(,]\s*([0-9]{1,3})\s*\)(?=\s*(?:UNTIL\b|$))")
-_HALF = 60  # a power that is neither fast nor slow
-_BEFORE_NOTE = frozenset(("=", ">", "<", "*", ":", ",", "(", *COMPARISONS))
-_IN_NO_NOTE = frozenset((*COMPARISONS, "*", "+", "==", "!=", "{", "}"))
+_VALUE_PART = r"(?:[^\s(),]|\([^()]*\))"
+_TIME_OF_CALL = re.compile(rf"\w+\s*\(\s*({_VALUE_PART}(?:\s*{_VALUE_PART})*)(?=\s*[,)])")
+_POWER_OF_CALL = re.compile(r"(?i)[(,]\s*([0-9]{1,3})\s*\)(?=\s*(?:UNTIL\b|$))")
+_MIDDLE_POWER = 60  # a power that is neither fast nor slow
+_SIGNS_BEFORE_NOTE = frozenset(("=", ">", "<", "*", ":", ",", "(", *COMPARISONS))
+_SIGNS_OUTSIDE_NOTES = frozenset((*COMPARISONS, "*", "+", "==", "!=", "{", "}"))
 _LONG_WORDS = tuple(word for word in WORDS if len(word) > 2)
 
 
@@ -50,7 +58,7 @@ class LineContext(NamedTuple):
     text: str
     names: Names
     depth: int
-    above: Sequence[str | None]
+    orders_above: Sequence[str | None]
 
 
 def width(token: Lexeme) -> int:
@@ -91,11 +99,11 @@ class Trailing:
         self, line_context: LineContext, start: int, tokens: Sequence[Lexeme], size: int,
         before: Sequence[str | None], spoken: str = "",
     ) -> None:  # fmt: skip
-        text, self.names, depth, above = line_context
+        text, self.names, depth, orders_above = line_context
         self.is_said = bool(spoken)
         self.tokens = lexemes(spoken) if spoken else tokens[:size]
         self.row = tokens[size:]
-        self.before, self.is_more = [*above, *before], bool(before)
+        self.before, self.is_more = [*orders_above, *before], bool(before)
         self.is_later = self.before[-1:] not in ([], [None])
         self.is_in_block = depth > 0
         ends = [*accumulate(map(width, tokens), initial=start)][1:]
@@ -112,10 +120,10 @@ class Trailing:
         concept = self.names.meant(self.tokens[0].text, NEAR) if size else ""
         word_row = WORDS.get(concept)
         self.is_arm = word_row is not None and word_row.role.is_of_blocks
-        self.own = ENDED.get(concept, concept)
+        self.own = WORD_OF_END.get(concept, concept)
         self.is_asked = any(token.text == "UNTIL" for token in self.tokens)
-        self.time = _TIME.match(self.call)
-        self.power = _POWER.search(self.call)
+        self.time = _TIME_OF_CALL.match(self.call)
+        self.power = _POWER_OF_CALL.search(self.call)
         kinds = [
             lexicon_meaning(it.text, kind)
             for it in self.row
@@ -170,13 +178,13 @@ class Trailing:
                 "@later": self.is_later and not self.is_arm,
             }
         else:
-            is_end = _NOTHING.match(self.text, self.place.end) and not self.is_in_block
+            is_end = _BLANK_TEXT.match(self.text, self.place.end) and not self.is_in_block
             labels = {
                 "@none": True,
                 "@after": self.is_later,
                 "@last": self.is_later and is_end,
-                "@unbegun": not _BEGUN.match(self.text),
-                "@opening": not _BEGUN.match(self.text) and self._is_opening(),
+                "@unbegun": not _SETUP_AT_START.match(self.text),
+                "@opening": not _SETUP_AT_START.match(self.text) and self._is_opening(),
             }
         return label("\x01", labels)
 
@@ -215,7 +223,7 @@ class Trailing:
             f"@no{concept}": not is_of_kit,
             "@call": word_row and word_row.is_call,
             "@order": word_row and word_row.role.is_instruction,
-            "@ask": self.means(text) in ASKING,
+            "@ask": self.means(text) in ASKING_WORDS,
             "@quote": text in QUOTES and text != "`",
             "@mark": text in MARKS,
             "@dots": text == "…" or (text == "." and "." in (before, after)),
@@ -228,7 +236,7 @@ class Trailing:
     def means(self, word: str) -> str:
         """Return the word of the language that is said, "" where none is."""
         meant = "" if word in WAYS else self.names.meant(word)
-        return ENDED.get(meant, meant)
+        return WORD_OF_END.get(meant, meant)
 
     def number(self, k: int) -> str | None:
         """Return the number at a place in digits, None where there is none."""
@@ -249,7 +257,7 @@ class Trailing:
         sentence = lexicon_meaning(text, "power")
         is_fast = sentence[:1] == ("100",)
         is_changed = bool(k and lexicon_meaning(self.row[k - 1].text, "extra"))
-        is_other = (int(self.power[1]) >= _HALF) is not is_fast
+        is_other = (int(self.power[1]) >= _MIDDLE_POWER) is not is_fast
         return lexicon_meaning(text, "pace") != () or bool(sentence and (is_changed or is_other))
 
     def _is_told(self, k: int) -> bool:
@@ -266,10 +274,10 @@ class Trailing:
         is_number = self._text(k + 1)[:1].isdigit() and not self._is_told(k + 1)
         is_bracket = text == "(" and (is_number or (bool(k) and self.row[k - 1].kind is WORD))
         if not k:
-            is_sign = text in _BEFORE_NOTE or (token.kind is ODD and text != "#")
+            is_sign = text in _SIGNS_BEFORE_NOTE or (token.kind is ODD and text != "#")
             return is_sign and not is_bracket and not self.is_arm
         is_list = text == "," and self.row[k - 1].kind is NUMBER
-        return not is_bracket and not is_list and (is_first or text not in _IN_NO_NOTE)
+        return not is_bracket and not is_list and (is_first or text not in _SIGNS_OUTSIDE_NOTES)
 
     def _is_alone(self, k: int) -> bool:
         """Whether a single word is rather a misspelt one, or the name of a DEF."""
@@ -302,7 +310,7 @@ class Trailing:
             )
         if lexicon_meaning(text, "on", "off", "act"):
             return True
-        if lexicon_meaning(text, "end") or text in ENDED:
+        if lexicon_meaning(text, "end") or text in WORD_OF_END:
             return self.is_in_block and not self.is_arm
         if lexicon_meaning(text, "until"):
             return own_word != "SHOW" and self.row[0].text != "(" and not self.is_asked

@@ -37,9 +37,9 @@ from tiniscript.recovery.amounts import with_number
 from tiniscript.recovery.calls import likely_word, own_example, usage_with
 from tiniscript.recovery.ends import places_text, possible_places
 from tiniscript.recovery.meanings import (
-    ASKING,
-    DONE,
-    LONG_S,
+    ASKING_WORDS,
+    INSTRUCTION_WORDS,
+    LONG_TIME_S,
     MOST_POWER,
     Lexeme,
     Names,
@@ -67,7 +67,7 @@ from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD, Token, scan
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
-_DOTS = re.compile(
+_MEMBER_DOTS = re.compile(
     r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)"
     r"|DEF[ \t]+(?P<name>\w+)(?:[ \t]*\([^()\n]*\))?)[\s;]*"
     r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
@@ -78,34 +78,49 @@ _UNTIL_BLOCK = re.compile(
 )
 _UNTIL_END = re.compile(rf"{words_of('end')}_?{words_of('until')}")
 _PLAIN_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
-_TAKING = ("F", "B", "M", "BEEP", "W")  # of values alone: which way first, then the others
-_SLOW = 20  # an example of a low power
-_MANY_BELOW = 6  # instructions that an example takes into a block
-_ENDS = re.compile(rf"\b{words_of('end')}")
-_IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
-_TOP = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
+_WORDS_WITH_VALUES = (
+    "F",
+    "B",
+    "M",
+    "BEEP",
+    "W",
+)  # of values alone: which way first, then the others
+_LOW_POWER = 20  # an example of a low power
+_MOST_INSTRUCTIONS = 6  # instructions that an example takes into a block
+_END_WORD = re.compile(rf"\b{words_of('end')}")
+_BLOCK_WORD = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
+_TOP_LEVEL_WORD = re.compile(r"(?i)\s*(?:TASK|DEF|WHEN)\b")
 _WORD_CHARACTER = re.compile(r"\w")
-_MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
-_CALL = re.compile(r"([^\W\d]\w*)\s*\((?=\W{0,40}\w).*\)", re.DOTALL)
-_LONG_HEAD = 100  # characters of a DEF before the name of a value
-_TAUGHT = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
-_OWN = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
-_ANGLE = re.compile(r"\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)$")
-_FOREVER_BEHIND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNTIL.*)?")
-_TURNED = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
-_LONGEST = 120  # characters of a sentence that a message shows
-_MANY = 30  # diagnostics of which more is said
-_OF_VALUES = (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE)
-_OF_NAMES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
+_MEMBER_CALL = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
+_CALL_WITH_VALUES = re.compile(r"([^\W\d]\w*)\s*\((?=\W{0,40}\w).*\)", re.DOTALL)
+_MOST_HEADER_CHARACTERS = 100  # characters of a DEF before the name of a value
+_DEF_AT_END = re.compile(r"(?i)\bDEF\s+(\w+[ \t]*\([^()\n]*)?$")
+_OWN_WORD = re.compile(r"(\w{3,})\s*(\(\s*(\d{0,3})\s*\))?")
+_ANGLE_AND_POWER = re.compile(r"\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)$")
+_FOREVER_SECOND = re.compile(r"(?i)([FBLR])\s*\(([^(),]+),\s*FOREVER\s*\)(\s*UNTIL.*)?")
+_TURNED_CALL = re.compile(r"(?im)\b[FBLR]\s*\(\s*([0-9.]+)\s*,\s*([0-9]+)\s*\)(?!\s*UNTIL)")
+_MOST_CHARACTERS = 120  # characters of a sentence that a message shows
+_MOST_DIAGNOSTICS = 30  # diagnostics of which more is said
+_VALUE_CODES = (codes.MISSING_COMMA, codes.MISSING_CLOSE, codes.MISSING_VALUE)
+_NAME_CODES = (codes.UNKNOWN_NAME, codes.USED_BEFORE_SET)
 _DEF_END = re.compile(r"(?i)\bEND_?DEF\b")
-_BEGINS = (";", "newline", "|")  # what an instruction begins behind
+_INSTRUCTION_STARTS = (";", "newline", "|")  # what an instruction begins behind
 _DEF_ENDS = ("END_DEF", "ENDDEF")
-_FAR_CM = 400  # more is rather in milliseconds
-_WANTED = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
-_MOST_OF_END = 4  # words: `fin del bucle`
-_NO_CALLS = ("leaves", "again", "etc", "end")
-_NUMBERED = ("unit", "value", "number", "often", "times", "to", "at", "by")  # behind a number
-_NO_NAMES = (*_NO_CALLS, "filler", "same")  # without values
+_FARTHEST_CM = 400  # more is rather in milliseconds
+_NOUN_OF_UNIT = {"s": "seconds", "%": "percent", "Hz": "hertz"}  # by the unit of a value
+_MOST_END_WORDS = 4  # words: `fin del bucle`
+_KINDS_NO_CALL = ("leaves", "again", "etc", "end")
+_KINDS_AFTER_NUMBER = (
+    "unit",
+    "value",
+    "number",
+    "often",
+    "times",
+    "to",
+    "at",
+    "by",
+)  # behind a number
+_KINDS_NO_NAME = (*_KINDS_NO_CALL, "filler", "same")  # without values
 
 
 def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
@@ -116,7 +131,7 @@ def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> l
     ]
     diagnostics = text.with_name(diagnostics)
     diagnostics_told: list[Diagnostic] = []
-    for item in diagnostics[:_MANY]:
+    for item in diagnostics[:_MOST_DIAGNOSTICS]:
         diagnostics_told.append(
             (_usage_diagnostic(Usage(text, item)) if item.repair is None else None) or item
         )
@@ -130,8 +145,8 @@ def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> l
         diagnostics_told += text.turned()
     return [
         item
-        for item in (*diagnostics_told, *diagnostics[_MANY:])
-        if not (item.code in _OF_NAMES and text.is_in_wrong_def(item, diagnostics_told))
+        for item in (*diagnostics_told, *diagnostics[_MOST_DIAGNOSTICS:])
+        if not (item.code in _NAME_CODES and text.is_in_wrong_def(item, diagnostics_told))
     ]
 
 
@@ -145,7 +160,7 @@ class _Text:
     @cached_property
     def is_ended(self) -> bool:
         """Whether any block has an end."""
-        return _ENDS.search(plain(self.source.text)) is not None
+        return _END_WORD.search(plain(self.source.text)) is not None
 
     def is_in_wrong_def(self, diagnostic: Diagnostic, diagnostics: Sequence[Diagnostic]) -> bool:
         """Whether a name is in the body of a DEF that names no values in its brackets."""
@@ -156,8 +171,8 @@ class _Text:
     def turned(self) -> list[Diagnostic]:
         """Return moves with the power before the time, as another call of the text has them."""
         diagnostics: list[Diagnostic] = []
-        for match in _TURNED.finditer(self.source.text):
-            if LONG_S <= float(match[1]) <= MOST_POWER and 0 < float(match[2]) < LONG_S:
+        for match in _TURNED_CALL.finditer(self.source.text):
+            if LONG_TIME_S <= float(match[1]) <= MOST_POWER and 0 < float(match[2]) < LONG_TIME_S:
                 fix = f"{match[0][0].upper()}({match[2]}, {match[1]})"
                 values = {"time": match[1], "power": match[2], "fix": fix}
                 diagnostics.append(Diagnostic(codes.SWAPPED, Span(*match.span()), values))
@@ -228,7 +243,7 @@ class Usage:
         self.words = [token.text for token in self.row if token.kind is WORD]
         self.signs = [token.text for token in self.row]
         self.number = next((it.text for it in self.row[1:] if it.kind is NUMBER), "1")
-        self.gaps = GAPS
+        self.gaps = GAP_FUNCTIONS
         ends = [*accumulate(map(width, self.row), initial=self.piece.start)][1:]
         spans = (
             Span(end - len(it.source or ""), end) for it, end in zip(self.row, ends, strict=True)
@@ -251,12 +266,12 @@ class Usage:
         is_strange = code is codes.UNKNOWN_WORD and self.is_first and bool(self.row)
         is_strange = is_strange and not self.found.values.get("near")
         text = (*self.words, "_".join(self.words[:2]))  # `turn on the led`, `u turn`
-        are_sentence = len(self.words) > 1 and len(self.source[self.piece]) <= _LONGEST
+        are_sentence = len(self.words) > 1 and len(self.source[self.piece]) <= _MOST_CHARACTERS
         labels: dict[str, object] = {
             code.number: True,
             "@bare": code is codes.MISSING_OPEN and self.is_first,
             f"@{code.number}_{found_text.upper()}": True,
-            "@values": code in _OF_VALUES,
+            "@values": code in _VALUE_CODES,
             "@twice": code is codes.SETUP_TWICE,
         }
         if code is codes.ODD_CHARACTER:
@@ -283,8 +298,8 @@ class Usage:
 
     def _is_pressed(self) -> bool:
         """Whether parts of one word say that a button is pressed: `onButtonPressed(…)`."""
-        parted = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
-        return len(parted) > 1 and any(self.is_button(plain(item)) for item in parted)
+        word_parts = re.findall("[A-Z]?[a-z]+", self.source[self.piece].split("(")[0])
+        return len(word_parts) > 1 and any(self.is_button(plain(item)) for item in word_parts)
 
     def _label_of(self, k: int) -> str:
         text, span = self.row[k].text, self.spans[k + 1]
@@ -303,7 +318,10 @@ class Usage:
     def told(self, row: Row, gaps: Gaps) -> Diagnostic:
         """Return what a row tells: of the place, or where its words say."""
         values, fix = gaps.filled, gaps.filled.get("fix", "")
-        span = next((_PLACES[item](self) for item in row.how if item in _PLACES), self.found.span)
+        span = next(
+            (_PLACE_FUNCTIONS[item](self) for item in row.how if item in _PLACE_FUNCTIONS),
+            self.found.span,
+        )
         code = row.code or self.found.code
         if row.code is None:
             values = {**self.found.values, **values}
@@ -323,7 +341,7 @@ class Usage:
 
     def several(self, name: str, gaps: Gaps) -> Mapping[str, str]:
         """Return values that come together."""
-        result = _SEVERAL[name](self, gaps.filled.get("word", ""))
+        result = _SEVERAL_FUNCTIONS[name](self, gaps.filled.get("word", ""))
         if not result:
             raise NoGap
         return result
@@ -332,10 +350,10 @@ class Usage:
 
     def usage(self, word: str) -> str:
         """Return how an instruction is written: a block with its end, where the text has none."""
-        if word in ASKING and (question := self.question(word)):
+        if word in ASKING_WORDS and (question := self.question(word)):
             return question
-        if word in ("L", "R") and (angle := _ANGLE.search(self.source[self.piece])):
-            if float(angle[1]) >= LONG_S:  # `turnLeft(90, 70)`: no seconds
+        if word in ("L", "R") and (angle := _ANGLE_AND_POWER.search(self.source[self.piece])):
+            if float(angle[1]) >= LONG_TIME_S:  # `turnLeft(90, 70)`: no seconds
                 return f"{word}({angle[1]} DEG, {angle[2]})"
         numbers = [token.text for token in self.row if token.kind is NUMBER]
         if (
@@ -372,7 +390,8 @@ class Usage:
         behind = [*dropwhile(lambda it: self.names.meant(it.text) != word, self.row)][1:]
         meant = [self.names.meant(item.text) for item in behind]
         begun = (
-            it in DONE and (it not in ("L", "R") or after.text == "(")  # `pared a la derecha`
+            it in INSTRUCTION_WORDS
+            and (it not in ("L", "R") or after.text == "(")  # `pared a la derecha`
             for it, after in zip(meant, [*behind, made(";")][1:], strict=True)
         )
         over = [_is_over(item) or is_begun for item, is_begun in zip(behind, begun, strict=True)]
@@ -417,7 +436,7 @@ class Usage:
             lexicon_meaning(each, "unit")[:1] not in ((), ("turns",)) for each in self.words
         )
         numbers = [token.text for token in self.row if token.kind is NUMBER]
-        if len(numbers) == 1 and float(numbers[0]) >= LONG_S and not is_timed:
+        if len(numbers) == 1 and float(numbers[0]) >= LONG_TIME_S and not is_timed:
             angle = numbers[0]  # `SPIN 360`: no time, and no power
         turns = orders(self.row, self.names)
         values = laid_out(self.row[1:])
@@ -435,14 +454,14 @@ class Usage:
     def own(self) -> _Own:
         """A word of the program's own that nothing teaches."""
         piece = plain(self.source[self.piece])
-        match = _OWN.fullmatch(piece)
+        match = _OWN_WORD.fullmatch(piece)
         name, is_call, number = match.groups() if match else ("", "", "")
         numbers_given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
         if (
             not name or number or len({*numbers_given}) > 1
         ):  # seconds, or how often: who writes it knows
-            call = _CALL.fullmatch(piece)
-            is_known_call = call is None or lexicon_meaning(call[1], *_NO_CALLS)
+            call = _CALL_WITH_VALUES.fullmatch(piece)
+            is_known_call = call is None or lexicon_meaning(call[1], *_KINDS_NO_CALL)
             is_often = bool(number and self.around.lacks_loop)
             return _Own("", "" if is_known_call or call is None else call[1], is_often, 0, False)
         if self.names.meant(name):
@@ -462,7 +481,7 @@ class Usage:
         heads = [
             self.names.meant(it.text) for it, sign in pairwise(self.before()) if sign.text == "("
         ]
-        return heads[-1] if heads and heads[-1] in ASKING else ""
+        return heads[-1] if heads and heads[-1] in ASKING_WORDS else ""
 
     @cached_property
     def amount(self) -> dict[str, str]:
@@ -488,7 +507,7 @@ class Usage:
         text = f"{before[-1].text} {way}" if is_of_way else ""
         return (
             _NoValue(word, argument, before[-1].text, found_text, unit[0] if unit else "", text)
-            if (argument.unit in _WANTED)
+            if (argument.unit in _NOUN_OF_UNIT)
             else None
         )
 
@@ -509,9 +528,9 @@ class Usage:
             return {}
         number, *rest = items
         is_more = bool(rest) and (
-            rest[0].kind is not WORD or lexicon_meaning(rest[0].text, *_NUMBERED)
+            rest[0].kind is not WORD or lexicon_meaning(rest[0].text, *_KINDS_AFTER_NUMBER)
         )
-        if is_more or not LONG_S <= float(number.text) <= _FAR_CM:
+        if is_more or not LONG_TIME_S <= float(number.text) <= _FARTHEST_CM:
             return {}
         way = f"{word}({number.text} CM, {POWER.sample})"
         if float(number.text) > MOST_POWER:
@@ -520,7 +539,7 @@ class Usage:
 
     def bound(self) -> dict[str, str]:
         """`F(2, MAX)`: the range of a value that stands for its end, and a call with numbers."""
-        call = _CALL.fullmatch(self.source[self.piece])
+        call = _CALL_WITH_VALUES.fullmatch(self.source[self.piece])
         word = WORDS.get(plain(call[1])) if call else None
         values = (
             [it.strip() for it in call[0][call.end(1) :].strip(" ()").split(",")] if call else []
@@ -531,7 +550,7 @@ class Usage:
         positions = [k for k, value in enumerate(values) if plain(value) == end]
         if not positions or any(word.arguments[k].unit != POWER.unit for k in positions):
             return {}
-        number = as_text(POWER.high) if end == "MAX" else str(_SLOW)
+        number = as_text(POWER.high) if end == "MAX" else str(_LOW_POWER)
         values_text = ", ".join(
             number if k in positions else value for k, value in enumerate(values)
         )
@@ -562,7 +581,7 @@ class Usage:
 
     def dots(self) -> dict[str, str]:
         """Dots for what goes inside a block, as the poster has them."""
-        match = self.matched(_DOTS)
+        match = self.matched(_MEMBER_DOTS)
         if match is None:
             return {}
         head, end = match["head"], (match["end"] or "").upper()
@@ -586,21 +605,25 @@ class Usage:
             for item in first_line.split("\n")[0].split(";")
             if _WORD_CHARACTER.search(item)
         ]
-        below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
+        lines_below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
         if rest and k + 1 == len(rows):
             block_text = self.source[Span(self.found.span.start, self.piece.end)]
             places = possible_places(tokens_of(f"{block_text};{first_line}"))
             return {"behind": rest[-1], "places": places_text(places)}
-        if not below:
+        if not lines_below:
             return {"head": self.source[self.found.span]}
-        depth = [len(row) - len(row.lstrip()) for row in rows]
-        top = min((n for n in below if _TOP.match(rows[n])), default=0)  # which no block is around
-        inside = [*takewhile(lambda n: n < top if top else depth[n] > depth[k], below)]
-        if not inside:
+        indentations = [len(row) - len(row.lstrip()) for row in rows]
+        top = min(
+            (n for n in lines_below if _TOP_LEVEL_WORD.match(rows[n])), default=0
+        )  # which no block is around
+        lines_inside = [
+            *takewhile(lambda n: n < top if top else indentations[n] > indentations[k], lines_below)
+        ]
+        if not lines_inside:
             return {}
         return {
-            "line": str(inside[-1] + 1),
-            "last": without_note(rows[inside[-1]])[0].strip(" \t;"),
+            "line": str(lines_inside[-1] + 1),
+            "last": without_note(rows[lines_inside[-1]])[0].strip(" \t;"),
         }
 
     @cached_property
@@ -608,7 +631,7 @@ class Usage:
         """Another name for a word of the language that stands for one."""
         word, text, start = self.found.values["word"], self.text, self.found.span.start
         is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
-        is_taught = _TAUGHT.search(text[max(0, start - _LONG_HEAD) : start])
+        is_taught = _DEF_AT_END.search(text[max(0, start - _MOST_HEADER_CHARACTERS) : start])
         right = free_word_name(text, word) if is_set or is_taught else ""
         suggestion = (nearest(word, self.names.variables - {word}) or "") if is_set else ""
         is_clock = bool(is_set and word == "TIME" and not is_set[1])
@@ -686,7 +709,7 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
         zip([None, *tokens], tokens, tokens[1:], strict=False)
     ):
         depth += (token.kind == "(") - (token.kind == ")")
-        is_begun = before is None or (not depth and before.kind in _BEGINS)
+        is_begun = before is None or (not depth and before.kind in _INSTRUCTION_STARTS)
         is_value = not is_begun and (is_value or (token.kind == "=" and not depth))
         is_inside = (is_inside or token.text == "DEF") and token.text not in _DEF_ENDS
         if token.text != word:
@@ -701,7 +724,7 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
         elif is_begun and not is_inside:
             count = _value_count(tokens, k + 1)
             has_own_values = count == parameters and count != (len(WORDS[word].arguments) or -1)
-            if has_own_values or after.kind in (*_BEGINS, "end"):
+            if has_own_values or after.kind in (*_INSTRUCTION_STARTS, "end"):
                 yield k
 
 
@@ -725,7 +748,7 @@ def _row(text: str) -> list[str]:
     """Return the instructions of a text, nothing where they are many, or a block is among them."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
     instructions = [item.strip() for row in rows for item in row if item.strip()]
-    is_long = len(instructions) > _MANY_BELOW or any(map(_IS_BLOCK.match, instructions))
+    is_long = len(instructions) > _MOST_INSTRUCTIONS or any(map(_BLOCK_WORD.match, instructions))
     return [] if is_long else instructions
 
 
@@ -733,8 +756,8 @@ def _before_blocks(text: str, name: str) -> list[str]:
     """Return the instructions before the first block of a text, and before a call of a name."""
     rows = (without_note(line)[0].split(";") for line in text.split("\n"))
     result = (item.strip() for row in rows for item in row if item.strip())
-    inside = [*takewhile(lambda it: not _IS_BLOCK.match(it) and not _calls(it, name), result)]
-    return inside if len(inside) <= _MANY_BELOW else []
+    inside = [*takewhile(lambda it: not _BLOCK_WORD.match(it) and not _calls(it, name), result)]
+    return inside if len(inside) <= _MOST_INSTRUCTIONS else []
 
 
 def _calls(instruction: str, name: str) -> bool:
@@ -826,7 +849,7 @@ def _concept_alone(gaps: Gaps, is_numbered: bool) -> str:
 
 
 def _asking(word: str) -> str:
-    return word if word in ASKING else ""
+    return word if word in ASKING_WORDS else ""
 
 
 def _variable(gaps: Gaps) -> str:
@@ -849,7 +872,7 @@ def _loop_of_repeated(gaps: Gaps) -> str:
 
 def _own_name(gaps: Gaps) -> str:
     own = _usage_at(gaps).own
-    return "" if own.is_taught or lexicon_meaning(own.name, *_NO_NAMES) else own.name
+    return "" if own.is_taught or lexicon_meaning(own.name, *_KINDS_NO_NAME) else own.name
 
 
 def _end(gaps: Gaps) -> str:
@@ -867,7 +890,7 @@ def _method_call(gaps: Gaps) -> str:
 
 
 def _member(usage: Usage) -> Span:
-    match = _MEMBER.match(usage.text, usage.found.span.start)
+    match = _MEMBER_CALL.match(usage.text, usage.found.span.start)
     return Span(*match.span()) if match else Span(0, 0)
 
 
@@ -947,7 +970,7 @@ def _endless_move(gaps: Gaps) -> str:
 
 def _swapped_forever(gaps: Gaps) -> str:
     """`F(50, FOREVER)`: FOREVER is a time, and goes first."""
-    match = _FOREVER_BEHIND.fullmatch(_usage_at(gaps).source[_usage_at(gaps).piece])
+    match = _FOREVER_SECOND.fullmatch(_usage_at(gaps).source[_usage_at(gaps).piece])
     if match is None:
         return ""
     until = match[3] or f" UNTIL({WORDS['UNTIL'].arguments[0].sample})"
@@ -1042,7 +1065,7 @@ def _quoted_span(usage: Usage) -> Span:
 
 
 def _dotted_span(usage: Usage) -> Span:
-    match = usage.matched(_DOTS)
+    match = usage.matched(_MEMBER_DOTS)
     return Span(*match.span("here")) if match else usage.found.span
 
 
@@ -1127,7 +1150,7 @@ def _leading_filler(gaps: Gaps) -> str:
 
 
 def _may_be(argument: Argument, number: float) -> bool:
-    is_long = argument.unit == "s" and number >= LONG_S
+    is_long = argument.unit == "s" and number >= LONG_TIME_S
     return argument.low <= number * ONE <= argument.high and not is_long
 
 
@@ -1137,7 +1160,9 @@ def _taking(gaps: Gaps) -> list[str]:
     values = [it.strip() for it in usage.source[usage.piece].strip("() ").split(",")]
     if not all(_PLAIN_NUMBER.fullmatch(value) for value in values):
         return []
-    words = (WORDS[word] for word in _TAKING if len(WORDS[word].arguments) == len(values))
+    words = (
+        WORDS[word] for word in _WORDS_WITH_VALUES if len(WORDS[word].arguments) == len(values)
+    )
     return [
         f"{word.text}({', '.join(values)})"
         for word in words
@@ -1168,7 +1193,7 @@ def _gap_of(get: Callable[[Usage], str | None]) -> Callable[[Gaps], str]:
 
 
 # Where a row tells what it says, but where it was found.
-_PLACES: dict[str, Callable[[Usage], Span]] = {
+_PLACE_FUNCTIONS: dict[str, Callable[[Usage], Span]] = {
     "here": lambda it: it.piece, "behind": _following_span, "member": _member,
     "quoted": _quoted_span,
     "dots": _dotted_span,
@@ -1176,7 +1201,7 @@ _PLACES: dict[str, Callable[[Usage], Span]] = {
     "amount": _amount_place,
 }  # fmt: skip
 # Values that come together, of a place and the word that is told of.
-_SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
+_SEVERAL_FUNCTIONS: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "amount": lambda it, _: it.amount, "bound": lambda it, _: it.bound(),
     "button": lambda it, _: it.button(),
     "dots": lambda it, _: it.dots(), "unended": lambda it, _: it.unended(),
@@ -1184,7 +1209,7 @@ _SEVERAL: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
     "in_brackets": Usage.in_brackets, "one_number": Usage.one_number,
     "in_dark": lambda it, word: said if (said := it.in_brackets(word)).get("question") else {},
 }  # fmt: skip
-GAPS: dict[str, Callable[[Gaps], str]] = {
+GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "said": _gap_of(lambda it: it.source[it.piece]),
     "here": _gap_of(lambda it: it.source[it.found.span]),
     "first": _gap_of(lambda it: it.signs[0]), "sign": _gap_of(lambda it: it.signs[1]),
@@ -1230,7 +1255,9 @@ GAPS: dict[str, Callable[[Gaps], str]] = {
     "unit": _unit_behind, "without_seconds": _without_seconds, "number_said": _number_said,
     "way_said": _spoken_direction,
     "value_name": lambda gaps: it.argument.name if (it := _missing_value(gaps, True)) else "",
-    "wanted": lambda gaps: _WANTED[it.argument.unit] if (it := _missing_value(gaps, True)) else "",
+    "wanted": lambda gaps: (
+        _NOUN_OF_UNIT[it.argument.unit] if (it := _missing_value(gaps, True)) else ""
+    ),
     "extra": lambda gaps: it.found if (it := _missing_value(gaps, False)) else "",
     "value_found": _gap_of(lambda it: it.no_value and it.no_value.found),
     "value_word": _gap_of(lambda it: it.no_value and it.no_value.word.text),

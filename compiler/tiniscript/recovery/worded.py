@@ -15,12 +15,12 @@ from tiniscript.recovery.meanings import NEAR, Lexeme, Names, lexicon_concept, l
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
 
-_NOTHING = made("THE")  # a word that asks nothing: one alone may be a name
+_EMPTY_WORD = made("THE")  # a word that asks nothing: one alone may be a name
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
-_ASKED = frozenset(("little", "much", "light", "ahead", "none"))
-_FAR = 10  # centimetres, as in every example
-_MANY = 50  # of what a variable holds
-_EVEN = 100  # above it an example is a round number
+_ASKED_KINDS = frozenset(("little", "much", "light", "ahead", "none"))
+_FAR_CM = 10  # centimetres, as in every example
+_MANY_UNITS = 50  # of what a variable holds
+_ROUND_NUMBERS_FROM = 100  # above it an example is a round number
 
 
 def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
@@ -38,7 +38,7 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     is_condition = any(text in ("AND", "OR") for text in texts)  # of the language itself
     has_number = any(lexeme.kind is NUMBER for lexeme in row)  # `COLOR = 3` is no `> 3`
     if is_condition or (
-        is_compared and (has_number or not _mentioned_words(texts, names) & _ASKED)
+        is_compared and (has_number or not _mentioned_words(texts, names) & _ASKED_KINDS)
     ):
         return None
     if joint := _joining_word(texts, names):
@@ -63,7 +63,7 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     ]
     if "ahead" in sentence and sentence & {"left", "right"} and question[0].startswith("DISTANCE"):
         return {"question": "", "aside": "DISTANCE"}  # it looks ahead
-    is_asking = bool(own_names or sentence & _ASKED)
+    is_asking = bool(own_names or sentence & _ASKED_KINDS)
     kinds = ("asked", "also") if number else ("question", "another") if is_asking else ("example",)
     return {"question": "", **dict(zip(kinds, question, strict=False))}
 
@@ -101,7 +101,7 @@ def _mixed_condition(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
     messages = []
     for piece, is_compared in zip(pieces, has_comparison, strict=True):
         text = " ".join(names.meant(lexeme.text) or lexeme.text for lexeme in piece)
-        result = {"asked": text} if is_compared else worded([_NOTHING, *piece], names) or {}
+        result = {"asked": text} if is_compared else worded([_EMPTY_WORD, *piece], names) or {}
         messages.append(result.get("asked") or result.get("question", ""))
     if not all(messages):
         return {"question": "", "joint": joint}
@@ -149,8 +149,12 @@ def _subjects(
     result = sensors[:1] or list(own_names[:1])
     if not result and "light" in kinds_said and "ahead" not in kinds_said:
         result = _lights(names)[:2]
-        turned = [f"LIGHT_{way[0].upper()}" for way in ("left", "right") if way in kinds_said]
-        result = [name for name in turned if name in result and len(turned) == 1] or result
+        sided_sensors = [
+            f"LIGHT_{way[0].upper()}" for way in ("left", "right") if way in kinds_said
+        ]
+        result = [
+            name for name in sided_sensors if name in result and len(sided_sensors) == 1
+        ] or result
     return result or [*(name for name in names.asked if name == "DISTANCE"), *names.asked, "X"][:1]
 
 
@@ -165,6 +169,12 @@ def _sign(name: str, kinds_said: set[str]) -> str:
 
 def _example(device: Device | None, name: str) -> int:
     if device is None:
-        return _MANY
+        return _MANY_UNITS
     middle = (device.low + device.high) // (2 * ONE)
-    return _FAR if name == "DISTANCE" else round(middle, -2) if middle > _EVEN else middle
+    return (
+        _FAR_CM
+        if name == "DISTANCE"
+        else round(middle, -2)
+        if middle > _ROUND_NUMBERS_FROM
+        else middle
+    )

@@ -42,12 +42,12 @@ class Checked(NamedTuple):
     diagnostics: list[Diagnostic]
 
 
-def check(source: Source, parsed: ast.Program, kit: Kit) -> Checked:
+def check(source: Source, parsed_program: ast.Program, kit: Kit) -> Checked:
     """Return the IR of a program for a robot with this kit, and all its diagnostics."""
-    checker = _Checker(source, kit, parsed)
-    body = checker.body(parsed.body)
+    checker = _Checker(source, kit, parsed_program)
+    body = checker.body(parsed_program.body)
     variables, procedures = tuple(checker.variables), tuple(checker.procedures)
-    meaning = ir.Program(parsed.start, variables, procedures, body, tuple(checker.tasks))
+    meaning = ir.Program(parsed_program.start, variables, procedures, body, tuple(checker.tasks))
     if (
         meaning.tasks
         and any(procedure.values for procedure in procedures)
@@ -76,14 +76,14 @@ class _Outside(NamedTuple):
 
 
 class _Checker(Scope):
-    def __init__(self, source: Source, kit: Kit, parsed: ast.Program) -> None:
-        super().__init__(source, kit, parsed)
+    def __init__(self, source: Source, kit: Kit, parsed_program: ast.Program) -> None:
+        super().__init__(source, kit, parsed_program)
         self.types = Types(self)
         self.variables: list[str] = []
         self.procedures: list[ir.Procedure] = []
         self.facts: list[_Procedure] = []
         self.tasks: list[ir.Task] = []
-        self.has_tasks = any(isinstance(item, ast.Task) for item in parsed.body)
+        self.has_tasks = any(isinstance(item, ast.Task) for item in parsed_program.body)
         self.beside_blocks = 0  # open at once in the other tasks, all of them together,
         self.beside_calls = 0  # and their calls
         self.inside: str | None = None  # the DEF whose body is being checked
@@ -431,7 +431,7 @@ class _Checker(Scope):
             self.report(code, node.name_span, name=node.name, other=other)
         if len(self.procedures) == DEFS:
             self.report(codes.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
-        outside = self.enter_scope()
+        outer_scope = self.enter_scope()
         self.beside_blocks = self.beside_calls = 0
         self.inside = node.name
         values = self.parameters(node) if node.parameters else []
@@ -441,7 +441,7 @@ class _Checker(Scope):
                 del self.names[self.variables[number]]
         self.inside = None
         self.facts.append(_Procedure(self.definitely_read_mask, self.deepest, self.calls))
-        self.restore_scope(outside)
+        self.restore_scope(outer_scope)
         if known_name is None:
             self.names[node.name] = Name("def", len(self.procedures))
         procedure = ir.Procedure(node.name, body, node.span, values=tuple(values))
@@ -473,16 +473,16 @@ class _Checker(Scope):
         return parameters
 
     def task(self, node: ast.Task, output: list[Statement]) -> None:
-        outside = self.enter_scope()
-        self.beside_blocks += outside.blocks
-        self.beside_calls += outside.calls
+        outer_scope = self.enter_scope()
+        self.beside_blocks += outer_scope.blocks
+        self.beside_calls += outer_scope.calls
         until = None
         if node.is_when:
             nothing = ir.Until((), self.types.nothing.terms)
             until = nothing if node.condition is None else self.until(node.condition, "WHEN")
         body = self.body(node.body)
         blocks, calls = self.deepest, self.calls
-        self.restore_scope(outside)
+        self.restore_scope(outer_scope)
         self.beside_blocks += blocks
         self.beside_calls += calls
         self.tasks.append(ir.Task(until, body, node.span))
@@ -497,7 +497,7 @@ class _Checker(Scope):
 
     def enter_scope(self) -> _Outside:
         """Begin a DEF or a task, in which nothing is surely read or open; return what was."""
-        outside = _Outside(
+        outer_scope = _Outside(
             self.definitely_read_mask,
             self.deepest,
             self.calls,
@@ -505,16 +505,16 @@ class _Checker(Scope):
             self.beside_calls,
         )
         self.definitely_read_mask = self.deepest = self.calls = 0
-        return outside
+        return outer_scope
 
-    def restore_scope(self, outside: _Outside) -> None:
+    def restore_scope(self, outer_scope: _Outside) -> None:
         (
             self.definitely_read_mask,
             self.deepest,
             self.calls,
             self.beside_blocks,
             self.beside_calls,
-        ) = outside
+        ) = outer_scope
 
 
 def _relocate(node: Any, span: Span, argument_of: Mapping[str, ast.Argument]) -> Any:

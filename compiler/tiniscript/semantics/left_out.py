@@ -25,15 +25,15 @@ class LeftOut(NamedTuple):
 
 
 def rewrite_without_break(
-    source: Source, parsed: ast.Program, break_node: ast.Break
+    source: Source, parsed_program: ast.Program, break_node: ast.Break
 ) -> LeftOut | None:
     """Return how an IF leaves out the rest without its BREAK, its last instruction in a branch.
 
     The IF is no part of another block but a DEF or a TASK, whose rest is what follows.
     """
     bodies = [
-        parsed.body,
-        *(item.body for item in parsed.body if isinstance(item, (ast.Def, ast.Task))),
+        parsed_program.body,
+        *(item.body for item in parsed_program.body if isinstance(item, (ast.Def, ast.Task))),
     ]
     for body in bodies:
         for k, statement in enumerate(body):

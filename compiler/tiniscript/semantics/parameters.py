@@ -23,13 +23,13 @@ class _Place(NamedTuple):
 class Kinds:
     """The kinds of the values of all DEFs of a program."""
 
-    def __init__(self, parsed: ast.Program, yes_no_sensors: frozenset[str]) -> None:
+    def __init__(self, parsed_program: ast.Program, yes_no_sensors: frozenset[str]) -> None:
         self._sensors = yes_no_sensors
         self._calls: dict[str, tuple[ast.Command, ast.Def | None]] = {}  # the first of each name
         self._set: dict[str, _Place] = {}  # what each variable gets first
-        defs = (each for each in parsed.body if isinstance(each, ast.Def))
+        defs = (each for each in parsed_program.body if isinstance(each, ast.Def))
         names = {each.name: [item.name for item in each.parameters] for each in defs}
-        for node, enclosing_def in _instructions(parsed.body, None):
+        for node, enclosing_def in _instructions(parsed_program.body, None):
             if isinstance(node, ast.Command):
                 if not names_one(node, names.get(node.word, ())):  # which is told of
                     self._calls.setdefault(node.word, (node, enclosing_def))

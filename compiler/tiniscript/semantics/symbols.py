@@ -38,7 +38,7 @@ class Operand(NamedTuple):
 
 
 class Scope:
-    def __init__(self, source: Source, kit: Kit, parsed: ast.Program) -> None:
+    def __init__(self, source: Source, kit: Kit, parsed_program: ast.Program) -> None:
         self.source = source
         self.kit = kit
         self.diagnostics: list[Diagnostic] = []
@@ -51,11 +51,12 @@ class Scope:
         for i, device in enumerate(kit.actuators):
             self.names[device.name] = Name("actuator", i)
         self._first = {
-            assignment.name: assignment for assignment in reversed(_assignments(parsed.body))
+            assignment.name: assignment
+            for assignment in reversed(_assignments(parsed_program.body))
         }
         self.set_somewhere = self._first.keys()
-        self.parsed = parsed
-        self.def_names = {item.name for item in parsed.body if isinstance(item, ast.Def)}
+        self.parsed = parsed_program
+        self.def_names = {item.name for item in parsed_program.body if isinstance(item, ast.Def)}
         self.wanted: dict[str, list[str]] = {}  # the names in a DEF that nothing gives a value
 
     def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:

@@ -98,8 +98,8 @@ class WrongCalls:
         """A DEF with values is compiled once for each task that reaches it."""
         procedure = program.procedures[excess.procedure]
         span = Span(procedure.span.start, procedure.span.start + len("DEF"))
-        begin = [program.body[0].span, *(task.span for task in program.tasks)]
-        lines = [self.scope.source.position(begin[k].start)[0] for k in excess.tasks]
+        block_starts = [program.body[0].span, *(task.span for task in program.tasks)]
+        lines = [self.scope.source.position(block_starts[k].start)[0] for k in excess.tasks]
         values = {
             "count": str(len(lines)),
             excess.resource: str(excess.total),
@@ -275,14 +275,14 @@ class WrongCalls:
         named_matches = [_NAMED_VALUE.fullmatch(text) for text in texts]
         value_of = {it[1].upper(): it[2] for it in named_matches if it}
         rest = [text for text, it in zip(texts, named_matches, strict=True) if it is None]
-        free = [name for name in names if name not in value_of]
+        free_names = [name for name in names if name not in value_of]
         if (
             not value_of
             or not value_of.keys() <= {*names} - {*self.scope.names}
-            or len(free) != len(rest)
+            or len(free_names) != len(rest)
         ):
             return False
-        value_of |= dict(zip(free, rest, strict=True))
+        value_of |= dict(zip(free_names, rest, strict=True))
         fix = f"{node.word}({', '.join(value_of[name] for name in names)})"
         self.scope.report(codes.NAMED_ARGUMENT, node.span, None, word=node.word, fix=fix)
         return True

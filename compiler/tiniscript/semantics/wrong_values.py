@@ -55,10 +55,12 @@ class WrongValues:
                 scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
             return
         names = scope.names.items() if len(scope.diagnostics) < MOST_SUGGESTIONS else ()
-        known = [each for each, meaning in names if meaning.kind in ("sensor", "variable")]
+        known_names = [each for each, meaning in names if meaning.kind in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
-        known += ["FOREVER"] if is_forever else []
-        suggestion = "".join(lexicon_meaning(name, "number")) or scope.nearest_word(name, known)
+        known_names += ["FOREVER"] if is_forever else []
+        suggestion = "".join(lexicon_meaning(name, "number")) or scope.nearest_word(
+            name, known_names
+        )
         suggestion = suggestion or (
             "".join(lexicon_meaning(name, "power")) if before.rstrip().endswith("=") else ""
         )
@@ -69,8 +71,12 @@ class WrongValues:
         stem = (
             "".join(lexicon_meaning(base, "stem")) or base
         ) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
-        several = [each for each in known if each.startswith(stem)]
-        pair_hints = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
+        similar_names = [each for each in known_names if each.startswith(stem)]
+        pair_hints = (
+            {}
+            if len(similar_names) != 2
+            else {"first": similar_names[0], "second": similar_names[1]}
+        )
         sensors = [each for each, meaning in names if meaning.kind == "sensor"]
         if name == target or name in scope.set_somewhere:
             if any(diagnostic.code is codes.USED_BEFORE_SET and diagnostic.values["name"] == name

@@ -59,14 +59,14 @@ class Piece:
         return bool(self.tokens) and not self.is_setup
 
 
-def pieces_of(scanned: Scan) -> list[Piece]:
+def pieces_of(scan: Scan) -> list[Piece]:
     """Return the pieces of a text in their order. Empty instructions are none."""
     pieces: list[Piece] = []
     is_open = False  # whether the last piece is an instruction that has not ended
     brackets = 0  # open in it
     line = 0
     line_is_empty, after_blank = True, False
-    for token in sorted((*scanned.tokens[:-1], *scanned.comments), key=lambda item: item.start):
+    for token in sorted((*scan.tokens[:-1], *scan.comments), key=lambda item: item.start):
         kind = token.kind
         if kind is NEWLINE:
             after_blank = after_blank or (line_is_empty and not is_open)

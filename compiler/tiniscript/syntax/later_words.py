@@ -23,8 +23,8 @@ def kit_for_text(text: str, kit: Kit) -> Kit:
 
 def kit_for_tokens(tokens: Sequence[Token], kit: Kit) -> Kit:
     """Return the kit as a program with these tokens has it."""
-    later = {reading.name for reading in kit.readings}.difference(kit.names)
-    given_words = later.intersection(own_words(tokens))
+    later_names = {reading.name for reading in kit.readings}.difference(kit.names)
+    given_words = later_names.intersection(own_words(tokens))
     return kit._replace(given_words=frozenset(given_words)) if given_words else kit
 
 

@@ -61,9 +61,9 @@ def parse(source: Source) -> Parsed:
 
 
 class Parser:
-    def __init__(self, source: Source, scanned: Scan) -> None:
-        self.cursor = Cursor(source, scanned.tokens)
-        self.reporter = Reporter(scanned.diagnostics)
+    def __init__(self, source: Source, scan: Scan) -> None:
+        self.cursor = Cursor(source, scan.tokens)
+        self.reporter = Reporter(scan.diagnostics)
         self.blocks = Blocks(self.reporter)
         self.expressions = ExpressionParser(self.cursor, self.reporter)
         self.variables: set[str] = set()  # those that have been set so far
@@ -77,7 +77,9 @@ class Parser:
         cursor, diagnostics = self.cursor, self.reporter.diagnostics
         tokens = cursor.tokens
         start = self.setup()
-        while (kind := tokens[cursor.i].kind) is not END and len(diagnostics) <= codes.ENOUGH:
+        while (kind := tokens[cursor.i].kind) is not END and len(
+            diagnostics
+        ) <= codes.MOST_DIAGNOSTICS:
             if kind is NEWLINE or kind == ";":
                 cursor.i += 1
                 continue
@@ -318,7 +320,7 @@ class Parser:
                 codes.NOT_OPEN, word.span, found=word.text, right=begin_word, **enclosing
             )
             return
-        inside = max(k for k, block in enumerate(blocks.open) if block.word == begin_word)
+        inner_index = max(k for k, block in enumerate(blocks.open) if block.word == begin_word)
         while (block := blocks.open[-1]).word != begin_word:
             line = str(self.cursor.source.position(block.header.start)[0])
             right = BLOCK_ENDS[block.word]
@@ -330,7 +332,7 @@ class Parser:
             )
             if last and not isinstance(last, Break):  # nothing comes after one
                 values["several"] = self.cursor.source[last.span]
-            self.early.append((len(self.reporter.diagnostics), inside))
+            self.early.append((len(self.reporter.diagnostics), inner_index))
             self.reporter.report(codes.WRONG_END, word.span, **values)
             blocks.end(word.span)
         blocks.end(word.span)

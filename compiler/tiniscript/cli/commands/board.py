@@ -41,8 +41,12 @@ def _compare(robot: Robot, language: str) -> None:
     if nearest.is_same:
         say_aside("board_same_kit", language, kit=nearest.name)
         return
-    lists = {"shared": nearest.shared, "there": nearest.only_there, "here": nearest.only_here}
-    values = {key: ", ".join(names) or "–" for key, names in lists.items()}
+    names_by_place = {
+        "shared": nearest.shared,
+        "there": nearest.only_there,
+        "here": nearest.only_here,
+    }
+    values = {key: ", ".join(names) or "–" for key, names in names_by_place.items()}
     say_aside("board_nearest_kit", language, kit=nearest.name, **values)
 
 

@@ -30,20 +30,21 @@ def run(options: Namespace, language: str) -> int:
     inputs.robot_for(program_input, options, language)
     robot = _robot(options, language)
     if options.fix or options.diff:
-        compiled, is_right = _repair(options, program_input, robot, language)
+        compilation, is_right = _repair(options, program_input, robot, language)
     else:
-        compiled = compiling.compile_input(program_input, robot, is_strict=False)
-        compiled = compiling.for_level(compiled, robot, options.text_level)
-        is_right = compiled.is_right
+        compilation = compiling.compile_input(program_input, robot, is_strict=False)
+        compilation = compiling.for_level(compilation, robot, options.text_level)
+        is_right = compilation.is_right
     if options.json:
         messages = [
-            message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics
+            message(diagnostic, compilation.source, language)
+            for diagnostic in compilation.diagnostics
         ]
         print(json.dumps(as_json(messages), indent=2))
     else:
-        outputs.print_diagnostics(compiled, language)
+        outputs.print_diagnostics(compilation, language)
         if (
-            compiled.is_right
+            compilation.is_right
             and not options.diff
             and (program_input.path is not None or not options.fix)
         ):
@@ -61,27 +62,27 @@ def _repair(
     name = inputs.printable_name(program_input.name)
     is_talkative = not options.json
     if options.diff:
-        if is_talkative and result.repairs:
+        if is_talkative and result.repair_count:
             print_difference(program_input.data, result.data, program_input.name)
-        key = "would_repair" if result.repairs else "nothing_repaired"
-        if is_talkative and (result.repairs or not result.compiled.is_right):
-            key += "_one" if result.repairs == 1 else ""
-            say_aside(key, language, file=name, n=result.repairs)
-        return result.compiled, result.compiled.is_right and not result.repairs
+        key = "would_repair" if result.repair_count else "nothing_repaired"
+        if is_talkative and (result.repair_count or not result.compilation.is_right):
+            key += "_one" if result.repair_count == 1 else ""
+            say_aside(key, language, file=name, n=result.repair_count)
+        return result.compilation, result.compilation.is_right and not result.repair_count
     if program_input.path is None:
         if is_talkative:
             outputs.write_output(None, result.data)
-    elif result.repairs:
+    elif result.repair_count:
         outputs.write(program_input.path, result.data, "unwritable_source")
-    if is_talkative and result.repairs and program_input.path is not None:
+    if is_talkative and result.repair_count and program_input.path is not None:
         print_difference(program_input.data, result.data, program_input.name)
-        key = "repaired_one" if result.repairs == 1 else "repaired"
-        say_aside(key, language, file=name, n=result.repairs)
-    if is_talkative and not result.compiled.is_right:
-        key = "not_repaired" if result.repairs else "nothing_repaired"
+        key = "repaired_one" if result.repair_count == 1 else "repaired"
+        say_aside(key, language, file=name, n=result.repair_count)
+    if is_talkative and not result.compilation.is_right:
+        key = "not_repaired" if result.repair_count else "nothing_repaired"
         print(text(key, language).format(file=name) + "\n", file=sys.stderr)
-    compiled = compiling.for_level(result.compiled, robot, options.text_level)
-    return compiled, compiled.is_right
+    compilation = compiling.for_level(result.compilation, robot, options.text_level)
+    return compilation, compilation.is_right
 
 
 def _robot(options: Namespace, language: str) -> Robot:

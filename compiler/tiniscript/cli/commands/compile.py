@@ -29,25 +29,25 @@ def run(options: Namespace, language: str) -> int:
     if options.map == "-":
         raise CommandError(2, "over_map", file="-")
     robot = inputs.robot_for(program_input, options, language)
-    compiled = compiling.compile_input(program_input, robot, is_strict=True)
-    outputs.print_diagnostics(compiled, language)
-    if not compiled.is_right:
+    compilation = compiling.compile_input(program_input, robot, is_strict=True)
+    outputs.print_diagnostics(compilation, language)
+    if not compilation.is_right:
         return 1
-    places = source_map.map_of_compiled(compiled)
-    outputs.write_output(target, compiled.image)
+    places = source_map.map_of_compiled(compilation)
+    outputs.write_output(target, compilation.image)
     if options.map is not None:
         data = (source_map.as_json(places) + "\n").encode(errors="backslashreplace")
         outputs.write(Path(options.map), data, "unwritable_at --map")
-    source_map.remember(compiled.image, places)
-    will_fault = any(diagnostic.code is WILL_FAULT for diagnostic in compiled.diagnostics)
+    source_map.remember(compilation.image, places)
+    will_fault = any(diagnostic.code is WILL_FAULT for diagnostic in compilation.diagnostics)
     sentence = text("compiled", language).format(
         source=inputs.printable_name(program_input.name),
         target=inputs.printable_name(target or "-"),
-        image=len(compiled.image),
-        code=len(compiled.code),
-        stack=compiled.verdict.stack_values if compiled.verdict else 0,
+        image=len(compilation.image),
+        code=len(compilation.code),
+        stack=compilation.verdict.stack_values if compilation.verdict else 0,
         stacks=STACK_VALUES,
-        runs="" if will_fault else _run_time_text(compiled.lowered, robot.kit, language),
+        runs="" if will_fault else _run_time_text(compilation.lowered, robot.kit, language),
     )
     print(sentence, file=sys.stderr if target is None else sys.stdout)
     return 0
@@ -58,21 +58,21 @@ def _line(options: Namespace, program_input: inputs.Input, language: str) -> int
     if options.map is not None:
         raise CommandError(2, "text_has_no_map")
     robot = inputs.robot_for(program_input, options, language)
-    compiled = fit_to_robot(compiling.compile_input(program_input, robot, is_strict=True), robot)
-    compiled = compiling.for_level(compiled, robot, options.text_level)
-    outputs.print_diagnostics(compiled, language)
-    if not compiled.is_right:
+    compilation = fit_to_robot(compiling.compile_input(program_input, robot, is_strict=True), robot)
+    compilation = compiling.for_level(compilation, robot, options.text_level)
+    outputs.print_diagnostics(compilation, language)
+    if not compilation.is_right:
         return 1
     from tiniscript.codegen.text.line import line_of, plain_code
 
-    assert compiled.program is not None
-    line = (line_of(compiled.source) + "\n").encode()
+    assert compilation.program is not None
+    line = (line_of(compilation.source) + "\n").encode()
     is_printed = not outputs.write_output(options.output, line)
     sentence = text("compiled_text", language).format(
         source=inputs.printable_name(program_input.name),
         target="-" if is_printed else inputs.printable_name(options.output),
         bytes=len(line),
-        code=plain_code(compiled.program).length,
+        code=plain_code(compilation.program).length,
     )
     print(sentence, file=sys.stderr if is_printed else sys.stdout)
     return 0

@@ -134,9 +134,15 @@ def _values_of_kind(kind: Kind, language: str) -> list[tuple[str, str]]:
         return [(verb, _first_clause(summary_of(verb, "summary", language))) for verb in VERBS]
     if kind.name == "port":
         return [(item.port, item.description) for item in ports.list_ports()]
-    named = {"robot": robots.names(), "world": worlds.names(), "chip": BOARDS, "code": CODES,
-             "action": LESSON_ACTIONS, "hurry": ("max",)}  # fmt: skip
-    return [(word, "") for word in named.get(kind.name, kind.choices)]
+    names_of_kind = {
+        "robot": robots.names(),
+        "world": worlds.names(),
+        "chip": BOARDS,
+        "code": CODES,
+        "action": LESSON_ACTIONS,
+        "hurry": ("max",),
+    }
+    return [(word, "") for word in names_of_kind.get(kind.name, kind.choices)]
 
 
 def _first_clause(summary: str) -> str:

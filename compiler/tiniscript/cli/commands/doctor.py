@@ -32,7 +32,7 @@ from tiniscript.cli.texts import Sentence, text
 from tiniscript.cli.texts.causes import as_data, sentences_of
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis
-from tiniscript.doctor.examination import PINGS, Expectations, RobotAnswers
+from tiniscript.doctor.examination import PING_COUNT, Expectations, RobotAnswers
 from tiniscript.doctor.findings import OPEN
 from tiniscript.library import opening
 from tiniscript.link.authority import ownership_of
@@ -48,7 +48,7 @@ FORM_STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "p
 
 
 def run(options: Namespace, language: str) -> int:
-    count = whole_number("--count", options.count, PINGS, 1, 10_000, language)
+    count = whole_number("--count", options.count, PING_COUNT, 1, 10_000, language)
     expected = expected_of(options, language, count)
     if select_port(options):
         if options.report is not None or options.watch is not None:
@@ -157,12 +157,12 @@ def _form(robot_facts: Mapping[str, str], language: str) -> list[str]:
     rows.append(text("bring_up_robot", language).format(**facts) if facts
                 else text("bring_up_no_robot", language))  # fmt: skip
     for number, step in enumerate(FORM_STEPS, 1):
-        seen = BLANK_FIELD
+        answers_text = BLANK_FIELD
         if step == "answers" and "good" in facts:
-            seen = text("bring_up_answers", language).format(**facts)
-        rows.append(f"{number}. {text(f'step_{step}', language)}: {seen}")
-        does, sees = (text(f"{kind}_{step}", language) for kind in ("do", "see"))
-        rows.append(text("bring_up_step", language).format(do=does, see=sees))
+            answers_text = text("bring_up_answers", language).format(**facts)
+        rows.append(f"{number}. {text(f'step_{step}', language)}: {answers_text}")
+        instruction, expectation = (text(f"{kind}_{step}", language) for kind in ("do", "see"))
+        rows.append(text("bring_up_step", language).format(do=instruction, see=expectation))
     return rows
 
 

@@ -18,11 +18,11 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(
             2, "needs_text", file=inputs.printable_name(program_input.name), verb="fmt"
         )
-    parsed = compiling.parse_input(program_input, inputs.robot(options, language).kit)
-    if not parsed.is_right:
-        outputs.print_diagnostics(parsed, language)
+    parsed_program = compiling.parse_input(program_input, inputs.robot(options, language).kit)
+    if not parsed_program.is_right:
+        outputs.print_diagnostics(parsed_program, language)
         return 1
-    laid_out = format_source(parsed.source)
+    laid_out = format_source(parsed_program.source)
     if len(laid_out.encode()) > LARGEST_SOURCE_BYTES:
         raise CommandError(2, "fmt_too_large", file=inputs.printable_name(program_input.name))
     name = inputs.printable_name(program_input.name)

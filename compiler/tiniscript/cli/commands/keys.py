@@ -55,19 +55,19 @@ def _export(robot_keys: list[RobotKey], name: str, language: str) -> None:
     say("keys_exported", language, n=len(exported_keys), file=printable_name(name))
 
 
-def _import(own: KeyFile, name: str, language: str) -> None:
+def _import(key_file: KeyFile, name: str, language: str) -> None:
     try:
         imported_keys = keys.decode_keys(files.contents(Path(name), keys.FILE_BYTES))
     except (OSError, ValueError, BadKeys):
         raise CommandError(2, "bad_keys", file=printable_name(name)) from None
     try:
-        changed_count = own.add(imported_keys)
+        changed_count = key_file.add(imported_keys)
     except TooManyKeys:
         raise CommandError(
             2, "too_many_keys", most=str(keys.MOST_KEYS), file=printable_name(name)
         ) from None
     except BadKeys as why:
-        raise _key_file_error(own, "own_keys_full", why) from None
+        raise _key_file_error(key_file, "own_keys_full", why) from None
     say(
         "keys_imported",
         language,

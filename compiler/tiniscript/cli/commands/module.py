@@ -192,9 +192,9 @@ class _SetUp:
             print(f"{description}: " + self._text("module_plan", commands=commands))
 
     def _print_outcome(self, outcome: Outcome) -> None:
-        step, how, text = outcome
+        step, outcome_name, text = outcome
         name = self._text(f"module_what_{step.what}", value=step.value)
-        if step.what == BAUD and how == DONE:
-            how = "done_baud" if text == step.value else "done_later"
+        if step.what == BAUD and outcome_name == DONE:
+            outcome_name = "done_baud" if text == step.value else "done_later"
         text = printable_name(text) or self._text("module_no_word")
-        _print_finding(sure(f"module_{how}", name=name, said=text), self.language)
+        _print_finding(sure(f"module_{outcome_name}", name=name, said=text), self.language)

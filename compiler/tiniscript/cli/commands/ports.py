@@ -26,7 +26,7 @@ from tiniscript.link.requests import OK
 from tiniscript.link.sharing.protocol import LOOKING_VERB
 from tiniscript.robots.profile import Robot
 
-OPEN_S = 12.0
+OPEN_LIMIT_S = 12.0
 
 
 def run(options: Namespace, language: str) -> int:
@@ -59,7 +59,9 @@ def run(options: Namespace, language: str) -> int:
 def _ask(port: str, baud: int | None, robot: Robot, language: str) -> Row:
     """Return the robot that answers on a port, or why none does."""
     try:
-        with closing(open_client(port, robot, LOOKING_VERB, baud, language, OPEN_S)) as client:
+        with closing(
+            open_client(port, robot, LOOKING_VERB, baud, language, OPEN_LIMIT_S)
+        ) as client:
             reply = client.hello()
             device_info, has_bytes = client.line.robot, client.line.heard
             foreign_board = stranger(client.line)

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from tiniscript.virtual.announcement import Announcement
 
 MOST_MEMORY_BYTES = 1_000_000  # of a file that may be a robot's memory: that of an ESP32 has 16,640
-SAVE_S = 1.0  # between two looks at what the robot keeps
+SAVE_INTERVAL_S = 1.0  # between two looks at what the robot keeps
 QUIT = "qQ\x04"
 
 
@@ -195,7 +195,9 @@ class _Stage:
 
     def _save(self, is_due: bool) -> None:
         """Write the robot's EEPROM to its file, if it has changed."""
-        if self.options.memory is None or not (is_due or monotonic() > self._look_s + SAVE_S):
+        if self.options.memory is None or not (
+            is_due or monotonic() > self._look_s + SAVE_INTERVAL_S
+        ):
             return
         self._look_s = monotonic()
         memory = self.simulator.robot.memory
@@ -234,10 +236,10 @@ def _pushes_ms(option: str, typed: str | None) -> list[int]:
     if typed is None:
         return []
     values = [decimal(part.strip()) for part in typed.split(",")]
-    known = [value for value in values if value is not None and value >= 0]
-    if len(known) != len(values):
+    pushes_ms = [value for value in values if value is not None and value >= 0]
+    if len(pushes_ms) != len(values):
         raise CommandError(2, "bad_button", option=option, found=printable_name(typed) or "''")
-    return known
+    return pushes_ms
 
 
 def _memory(name: str | None) -> bytes | None:

@@ -39,12 +39,14 @@ def run(options: Namespace, language: str) -> int:
     max_steps = whole_number("--max-steps", options.max_steps, MAX_STEPS, 0, 10**15, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     robot = inputs.robot_for(program_input, options, language)
-    lists = sensor_lists(options.sensor, robot, language)
+    reading_lists = sensor_lists(options.sensor, robot, language)
     ready_program = images.ready_program(program_input, robot, language)
     if ready_program is None:
         return 1
     machine_of = _cpp_machine(ready_program.image, robot) if options.machine == "cpp" else None
-    begins = iter_actions(ready_program.image, robot, lists, max_ms, max_steps, seed, machine_of)
+    begins = iter_actions(
+        ready_program.image, robot, reading_lists, max_ms, max_steps, seed, machine_of
+    )
     sensors_read: set[int] = set()
     events = _recording_reads(begins, sensors_read)
     if options.show and sys.stderr.isatty():
@@ -54,7 +56,7 @@ def run(options: Namespace, language: str) -> int:
     else:
         ending = _print(events)
     sys.stdout.flush()
-    for sensor in sorted(sensors_read.difference(lists)):
+    for sensor in sorted(sensors_read.difference(reading_lists)):
         device = robot.kit.readings[sensor]
         values = {"sensor": device.name, "zero": device.text(0), "readings": _readings(device)}
         say_aside("read_nothing", language, **values)

@@ -39,16 +39,16 @@ def _sketch(options: Namespace, program_input: inputs.Input, robot: Robot, langu
     if robot.board.chip not in BOARD_TITLES:
         boards_text = ", ".join(BOARD_TITLES)
         raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=boards_text)
-    compiled = compiling.compile_input(program_input, robot, is_strict=False)
-    outputs.print_diagnostics(compiled, language)
-    if not compiled.is_right:
+    compilation = compiling.compile_input(program_input, robot, is_strict=False)
+    outputs.print_diagnostics(compilation, language)
+    if not compilation.is_right:
         return 1
-    assert compiled.program is not None
-    if missing := missing_feature(compiled.program, robot.kit):
+    assert compilation.program is not None
+    if missing := missing_feature(compilation.program, robot.kit):
         raise CommandError(
             2, f"sketch_no_{missing}", file=inputs.printable_name(program_input.name)
         )
-    sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
+    sketch = sketch_of(compilation.source, compilation.program, robot, language).encode()
     if outputs.write_output(options.output, sketch):
         name = inputs.printable_name(robot.labels[language]["robot"])
         say("sketch", language, file=inputs.printable_name(options.output), robot=name)

@@ -100,10 +100,15 @@ class Classroom:
 
 def list_robots(room: Classroom) -> int:
     result = room.present()
-    own = room.targets(result)
-    code = run_together(own, inputs.robot(own, room.language), room.language, describe_in_a_line)
+    target_options = room.targets(result)
+    code = run_together(
+        target_options,
+        inputs.robot(target_options, room.language),
+        room.language,
+        describe_in_a_line,
+    )
     for item in result:
-        if not item.is_here and not own.json:
+        if not item.is_here and not target_options.json:
             say("class_gone", room.language, robot=printable_name(item.name), id=item.id)
     return code
 
@@ -113,11 +118,11 @@ def upload(room: Classroom) -> int:
     target_options = room.targets(room.present(), UPLOAD_VERB)
     program_input = inputs.program(target_options)
     robot = inputs.robot_for(program_input, target_options, room.language)
-    ready = images.ready_program(program_input, robot, room.language, is_strict=True)
-    if ready is None:
+    ready_program = images.ready_program(program_input, robot, room.language, is_strict=True)
+    if ready_program is None:
         return 1
     return upload_to_many(
-        target_options, robot, room.language, ready, printable_name(program_input.name)
+        target_options, robot, room.language, ready_program, printable_name(program_input.name)
     )
 
 

@@ -47,7 +47,7 @@ T = TypeVar("T")
 
 # verbs that stay on a port, and share it
 SHARED_VERBS = ("doctor", "live", "monitor", "monitor --hold", "start", "upload")
-STOP_S = 1.5  # timeout for a stop when the command ends and may have no reader
+STOP_LIMIT_S = 1.5  # timeout for a stop when the command ends and may have no reader
 OWN_VIRTUAL_ROBOT = ""  # no port: this command starts its own virtual robot
 
 
@@ -118,7 +118,7 @@ class Connection(Client):
             if kind is None or issubclass(kind, (CommandError, OSError)):
                 self._hold_for_others()
         finally:
-            self.close(STOP_S)
+            self.close(STOP_LIMIT_S)
             self._end_simulator()
 
     def _hold_for_others(self) -> None:
@@ -144,7 +144,7 @@ class Connection(Client):
         if self._is_stopped_unseen or not self.drives or self.drives_another:
             return False
         self._is_stopped_unseen = True
-        is_confirmed = self.stop(STOP_S)
+        is_confirmed = self.stop(STOP_LIMIT_S)
         key = "output_stopped" if is_confirmed else "not_confirmed"
         with suppress(OSError):
             say_aside(key, self.language, port=printable_name(self.port))
@@ -315,8 +315,8 @@ class Connection(Client):
 
     def error_for_loss(self, loss: ConnectionLost) -> CommandError:
         """Return the sentence for a connection that has ended."""
-        lost = self.robot_error_for_loss(loss)
-        return CommandError(3, lost.key, **lost.values)
+        loss_error = self.robot_error_for_loss(loss)
+        return CommandError(3, loss_error.key, **loss_error.values)
 
 
 def name_of(info: DeviceInfo, language: str) -> str:

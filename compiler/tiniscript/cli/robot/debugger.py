@@ -110,8 +110,8 @@ class Debugger:
     def look(self) -> None:
         """Do what the first key says that was pressed at this halt; while the program runs, none
         does anything."""
-        pressed = letters_of(self.keys.read_pressed()) if self.has_keys else ""
-        key = next((key for key in pressed if key in STEP + GO), "")
+        letters = letters_of(self.keys.read_pressed()) if self.has_keys else ""
+        key = next((key for key in letters if key in STEP + GO), "")
         if key and self.is_halted:
             self._resume(RESUME_STEP if key in STEP else RESUME_GO)
 
@@ -147,19 +147,19 @@ class Debugger:
         names, values = self.map.variables, list[int]()
         while len(values) < len(names):
             reply = self.connection.request(partial(Requester.read_variables, first=len(values)))
-            piece = [value for (value,) in iter_unpack("<i", reply.values.values)]
-            if not piece:
+            values_part = [value for (value,) in iter_unpack("<i", reply.values.values)]
+            if not values_part:
                 break
-            values += piece
+            values += values_part
         yes_no = self.map.yes_no or [False] * len(names)  # of a map of an earlier version
         return list(zip(names, values, yes_no, strict=False))
 
-    def _tasks(self, halted: int) -> list[tuple[int, int]]:
+    def _tasks(self, halted_task: int) -> list[tuple[int, int]]:
         """Return state and line of each task beside the one that is halted, and has not ended."""
         reply = self.connection.request(lambda session: session.read_tasks())
         result = []
         for number, (state, at, _) in enumerate(iter_unpack("<BHI", reply.values.tasks)):
             place = self.map.at(at)
-            if number != halted and state and place is not None:
+            if number != halted_task and state and place is not None:
                 result.append((state, place.line))
         return result

@@ -17,7 +17,7 @@ from tiniscript.cli.terminal.asking import can_ask, confirm
 from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnose
-from tiniscript.doctor.examination import PINGS, Expectations, RobotAnswers, examine
+from tiniscript.doctor.examination import PING_COUNT, Expectations, RobotAnswers, examine
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
@@ -62,7 +62,7 @@ def diagnosis_of(
         status_line.end()
 
 
-def expected_of(options: Namespace, language: str, pings: int = PINGS) -> Expectations:
+def expected_of(options: Namespace, language: str, pings: int = PING_COUNT) -> Expectations:
     """Return the robot that the options name, and what this computer knows of all."""
     robot = inputs.robot(options, language)
     kit = None if options.robot is None else robot.kit.fingerprint

@@ -129,9 +129,9 @@ class EventPrinter:
         sentence = fault_sentence(number, at, program, self.places, self.language)
         places = self.places or source_map.recall(program)
         place = places.at(at) if places is not None else None
-        more = {} if place is None else {"line": place.line}
+        place_fields = {} if place is None else {"line": place.line}
         self.say(since_ms, "FAULT", fault, sentence, is_bad=True, fault=fault, at=at,
-                 program=f"{program:08x}", **more)  # fmt: skip
+                 program=f"{program:08x}", **place_fields)  # fmt: skip
 
     def say(
         self, since_ms: int, name: str, what: str, said: str = "", cell: str = "", /,

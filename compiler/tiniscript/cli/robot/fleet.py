@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from tiniscript.cli.terminal.fleet_table import FleetTable
 
 
-LOOK_S = 0.1
-STRANGER_S = 4.0  # timeout for a port that the user has not named and that never had a robot
+LOOK_INTERVAL_S = 0.1
+STRANGER_LIMIT_S = 4.0  # timeout for a port that the user has not named and that never had a robot
 # failures that may only mean that a port that the user has not named has no robot
 ABSENT_REASONS = (
     "port_missing", "port_missing_but", "port_unreachable", "port_not_found", "port_not_found_but",
@@ -104,13 +104,13 @@ class Fleet:
         end_s: float | None = None
         while untold and (end_s is None or monotonic() < end_s):
             self._attend()
-            if monotonic() - begin_s > STRANGER_S and all(map(_is_stranger, untold)):
+            if monotonic() - begin_s > STRANGER_LIMIT_S and all(map(_is_stranger, untold)):
                 self._give_up(untold)
             try:
                 if table is not None:
                     table.draw()
                 else:
-                    self._news.wait(LOOK_S)
+                    self._news.wait(LOOK_INTERVAL_S)
                     self._news.clear()
                 self._refuse_unread()
                 self._print_results(untold, table)
@@ -155,7 +155,7 @@ class Fleet:
         end_s = monotonic() + limit_s
         while monotonic() < end_s and any(member.result is None for member in self.members):
             self._attend()
-            self._news.wait(LOOK_S)
+            self._news.wait(LOOK_INTERVAL_S)
             self._news.clear()
 
     def interrupt(self) -> None:
@@ -200,8 +200,10 @@ class Fleet:
         self._news.set()
 
     def _connect(self, member: Member, work: Work) -> None:
-        own = Namespace(**{**vars(self.options), "port": member.target.port})
-        with Connection(own, self.robot, self.language, is_one_of_many=True) as connection:
+        member_options = Namespace(**{**vars(self.options), "port": member.target.port})
+        with Connection(
+            member_options, self.robot, self.language, is_one_of_many=True
+        ) as connection:
             member.connection = connection
             if self.is_interrupted:
                 connection.interrupt()

@@ -107,12 +107,12 @@ MOST_CHECKS_AT_ONCE = 16  # servers that are checked at the same time
 
 def ports_in_use(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
-    held = [registration.port for registration in running_servers()]
-    result = [] if is_virtual else held[:]
+    ports_in_use = [registration.port for registration in running_servers()]
+    result = [] if is_virtual else ports_in_use[:]
     for robot in directory.running_robots():
         names = [robot.address, *([robot.terminal] if robot.terminal else [])]
-        through = [port for port in names if canonical_port(port) in held]
-        result.append(through[0] if through else robot.address)  # one robot, one port
+        shared_ports = [port for port in names if canonical_port(port) in ports_in_use]
+        result.append(shared_ports[0] if shared_ports else robot.address)  # one robot, one port
     return _unique_ports(result)
 
 

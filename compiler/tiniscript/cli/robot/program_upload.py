@@ -155,9 +155,9 @@ def follow_line(
 
     Raises CommandError.
     """
-    compiled = compile_text(f"SI|{line}", connection.profile.kit)
-    kit = kit_of(compiled, connection.profile)
-    run = connection.request(lambda session: session.live(compiled.code, kit)).values.run
+    compilation = compile_text(f"SI|{line}", connection.profile.kit)
+    kit = kit_of(compilation, connection.profile)
+    run = connection.request(lambda session: session.live(compilation.code, kit)).values.run
     return RunMonitor(connection, printer, hold).follow(run)
 
 

@@ -25,7 +25,7 @@ from tiniscript.virtual.robot import Settings
 # options of `tsc run` that are not for the virtual robot, and those that a recorded run has in it
 UNRECORDED_OPTIONS = ("max_steps", "machine", "show", "pace")
 UNPLAYED_OPTIONS = ("sensor", "seed", "max_time", "robot", "record", *UNRECORDED_OPTIONS)
-MAX_MS = 60_000
+LONGEST_RUN_MS = 60_000
 
 
 def refuse(options: Namespace, names: tuple[str, ...], key: str) -> None:
@@ -54,7 +54,7 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
     source = source_text(program_input)
     robot = inputs.robot_for(program_input, options, language)
     require_known_robot(robot)
-    max_ms = thousandths("--max-time", options.max_time, MAX_MS, 0, MOST_MS, language)
+    max_ms = thousandths("--max-time", options.max_time, LONGEST_RUN_MS, 0, MOST_MS, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     message = sensor_lists(options.sensor, robot, language)
     world, form = recordings.stored_form(world_of(options, language))

@@ -21,8 +21,8 @@ from tiniscript.link.payloads import WifiReply
 from tiniscript.link.port_names import is_at_broker
 from tiniscript.link.wifi import STATES, BrokerSettings, Tls, address
 
-READY_S = 20  # until the robot is in the network, or at the broker
-LOOK_S = 0.5
+READY_LIMIT_S = 20  # until the robot is in the network, or at the broker
+LOOK_INTERVAL_S = 0.5
 UNSTARTED_STATES = ("OFF", "RESTS")  # states of the robot's WiFi
 _PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
 
@@ -101,9 +101,9 @@ def use(connection: Connection, broker: BrokerSettings | None, options: Namespac
 
 def await_state(ask: Callable[[], WifiReply], is_over: Callable[[WifiReply], bool]) -> WifiReply:
     """Return what the robot tells when something has come of it, or after READY_S."""
-    end_s = time.monotonic() + READY_S
+    end_s = time.monotonic() + READY_LIMIT_S
     while not is_over(wifi_reply := ask()) and time.monotonic() < end_s:
-        time.sleep(LOOK_S)
+        time.sleep(LOOK_INTERVAL_S)
     return wifi_reply
 
 

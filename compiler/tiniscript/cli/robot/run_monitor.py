@@ -22,7 +22,7 @@ from tiniscript.link.outcomes import LOOK_S, Event
 from tiniscript.link.payloads import ReceiptReply, StatusReply
 from tiniscript.link.requests import Reply
 
-ASK_S = 1.0  # between two status requests about saving, while the program runs
+STATUS_INTERVAL_S = 1.0  # between two status requests about saving, while the program runs
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
 
 
@@ -127,7 +127,9 @@ class Saving:
             self._learn(self._asked.outcome, is_running=True)
             self._asked = None
         elif (
-            self._asked is None and not self._robots.is_over and monotonic() - self._asked_s > ASK_S
+            self._asked is None
+            and not self._robots.is_over
+            and monotonic() - self._asked_s > STATUS_INTERVAL_S
         ):
             self._asked_s = monotonic()
             self._asked = self.connection.begin_request(Requester.status)

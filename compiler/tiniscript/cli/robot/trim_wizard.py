@@ -29,7 +29,7 @@ FIRST_STEP = 16  # percent of balance; halved each time that the drift changes s
 AGAIN = 4
 # failures after a stop by another command
 STOPPED_KEYS = ("stopped_elsewhere", "stopped_midway", "plain")
-TRIES = 4
+MOST_TRIES = 4
 
 
 def guide(connection: Connection, before: Trim) -> Trim:
@@ -54,7 +54,7 @@ def _is_there(failure: CommandError) -> bool:
 
 def _give_back(connection: Connection, before: Trim) -> None:
     """Restore the robot's former trim, with retries: a stop may still be in progress."""
-    for _ in range(TRIES - 1):
+    for _ in range(MOST_TRIES - 1):
         try:
             connection.request(lambda session: session.trim(before.data()), ACCEPTING_STATUSES)
         except CommandError as failure:

@@ -15,8 +15,8 @@ from tiniscript.cli.texts import text
 if TYPE_CHECKING:
     from threading import Timer
 
-BLINK_S = 0.3
-COLUMNS = 30
+BLINK_INTERVAL_S = 0.3
+BAR_COLUMNS = 30
 MOST_PERCENT = 99  # of what is not done
 
 
@@ -35,13 +35,15 @@ class Progress:
         self._drawn = ""
         self._is_there = False  # in the terminal's line
 
-    def draw(self, done: int) -> bool:
+    def draw(self, done_units: int) -> bool:
         """Draw it where it has grown; return whether it has."""
-        if not self._is_seen or not self.whole or monotonic() - self._begin_s < BLINK_S:
+        if not self._is_seen or not self.whole or monotonic() - self._begin_s < BLINK_INTERVAL_S:
             return False
-        percent = min(100 * done // self.whole, MOST_PERCENT)
-        full_columns = COLUMNS * percent // 100
-        line = f"{self.label} [{'#' * full_columns}{'.' * (COLUMNS - full_columns)}] {percent:3} %"
+        percent = min(100 * done_units // self.whole, MOST_PERCENT)
+        full_columns = BAR_COLUMNS * percent // 100
+        line = (
+            f"{self.label} [{'#' * full_columns}{'.' * (BAR_COLUMNS - full_columns)}] {percent:3} %"
+        )
         if line == self._drawn:
             return False
         self._drawn, self._is_there = line, True
@@ -69,8 +71,10 @@ class Doing:
         self.tell("")
 
 
-MOMENT_S = 2.0
-PAUSE_S = 0.5  # between two waits: the person has typed or read something, so a new one begins
+SILENCE_LIMIT_S = 2.0
+NEW_WAIT_PAUSE_S = (
+    0.5  # between two waits: the person has typed or read something, so a new one begins
+)
 
 
 class Silence:
@@ -87,7 +91,7 @@ class Silence:
             import threading
 
             self._lock = threading.Lock()
-            self._timer = threading.Timer(MOMENT_S, self._print_wait)
+            self._timer = threading.Timer(SILENCE_LIMIT_S, self._print_wait)
             self._timer.daemon = True
             self._timer.start()
 
@@ -117,7 +121,7 @@ class Quiet:
 
     def begin(self) -> None:
         """A wait begins."""
-        if monotonic() - self._until_s > PAUSE_S:
+        if monotonic() - self._until_s > NEW_WAIT_PAUSE_S:
             self.note_words()
 
     def note_words(self) -> None:
@@ -146,7 +150,7 @@ class Quiet:
     def look(self) -> None:
         """The wait goes on."""
         self._until_s = monotonic()
-        if self.is_told or not self._is_seen or self._until_s - self._since_s < MOMENT_S:
+        if self.is_told or not self._is_seen or self._until_s - self._since_s < SILENCE_LIMIT_S:
             return
         self.is_told = True
         self.before()

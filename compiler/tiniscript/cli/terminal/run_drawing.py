@@ -21,7 +21,7 @@ from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 
 MOST_SHOWN_VALUES = 5  # values of SHOW that stay in the picture
-WIDEST = 80  # columns of the values, where the way leaves so many
+MOST_VALUE_COLUMNS = 80  # columns of the values, where the way leaves so many
 COLUMNS_FOR_VALUES_BESIDE = 60  # columns from which on the values are beside the way, not below it
 
 
@@ -92,17 +92,19 @@ class Picture:
         room = max(1, height - 1)  # below the title
         if width >= COLUMNS_FOR_VALUES_BESIDE:
             columns = self.sketch.columns(width - min(44, width * 11 // 20) - 2, room)
-            values = self._values(min(WIDEST, width - columns - 2), room, now_ms)
+            values = self._values(min(MOST_VALUE_COLUMNS, width - columns - 2), room, now_ms)
             way = self.sketch.draw(columns, room, now_ms)
             values += [Text()] * (room - len(values))
             for line in way:
                 line.align("left", columns + 2)
-            below = [line + value for line, value in zip(way, values, strict=True)]
+            lines_below = [line + value for line, value in zip(way, values, strict=True)]
         else:
             values = self._values(width, max(room - 3, min(room, 3)), now_ms)
             rows = room - len(values)
-            below = (self.sketch.draw(width, rows, now_ms) if rows > 1 < width else []) + values
-        lines = [self._title(width), *below]
+            lines_below = (
+                self.sketch.draw(width, rows, now_ms) if rows > 1 < width else []
+            ) + values
+        lines = [self._title(width), *lines_below]
         for line in lines:
             line.rstrip()
             line.truncate(max(1, width), overflow="ellipsis")

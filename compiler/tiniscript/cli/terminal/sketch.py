@@ -108,9 +108,9 @@ class Sketch:
         full_canvas = self.canvas.copy()
         full_canvas.lines(map(view.dot, [corners[-1], *poses_ahead]))
         lines = merge_layers([(full_canvas, WAY)])
-        here = self.way.pose(now_ms)
+        pose_now = self.way.pose(now_ms)
         put_letter(lines, view.dot(START), "o", WAY)
-        put_letter(lines, view.dot(here), ARROWS[round(here.heading / 45) % 8], ROBOT)
+        put_letter(lines, view.dot(pose_now), ARROWS[round(pose_now.heading / 45) % 8], ROBOT)
         return lines
 
     def _view(self, columns: int, rows: int, poses_ahead: Sequence[Pose]) -> View:

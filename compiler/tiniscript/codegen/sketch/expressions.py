@@ -136,8 +136,8 @@ def is_float(value: int) -> bool:
     """Whether a literal means this number of thousandths: C++ reads it as a float of 24 bits."""
     if value % ONE == 0:
         return True
-    near: float = struct.unpack("f", struct.pack("f", abs(value) / ONE))[0]
-    grown: float = struct.unpack("f", struct.pack("f", near * ONE))[0]
+    nearest_float: float = struct.unpack("f", struct.pack("f", abs(value) / ONE))[0]
+    grown: float = struct.unpack("f", struct.pack("f", nearest_float * ONE))[0]
     return int(struct.unpack("f", struct.pack("f", grown + 0.5))[0]) == abs(value)
 
 

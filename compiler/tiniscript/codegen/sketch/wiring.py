@@ -39,8 +39,8 @@ class SketchPlan(Plan):
     def reader(self, sensor: int, name: str, function: str) -> str:
         """Return the function that takes a reading; it returns what it has kept."""
         device, wiring = self.robot.kit.sensors[sensor], self.robot.board.sensors[sensor]
-        beside = self.label(device.name)
-        lines = sensor_of(device.kind, wiring).sketch(self, device, wiring, name, beside)
+        label = self.label(device.name)
+        lines = sensor_of(device.kind, wiring).sketch(self, device, wiring, name, label)
         body = "\n".join(f"  {line}" for line in (*lines, f"return {name};"))
         return f"{self.kind(sensor)} {function}() {{\n{body}\n}}"
 
@@ -48,8 +48,8 @@ class SketchPlan(Plan):
 
     def setter(self, actuator: int, function: str) -> str:
         device, wiring = self.robot.kit.actuators[actuator], self.robot.board.actuators[actuator]
-        beside = self.label(device.name)
-        return actuator_of(device.kind, wiring).sketch(self, device, wiring, function, beside)
+        label = self.label(device.name)
+        return actuator_of(device.kind, wiring).sketch(self, device, wiring, function, label)
 
 
 def is_count(device: Device, wiring: Wiring) -> bool:

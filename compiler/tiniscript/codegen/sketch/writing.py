@@ -232,7 +232,7 @@ class _Sketch:
         self.functions["halt"] = self.halt()
         begin = [] if is_ping else self.begin()
         self.add_needed_helpers([*main, *repeated, *procedures, *own_functions.values(), *begin])
-        wired = [*own_functions.values()]
+        wiring_functions = [*own_functions.values()]
         kit = self.robot.kit
         introduction = [
             *(
@@ -249,21 +249,21 @@ class _Sketch:
             for key in self.needed
             if key in self.functions
         }
-        written = [
+        commented_lines = [
             *(
                 self.with_comment(note, code)
-                for note, code in zip(introduction, wired, strict=True)
+                for note, code in zip(introduction, wiring_functions, strict=True)
             ),
             *(self.with_comment(self.note(key), code) for key, code in functions.items()),
         ]
-        used = [*procedures, *wired, *functions.values()]
+        all_functions = [*procedures, *wiring_functions, *functions.values()]
         pieces = [
             self.opening(),
             "#include <Arduino.h>\n",
             self.constants(),
             self.number() if self.is_exact else "",
             self.variables(rows),
-            self.prototypes(used),
+            self.prototypes(all_functions),
             f"void setup() {{\n{_lines(begin, main)}}}\n",
             f"void loop() {{\n{_lines(repeated)}}}\n",
         ]
@@ -272,8 +272,8 @@ class _Sketch:
                 _heading(self.text_of_key("def")),
                 *(f"{procedure}\n" for procedure in procedures),
             ]
-        if written:
-            pieces += [_heading(self.text_of_key("helpers")), *written]
+        if commented_lines:
+            pieces += [_heading(self.text_of_key("helpers")), *commented_lines]
         return self.fill_words("\n".join(piece for piece in pieces if piece))
 
     # -- its parts

@@ -102,11 +102,11 @@ def plain_code(program: Program) -> PlainCode:
 
 def _short_offsets(code: bytes) -> dict[int, int]:
     """Return where each instruction, and the end, would be if no jump were a far one."""
-    short_offsets, at, far = {0: 0}, 0, 0
+    short_offsets, at, excess_bytes = {0: 0}, 0, 0
     while at < len(code):
         op = op_at(code, at)
         assert op is not None
         at += op.size
-        far += op.name.endswith("_FAR")
-        short_offsets[at] = at - far
+        excess_bytes += op.name.endswith("_FAR")
+        short_offsets[at] = at - excess_bytes
     return short_offsets

@@ -85,9 +85,9 @@ _ROWS: dict[str | type, list[Row]] = {
 }
 
 
-def lint(program: ir.Program, kit: Kit, source: Source, scanned: Scan) -> list[Diagnostic]:
+def lint(program: ir.Program, kit: Kit, source: Source, scan: Scan) -> list[Diagnostic]:
     """Return the warnings for a program that has no mistakes, of this text and these tokens."""
-    context = LintContext(program, kit, source, scanned)
+    context = LintContext(program, kit, source, scan)
     for procedure in program.procedures:
         _look_at(procedure.body, BodyContext(is_repeated=True), context)
     for task in program.tasks:
@@ -106,11 +106,11 @@ def _look_at(body: ir.Body, body_context: BodyContext, context: LintContext) -> 
     for statement in body:
         for row in _ROWS[type(statement)]:
             row.find(statement, body_context, context)
-        inner = ir.bodies(statement)
-        if inner:
-            inside = _inner_context(statement, body_context, is_last=statement is body[-1])
-            for item in inner:
-                _look_at(item, inside, context)
+        inner_bodies = ir.bodies(statement)
+        if inner_bodies:
+            inner_context = _inner_context(statement, body_context, is_last=statement is body[-1])
+            for item in inner_bodies:
+                _look_at(item, inner_context, context)
 
 
 def _inner_context(statement: ir.Statement, outer: BodyContext, is_last: bool) -> BodyContext:

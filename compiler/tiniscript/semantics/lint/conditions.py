@@ -28,7 +28,7 @@ from tiniscript.semantics.lint.context import STANDING_STATEMENTS, BodyContext, 
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import BINARY, OPPOSITES, SIGN_OF
 
-SHORT_MS = 1000  # ms: a loop looks again after so long
+SHORT_MOVE_MS = 1000  # ms: a loop looks again after so long
 _CHANGING_OPS = frozenset(("SENSOR", "TIME", "RANDOM"))
 # By the way that the robot goes, what is true where the robot stands, and what comes true.
 _REVERSED_COMPARATORS = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
@@ -90,7 +90,7 @@ class _Conditions:
         variables = _variables(condition)
         if variables and not any(term.op in _CHANGING_OPS for term in condition):
             time = known_value(move.time)
-            if not (body_context.is_repeated and time is not None and time < SHORT_MS):
+            if not (body_context.is_repeated and time is not None and time < SHORT_MOVE_MS):
                 self._report_frozen_until(move, condition, variables)
             return
         comparison = self._comparison(condition)
@@ -140,10 +140,10 @@ class _Conditions:
     def check_while(self, loop: ir.While, body_context: BodyContext) -> None:
         self._report_frozen_while(loop)
         head = Span(loop.span.start, loop.span.start + len("WHILE"))
-        compared = self._comparison(loop.condition)
-        if compared and not self._report_known(compared, head):
+        comparison = self._comparison(loop.condition)
+        if comparison and not self._report_known(comparison, head):
             if not body_context.asked_sensors & _sensors(loop.condition):
-                self._report_turned_while(loop, compared)
+                self._report_turned_while(loop, comparison)
         self._report_known_of_both(loop.condition, head)
 
     def check_if(self, statement: ir.If, outermost: ir.Loop | ir.While | None) -> None:
@@ -151,9 +151,9 @@ class _Conditions:
         for arm in statement.arms:
             self._report_subtracted(arm.condition, arm.span)
             self._report_known_of_both(arm.condition, arm.span)
-            compared = self._comparison(arm.condition)
-            if compared and not self._report_known(compared, arm.span):
-                self._report_exact(compared, arm.span, "IF", "")
+            comparison = self._comparison(arm.condition)
+            if comparison and not self._report_known(comparison, arm.span):
+                self._report_exact(comparison, arm.span, "IF", "")
             if outermost is not None and _is_endless(outermost):
                 self._report_frozen_if(arm, outermost)
 
@@ -163,7 +163,7 @@ class _Conditions:
         if end:
             device, _, number = comparison
             turned = comparison._replace(op=_opposite(end))
-            is_short = all(_lasts_ms(item) < SHORT_MS for item in loop.body)
+            is_short = all(_lasts_ms(item) < SHORT_MOVE_MS for item in loop.body)
             fix = f"WHILE({turned})" if is_short and not answer_of(turned) else ""
             number_is = "near" if way == "F" else "beyond"
             values = {"sensor": device.name, number_is: as_text(number), "fix": fix}
@@ -199,8 +199,8 @@ class _Conditions:
         if sensor_of_variable:
             values["sensor"] = sensor_of_variable[name]
             condition_text = self._condition_text(condition, sensor_of_variable, loop.span, "WHILE")
-            compared = self._comparison(self._asking(condition, sensor_of_variable))
-            is_turned = compared is not None and bool(self._turned(loop, compared)[1])
+            comparison = self._comparison(self._asking(condition, sensor_of_variable))
+            is_turned = comparison is not None and bool(self._turned(loop, comparison)[1])
             values["fix"] = f"WHILE({condition_text})" if condition_text and not is_turned else ""
         elif [term.op for term in condition[:-1]] == ["VARIABLE", "NUMBER"]:
             is_down = condition[-1].op in ("GT", "GE")

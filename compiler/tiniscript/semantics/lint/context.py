@@ -29,11 +29,11 @@ class BodyContext(NamedTuple):
 class LintContext:
     """A program before it is optimised, its text and tokens; `found` are its warnings so far."""
 
-    def __init__(self, program: ir.Program, kit: Kit, source: Source, scanned: Scan) -> None:
+    def __init__(self, program: ir.Program, kit: Kit, source: Source, scan: Scan) -> None:
         self.program = program
         self.kit = kit
         self.source = source
-        self.scan = scanned
+        self.scan = scan
         self.diagnostics: list[Diagnostic] = []
 
     def report(self, code: Code, span: Span, **values: str) -> None:

@@ -17,10 +17,10 @@ from tiniscript.semantics.comparisons import TIME, Comparison, comparison, is_be
 from tiniscript.semantics.lint.context import BodyContext, LintContext
 from tiniscript.semantics.optimizer import known_value
 
-_LESS = ("LT", "LE")
-_NARROWS = ("MIN", "MAX")
-_SIDES = {"LT", "GT"}  # of one number: it alone is left for ELSE
-_THROW = ("NUMBER", "NUMBER", "RANDOM")
+_LESS_OPS = ("LT", "LE")
+_NARROWING_OPS = ("MIN", "MAX")
+_SIDE_OPS = {"LT", "GT"}  # of one number: it alone is left for ELSE
+_THROW_OPS = ("NUMBER", "NUMBER", "RANDOM")
 
 
 # -- the clock ------------------------------------------------------------------------------------
@@ -38,7 +38,7 @@ def report_past_clock(context: LintContext) -> None:
             if (
                 clock_comparison is None
                 or clock_comparison.device is not TIME
-                or clock_comparison.op not in _LESS
+                or clock_comparison.op not in _LESS_OPS
             ):
                 continue
             if past_ms and _is_over(clock_comparison, past_ms):
@@ -60,10 +60,10 @@ def _lasts(statement: ir.Statement) -> int:
 def _report_over(
     loop: ir.While, clock_comparison: Comparison, past: int, context: LintContext
 ) -> None:
-    later = clock_comparison._replace(number=past + clock_comparison.number)
+    later_comparison = clock_comparison._replace(number=past + clock_comparison.number)
     values = {"already": as_text(past), "answer": "answer_no"}
-    if later.number <= HIGHEST:
-        values |= {"more": as_text(clock_comparison.number), "later": f"WHILE({later})"}
+    if later_comparison.number <= HIGHEST:
+        values |= {"more": as_text(clock_comparison.number), "later": f"WHILE({later_comparison})"}
     context.report(codes.KNOWN_ANSWER, context.head(loop.span), **values)
 
 
@@ -98,10 +98,10 @@ def _nested(value: ir.Expression) -> Iterator[tuple[str, str, tuple[int, int]]]:
     for op, number in value:
         if op == "NUMBER":
             stack.append((op, number))
-        elif op in _NARROWS and len(stack) > 1:
+        elif op in _NARROWING_OPS and len(stack) > 1:
             right, left = stack.pop(), stack.pop()
             numbers = [it[1] for it in (left, right) if it[0] == "NUMBER"]
-            inner = next((it for it in (left, right) if it[0] in _NARROWS), None)
+            inner = next((it for it in (left, right) if it[0] in _NARROWING_OPS), None)
             if len(numbers) == 1 and numbers[0] is not None and inner and inner[1] is not None:
                 yield op, inner[0], (numbers[0], inner[1])
             stack.append((op, numbers[0] if len(numbers) == 1 else None))
@@ -118,7 +118,7 @@ def report_no_room(statement: ir.If, body_context: BodyContext, context: LintCon
     """`IF(D > 50) … ELSEIF(D < 50) … ELSE`: D is hardly ever 50."""
     for one, other in pairwise(statement.arms) if statement.has_else else ():
         first, second = one.condition, other.condition
-        is_same_value = first[:-1] == second[:-1] and {first[-1].op, second[-1].op} == _SIDES
+        is_same_value = first[:-1] == second[:-1] and {first[-1].op, second[-1].op} == _SIDE_OPS
         if (
             is_same_value
             and first[-2].op == "NUMBER"
@@ -159,7 +159,7 @@ def report_thrown_arms(statement: ir.If, body_context: BodyContext, context: Lin
 def report_thrown_again(body: ir.Body, body_context: BodyContext, context: LintContext) -> None:
     """`SHOW(RANDOM(1, 6))`, then `LOOP(RANDOM(1, 6))`: no number is shown that counts."""
     for one, other in pairwise(body):
-        thrown = one.value if isinstance(one, ir.Show) and len(one.value) == len(_THROW) else ()
+        thrown = one.value if isinstance(one, ir.Show) and len(one.value) == len(_THROW_OPS) else ()
         if thrown and _thrown(thrown) and isinstance(other, ir.Loop) and other.times == thrown:
             _report_throw(thrown, context.head(other.span), context)
 
@@ -171,5 +171,5 @@ def _report_throw(thrown: ir.Expression, span: Span, context: LintContext) -> No
 
 def _thrown(value: ir.Expression) -> ir.Expression:
     """Return the throw that a value begins with."""
-    is_throw = tuple(term.op for term in value[: len(_THROW)]) == _THROW
-    return value[: len(_THROW)] if is_throw else ()
+    is_throw = tuple(term.op for term in value[: len(_THROW_OPS)]) == _THROW_OPS
+    return value[: len(_THROW_OPS)] if is_throw else ()

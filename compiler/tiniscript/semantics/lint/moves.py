@@ -38,11 +38,11 @@ class _LateConditions:
 
     def look_at(self, body: ir.Body, loop: ir.Loop | ir.While | None, is_repeated: bool) -> None:
         """Look at the statements of a body, which `loop` repeats."""
-        late = self._in_loop(body) if loop is not None else set()
+        late_checks = self._in_loop(body) if loop is not None else set()
         if isinstance(loop, ir.While):
             self._in_while(loop)
         for k, statement in enumerate(body):
-            if isinstance(statement, ir.If) and k not in late:
+            if isinstance(statement, ir.If) and k not in late_checks:
                 self._report_idle_stop(body, k, statement, loop)
                 if not (is_repeated or self._context.program.tasks):
                     self._report_looked_before(body, k, statement)
@@ -192,12 +192,12 @@ class _LateConditions:
             return {"all": self._source[Span(first.start, last.end)]}
         return {"first": begin, "last": end}
 
-    def _is_blind(self, move: ir.Move, least: int) -> bool:
+    def _is_blind(self, move: ir.Move, least_ms: int) -> bool:
         """Whether a move lasts long, and looks at nothing."""
         time = _time(move)
         if move.direction not in ("F", "B") or move.until is not None:
             return False
-        return time is not None and time >= least
+        return time is not None and time >= least_ms
 
     def _distance_in(self, condition: ir.Expression) -> int | None:
         """Return the first sensor of a distance that a condition looks at."""

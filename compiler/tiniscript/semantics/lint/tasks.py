@@ -18,7 +18,7 @@ from tiniscript.semantics.lint.context import LintContext
 from tiniscript.semantics.optimizer import known_value
 
 _WHEN_HEADER = r"(?i)WHEN[ \t]*(\(.*\))[ \t]*(?=$|[;\r\n]|//)"
-_MANY = 6  # instructions that a suggestion shows
+_MOST_INSTRUCTIONS = 6  # instructions that a suggestion shows
 _INSTANT_STATEMENTS = (ir.Read, ir.Assign, ir.Show, ir.Set, ir.Stop, ir.Call)
 
 
@@ -27,35 +27,37 @@ def report_kept_motors(context: LintContext) -> None:
     program = context.program
     motors = _Motors(program)
     all_of = partial(ir.walk_with_calls, procedures=program.procedures)
-    higher = [task.body for task in program.tasks if task.until is not None]
+    higher_bodies = [task.body for task in program.tasks if task.until is not None]
     tasks = [task for task in program.tasks if task.until is None]
-    lower = [*(task.body for task in tasks), program.body]
+    lower_bodies = [*(task.body for task in tasks), program.body]
     for task in tasks:
-        del lower[0]
-        is_stopped = any(isinstance(item, ir.Stop) for body in higher for item in all_of(body))
+        del lower_bodies[0]
+        is_stopped = any(
+            isinstance(item, ir.Stop) for body in higher_bodies for item in all_of(body)
+        )
         if not is_stopped and motors.are_kept(task.body):
             line = str(context.source.position(task.span.start)[0])
-            for body in lower:
+            for body in lower_bodies:
                 waiting_move = next(filter(_is_move, all_of(_endless_part(body))), None)
                 if waiting_move is not None:
                     context.report(codes.NO_MOTORS, waiting_move.span, line=line)
             return
-        higher.append(task.body)
+        higher_bodies.append(task.body)
     _take_turns([task.body for task in tasks], context)
 
 
 def _take_turns(tasks: list[ir.Body], context: LintContext) -> None:
     """`TASK;F(4, 60);END_TASK;TASK;R(4, 60);END_TASK`: they take turns, and make no curve."""
-    begin = [body[0] for body in (*tasks, context.program.body) if body and _is_move(body[0])]
-    if len(begin) < 2 or not tasks[0] or begin[0] is not tasks[0][0]:
+    first_moves = [body[0] for body in (*tasks, context.program.body) if body and _is_move(body[0])]
+    if len(first_moves) < 2 or not tasks[0] or first_moves[0] is not tasks[0][0]:
         return
-    first = context.source[begin[0].span]
+    first = context.source[first_moves[0].span]
     values = {"first": first, "both": "M(60, 30);W(4)"}
     spans = sorted(item.span for body in (*tasks, context.program.body) for item in body)
     orders = [context.source[span] for span in spans]
-    if len(orders) <= _MANY and not any("\n" in order for order in orders):
+    if len(orders) <= _MOST_INSTRUCTIONS and not any("\n" in order for order in orders):
         values["after"] = ";".join(orders)
-    for item in begin[1:]:
+    for item in first_moves[1:]:
         context.report(codes.NO_MOTORS, item.span, **values)
 
 
@@ -107,9 +109,9 @@ class _Motors:
 def report_brief_tasks(context: LintContext) -> None:
     """Warn of a TASK that is done once, and of a WHEN whose S lasts no longer than its answer."""
     program = context.program
-    lower = [program.body, *(task.body for task in program.tasks if task.until is None)]
-    driving = [
-        body[-1] for body in lower
+    lower_bodies = [program.body, *(task.body for task in program.tasks if task.until is None)]
+    driving_statements = [
+        body[-1] for body in lower_bodies
         if any(map(_is_move, ir.walk_with_calls(_endless_part(body), program.procedures)))
     ]  # fmt: skip
     for task in program.tasks:
@@ -117,10 +119,10 @@ def report_brief_tasks(context: LintContext) -> None:
         if task.until is None:
             if task.body and _is_pause(task.body[-1]) and not any(map(_repeats, statements)):
                 context.diagnostics.append(_single_run_diagnostic(task, context.source))
-        elif driving and known_value(task.until.condition) is None:
+        elif driving_statements and known_value(task.until.condition) is None:
             is_brief = all(isinstance(item, _INSTANT_STATEMENTS) for item in statements)
             if is_brief and any(isinstance(item, ir.Stop) for item in statements):
-                _report_resumed_move(task, driving[0], context)
+                _report_resumed_move(task, driving_statements[0], context)
 
 
 def _is_pause(statement: ir.Statement) -> bool:
@@ -138,9 +140,9 @@ def _single_run_diagnostic(task: ir.Task, source: Source) -> Diagnostic:
     end = re.search(r"\w+\Z", text)
     assert end is not None
     after, before = task.word.end, task.span.start + end.start()
-    between = "\n" if "\n" in text else ";"
-    edits = (Edit(Span(after, after), f"{between}LOOP(FOREVER)"),
-             Edit(Span(before, before), f"END_LOOP{between}"))  # fmt: skip
+    separator = "\n" if "\n" in text else ";"
+    edits = (Edit(Span(after, after), f"{separator}LOOP(FOREVER)"),
+             Edit(Span(before, before), f"END_LOOP{separator}"))  # fmt: skip
     return Diagnostic(codes.TASK_DONE_ONCE, task.word, {}, None, Repair(edits, False))
 
 
@@ -152,8 +154,8 @@ def report_lone_task(context: LintContext) -> None:
     if other_tasks or task.until is not None or not task.body or not is_idle:
         return
     text = context.source[task.span]
-    both = [each for each in task.body if not isinstance(each, ir.Read)]
-    moves_last = sorted(both, key=_is_move)
+    statements = [each for each in task.body if not isinstance(each, ir.Read)]
+    moves_last = sorted(statements, key=_is_move)
     if [*map(_is_move, moves_last)] != [False, True] or not isinstance(moves_last[0], ir.Beep):
         context.report(codes.LONE_TASK, task.word)
         return
@@ -172,12 +174,18 @@ def report_lone_task(context: LintContext) -> None:
     context.diagnostics.append(Diagnostic(codes.LONE_TASK, task.word, values, place, repair))
 
 
-def _report_resumed_move(task: ir.Task, driving: ir.Statement, context: LintContext) -> None:
+def _report_resumed_move(
+    task: ir.Task, driving_statements: ir.Statement, context: LintContext
+) -> None:
     head = re.match(_WHEN_HEADER, context.source[task.span])
-    values = {"line": str(context.source.position(driving.span.start)[0])}
+    values = {"line": str(context.source.position(driving_statements.span.start)[0])}
     if head is not None:
-        ended = f"IF{head[1]};BREAK;ENDIF" if isinstance(driving, ir.Loop) else f"UNTIL{head[1]}"
-        values["ended"] = ended
+        ended_move = (
+            f"IF{head[1]};BREAK;ENDIF"
+            if isinstance(driving_statements, ir.Loop)
+            else f"UNTIL{head[1]}"
+        )
+        values["ended"] = ended_move
     # a DEF that is called may have it
     stops = [each for each in task.body if isinstance(each, (ir.Stop, ir.Call))]
     stop = min(stops, key=lambda each: isinstance(each, ir.Call))

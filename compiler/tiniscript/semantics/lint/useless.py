@@ -66,15 +66,15 @@ def report_instructions_in_notes(context: LintContext) -> None:
     and after a header or `SI|` a note tells what comes.
     """
     source, tokens = context.source, context.scan.tokens
-    short = [
+    short_comments = [
         comment for comment in context.scan.comments if len(comment.text) <= MOST_NOTE_CHARACTERS
     ]
     if all(token.kind in INSTRUCTION_ENDS for token in tokens):
-        _report_all_notes(short, context)
+        _report_all_notes(short_comments, context)
         return
     rows = [
         token
-        for token in short
+        for token in short_comments
         if re.fullmatch(_CALLS, token.text) or swallowed_instructions(token.text)
     ]
     is_ping = [token.text for token in tokens[:2]] == ["PING", "|"]
@@ -197,9 +197,14 @@ def _is_empty(statement: ir.Statement) -> bool:
 
 def _leading_instructions(statements: Sequence[ir.Statement], source: Source) -> list[str]:
     """Return the instructions at the beginning of a row that are no blocks, as written."""
-    plain = [*takewhile(lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While)), statements)]
-    end = next((k + 1 for k, each in enumerate(plain) if isinstance(each, ir.Break)), len(plain))
-    return [source[each.span] for each in plain[:end] if not isinstance(each, ir.Read)]
+    plain_statements = [
+        *takewhile(lambda each: not isinstance(each, (ir.If, ir.Loop, ir.While)), statements)
+    ]
+    end = next(
+        (k + 1 for k, each in enumerate(plain_statements) if isinstance(each, ir.Break)),
+        len(plain_statements),
+    )
+    return [source[each.span] for each in plain_statements[:end] if not isinstance(each, ir.Read)]
 
 
 # -- what nobody uses ------------------------------------------------------------------------
