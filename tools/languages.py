@@ -91,13 +91,13 @@ def pseudo(source: Catalogue) -> Catalogue:
     """Return the English texts with translations that are a third longer and have accents."""
     catalogue = Catalogue()
     for at, entry in source.entries.items():
-        forms = {name: _longer(form) for name, form in entry.forms.items()}
+        forms = {name: _lengthened(form) for name, form in entry.forms.items()}
         forms = entry.forms if entry.is_same and not entry.like else forms
         catalogue.entries[at] = Entry(*at, entry.plural, forms, entry.hash, is_same=entry.is_same)
     return catalogue
 
 
-def _longer(text: str) -> str:
+def _lengthened(text: str) -> str:
     """Return a text with accents outside of its gaps, and with more words in its last line."""
     parts = re.split(r"(\{[^{}]*\}|`[^`]*`)", text)
     parts[::2] = [part.translate(ACCENTS) for part in parts[::2]]

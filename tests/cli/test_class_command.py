@@ -362,7 +362,7 @@ def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
     told.request = partial(Connection.request, cast(Connection, told))
     told.ask_or = partial(Connection.ask_or, cast(Connection, told))
     with pytest.raises(CommandError) as exception_info:
-        robot_broker.use(cast(Connection, told), None, Namespace())
+        robot_broker.use_broker(cast(Connection, told), None, Namespace())
     assert "older than this tsc" in exception_info.value.sentence("en")
 
 

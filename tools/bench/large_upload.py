@@ -26,7 +26,7 @@ LONGEST_UPLOAD_MS = 60_000
 MOVE = BY_NAME["MOVE8_F"].code
 
 
-class Took(NamedTuple):
+class UploadTimes(NamedTuple):
     """Of an upload: its code, ms until its receipt is there, the wire's ms, frames and bytes."""
 
     code_bytes: int
@@ -70,7 +70,7 @@ def program(code_bytes: int) -> Image:
 
 def upload(
     robot: HostFirmware, kit: int, code_bytes: int, baud: int = BAUD,
-) -> Took:  # fmt: skip
+) -> UploadTimes:  # fmt: skip
     """Upload a program to a robot that has just begun. Raises RuntimeError where it is not done."""
     to_robot, from_robot = (Wire(baud, ROUND_TRIP_MS / 2) for _ in range(2))
     session = Session(7, baud, kit)
@@ -95,7 +95,7 @@ def upload(
     if request.outcome.status != OK:
         raise RuntimeError(f"the robot has not taken it: {request.outcome}")
     wire_ms = code_bytes * 10_000 / baud
-    return Took(code_bytes, now_ms - began_ms, wire_ms, frames, sent_bytes)
+    return UploadTimes(code_bytes, now_ms - began_ms, wire_ms, frames, sent_bytes)
 
 
 def main() -> int:

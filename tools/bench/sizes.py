@@ -180,7 +180,7 @@ class Part(NamedTuple):
 
     program: str
     always: str
-    use: str
+    statement: str
     folders: tuple[str, ...]  # of the sources that are linked, besides the machine
     flags: tuple[str, ...]  # for the AVR
 
@@ -226,7 +226,7 @@ def size(name: str, chip: str = AVR) -> Size:
     On the AVR the stack comes on top.
     """
     part = PARTS[name]
-    with_it, size_without = (_build(part, part.always + use, chip) for use in (part.use, ""))
+    with_it, size_without = (_build(part, part.always + use, chip) for use in (part.statement, ""))
     return Size(with_it.flash - size_without.flash, with_it.ram - size_without.ram)
 
 

@@ -37,7 +37,7 @@ ROWS = (
 )
 
 
-class Looked(NamedTuple):
+class WrongReadings(NamedTuple):
     readings: int
     wrong_count: int
 
@@ -57,7 +57,7 @@ def board_of(text: str, is_trusting: bool) -> Board:
     return board
 
 
-def looked(seed: int, is_trusting: bool) -> Looked:
+def look_at_wall(seed: int, is_trusting: bool) -> WrongReadings:
     true_distances, distances_heard = approaching(seed, SAMPLE_COUNT)
     board = board_of(LOOKS, is_trusting)
     trigger, echo = wire(board.robot)
@@ -70,7 +70,7 @@ def looked(seed: int, is_trusting: bool) -> Looked:
         number = sum(sent < ms for sent in times) - 1
         cm = 2 * int(board.motors(ms)[0].removeprefix("pwm ")) / 2.55
         wrong_count += abs(cm - true_distances[number]) > max(4, 0.2 * true_distances[number] + 3)
-    return Looked(len(readings), wrong_count)
+    return WrongReadings(len(readings), wrong_count)
 
 
 def late_ms(distances: Callable[[float], float], phase: float, is_trusting: bool) -> float:
@@ -101,7 +101,7 @@ def is_there(ms: float) -> float:
 def main() -> None:
     figure_rows: list[list[str]] = [[row] for row in ROWS]
     for is_trusting in (True, False):
-        runs = [looked(seed, is_trusting) for seed in range(SEED_COUNT)]
+        runs = [look_at_wall(seed, is_trusting) for seed in range(SEED_COUNT)]
         wrong_count, readings = (
             sum(run.wrong_count for run in runs),
             sum(run.readings for run in runs),

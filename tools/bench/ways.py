@@ -92,7 +92,7 @@ class Robot(Talk):
         self.until(self.session.trim(trim._replace(pace=Pace(*measures)).data()))
 
 
-def off(seed: int, slip: float, method: str) -> tuple[float, float, float]:
+def offset_of(seed: int, slip: float, method: str) -> tuple[float, float, float]:
     """Return how far one robot is off: along and aside in cm, turned in degrees."""
     one = Robot(seed, slip, method == "discs")
     if method == "time, calibrated":
@@ -107,7 +107,7 @@ def worst_wanted(values: Sequence[float]) -> float:
     return sorted(values)[WANTED_PERCENT * len(values) // 100 - 1]
 
 
-def off_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float]:
+def offset_of_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float]:
     """Return the same of the firmware of an Uno, on its simulated chip."""
     motors = (FAST, SLOW) if seed % 2 else (SLOW, FAST)
     one = Driven(firmware, seed, motors, Roughness(slip))
@@ -138,8 +138,8 @@ def flash() -> int:
 def main(seeds: int = SEED_COUNT, is_uno: bool = False) -> int:
     if is_uno:
         firmware = measure(ENVIRONMENT).firmware
-        result = Off.summarise(
-            "discs", [off_uno(firmware, seed, SLIPS[0]) for seed in range(1, seeds + 1)]
+        result = WorstOffsets.summarise(
+            "discs", [offset_of_uno(firmware, seed, SLIPS[0]) for seed in range(1, seeds + 1)]
         )
         along_cell, aside_cell, turn_cell = result.cells()
         print(
@@ -151,8 +151,8 @@ def main(seeds: int = SEED_COUNT, is_uno: bool = False) -> int:
     rows = []
     for method, (row, slips) in SHOWN_ROWS.items():
         for slip in slips:
-            result = Off.summarise(
-                method, [off(seed, slip, method) for seed in range(1, seeds + 1)]
+            result = WorstOffsets.summarise(
+                method, [offset_of(seed, slip, method) for seed in range(1, seeds + 1)]
             )
             rows.append((row, f"{100 * slip:g} %", *result.cells(), result.within))
             is_good = is_good and (result.is_good or slip != SLIPS[0])
@@ -160,7 +160,7 @@ def main(seeds: int = SEED_COUNT, is_uno: bool = False) -> int:
     return int(not is_good)
 
 
-class Off(NamedTuple):
+class WorstOffsets(NamedTuple):
     """How far robots are off: what WANTED_PERCENT are within, and how many keep the limits."""
 
     worst: tuple[float, ...]
@@ -168,7 +168,7 @@ class Off(NamedTuple):
     is_good: bool
 
     @classmethod
-    def summarise(cls, method: str, offsets: Sequence[tuple[float, float, float]]) -> Off:
+    def summarise(cls, method: str, offsets: Sequence[tuple[float, float, float]]) -> WorstOffsets:
         limits = LIMITS[method]
         good_way_count = sum(item[0] <= limits[0] and item[1] <= limits[1] for item in offsets)
         good_turn_count = sum(item[2] <= limits[2] for item in offsets)

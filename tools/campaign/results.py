@@ -77,7 +77,7 @@ def is_old(goal: Goal, result: Result) -> bool:
     return not is_same_code(goal, result.commit)
 
 
-def old() -> list[str]:
+def outdated_goals() -> list[str]:
     """Return the names of the goals whose figures are old."""
     result = read()
     return [goal.name for goal in GOALS if goal.name in result and is_old(goal, result[goal.name])]

@@ -101,7 +101,7 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
     print(sums, end="")
     if options.url and facts.address(ROOT) != options.url.rstrip("/"):
         _say(f"pyproject.toml does not have {options.url}: what is published is made with it there")
-    if old := ", ".join(results.old()):
+    if old := ", ".join(results.outdated_goals()):
         _say(f"{results.DOCUMENT.relative_to(ROOT)}: figures of older code: {old}")
     for item in failed_parts:
         print(f"made twice, it is not the same: {item}", file=sys.stderr)

@@ -26,10 +26,10 @@ def nearest(word: str, candidates: Iterable[str]) -> str | None:
     best, its_edits = None, most_edits + 1
     letters = set(word)
     for other in candidates:
-        is_far = (
+        is_too_different = (
             abs(len(other) - len(word)) > most_edits or len(letters.difference(other)) > most_edits
         )
-        if len(other) > 1 and not is_far:
+        if len(other) > 1 and not is_too_different:
             edits = _edits(word, other)
             if edits == 1 and len(word) <= 3 and len(other) == len(word):
                 edits += sorted(word) != sorted(other)

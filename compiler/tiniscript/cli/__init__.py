@@ -114,8 +114,8 @@ def _tell_missing_parts(language: str) -> None:
         "version_page": serving.is_built(),
         "version_firmware": any(ready.FOLDER.glob("*.hex")),
     }
-    for key, is_there in parts.items():
-        if not is_there:
+    for key, is_installed in parts.items():
+        if not is_installed:
             say(key, language)
 
 

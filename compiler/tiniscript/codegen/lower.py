@@ -93,7 +93,7 @@ class _Lowering:
             last = "END_TASK"
         else:
             emitter.add("WHEN", to=end)
-            self.reads(routine.until.reads)
+            self.add_readings(routine.until.reads)
             add_value(emitter, routine.until.condition)
             emitter.add("LOOK")
             last = "END_WHEN"
@@ -101,7 +101,7 @@ class _Lowering:
         emitter.add(last)
         emitter.mark(end)
 
-    def reads(self, sensors: tuple[int, ...]) -> None:
+    def add_readings(self, sensors: tuple[int, ...]) -> None:
         for sensor in sensors:
             self.out.add("READ", sensor)
 
@@ -169,7 +169,7 @@ class _Lowering:
             return
         kind = "_FOREVER" if time is None else "_GO" if move.unit else ""
         emitter.add(f"WATCH{kind}_{name}")
-        self.reads(until.reads)
+        self.add_readings(until.reads)
         emit_until(emitter, until.condition)
 
     def beep(self, beep: ir.Beep) -> None:
@@ -239,7 +239,7 @@ class _Lowering:
             is_last = k == len(statement.arms) - 1 and not has_else
             following = end if is_last else emitter.new_label()
             emitter.span = arm.span
-            self.reads(arm.reads)
+            self.add_readings(arm.reads)
             emit_unless(emitter, arm.condition, following)
             self.body(arm.body)
             if not is_last:
@@ -269,7 +269,7 @@ class _Lowering:
         end = emitter.new_label()
         emitter.add("WHILE", to=end)
         start = emitter.mark_here()
-        self.reads(loop.reads)
+        self.add_readings(loop.reads)
         emit_unless(emitter, loop.condition, end)
         self.add_loop(loop.body, end, False, loop.span, start)
 

@@ -44,7 +44,7 @@ def compare(name: str, wanted_rows: Sequence[str], rows_got: Sequence[str]) -> V
 Ask = Callable[[str, int], Sequence[str]]
 
 
-def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
+def verdicts(cases: Iterable[MachineCase], answer_of: Ask) -> Iterator[Verdict]:
     """Yield the verdict of each case, up to where nobody waits for more.
 
     A machine that refuses the first case that needs something lacks it, and is asked for no other.
@@ -57,7 +57,7 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
             yield Verdict(case.name, LACKS)
             continue
         try:
-            answer = ask(case.request(), sum(len(row) + 2 for row in case.answer))
+            answer = answer_of(case.request(), sum(len(row) + 2 for row in case.answer))
         except Problem as problem:
             verdict = compare(case.name, case.answer, problem.rows)
             yield verdict._replace(what=problem.kind, detail=problem.detail)

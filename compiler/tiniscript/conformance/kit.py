@@ -61,7 +61,7 @@ class NotMade(Exception):
     """This installation has no file of cases."""
 
 
-def _read(name: str) -> Any:
+def _read_json(name: str) -> Any:
     """Return what a file of cases says. Raises NotMade."""
     try:
         return json.loads((FOLDER / name).read_text(encoding="utf-8"))
@@ -71,7 +71,7 @@ def _read(name: str) -> Any:
 
 def machine_cases() -> list[MachineCase]:
     """Return all cases, in the order of the file. Raises NotMade."""
-    return cases_in(_read("machine.json"))
+    return cases_in(_read_json("machine.json"))
 
 
 def cases_in(kit_file: Any) -> list[MachineCase]:
@@ -132,7 +132,7 @@ class LinkTestSuite(NamedTuple):
 
 def link_test_suite() -> LinkTestSuite:
     """Return what a robot on a port must do. Raises NotMade."""
-    result = _read("link.json")
+    result = _read_json("link.json")
     assert (result["form"], result["version"]) == (LINK_FORM, LINK_VERSION)
     return LinkTestSuite(
         tuple(

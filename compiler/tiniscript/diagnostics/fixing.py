@@ -97,8 +97,8 @@ def _tidied(edit: Edit, text: str) -> Edit:
     stop = len(text) if stop < 0 else stop
     before, after = text[begin:start], text[end:stop]
     if not (before + after).strip():
-        is_only = stop == len(text) and not begin
-        return Edit(Span(begin, stop if is_only else min(stop + 1, len(text))), "")
+        ends_text = stop == len(text) and not begin
+        return Edit(Span(begin, stop if ends_text else min(stop + 1, len(text))), "")
     if not before.strip() or before[-1] in "|; ":
         end += len(after) - len(after.lstrip(" \t"))
     return Edit(Span(start, end), "")

@@ -270,11 +270,11 @@ def _restart_findings(restarts: list[Restart]) -> list[Finding]:
     count = str(len(restarts))
     restarts_while_driving = [restart for restart in restarts if restart.was_running]
     if restarts_while_driving:
-        is_told = any(restart.cause == _BROWN_OUT for restart in restarts_while_driving)
+        is_cause_known = any(restart.cause == _BROWN_OUT for restart in restarts_while_driving)
         return [
             Finding(
                 "motors_restart",
-                is_told,
+                is_cause_known,
                 {"count": count, "reset": restarts_while_driving[-1].cause},
             )
         ]

@@ -274,8 +274,8 @@ def _diagnose_cable(
         if other_finding is not None:
             return [other_finding]
     if found_bootloader is not None:
-        board, is_alone = found_bootloader
-        return [sure("bootloader_only", board=board.name) if is_alone
+        board, has_only_bootloader = found_bootloader
+        return [sure("bootloader_only", board=board.name) if has_only_bootloader
                 else strangers.best_finding() or probably("other_sketch", said="")]  # fmt: skip
     best_finding = strangers.best_finding()
     return [

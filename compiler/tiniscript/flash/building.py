@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.flash import children
-from tiniscript.flash.ready import is_whole
+from tiniscript.flash.ready import is_complete_hex
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import Robot
 
@@ -188,7 +188,7 @@ class _Project:
         code, log = self.run(on_progress)
         if too_large := _TOO_LARGE.search(log):
             raise CannotBuild(CannotBuild.TOO_LARGE, "{} > {}".format(*too_large.groups()), log)
-        if code != 0 or (is_hex and not is_whole(self.hex_file)):
+        if code != 0 or (is_hex and not is_complete_hex(self.hex_file)):
             has_begun = _COMPILING.search(log) or not _NETWORK_MESSAGE.search(log)
             why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
             raise CannotBuild(why, children.reason(log) or f"exit code {code}", log)

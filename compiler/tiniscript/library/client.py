@@ -105,7 +105,7 @@ class Client:
 
     def close(self, stop_s: float | None = None, has_run: bool = False) -> None:
         """Close the port. First stop what a client of the server has started, or what may run
-        where `has_run`: wait `stop_s` for that, by default as long as a stop may take."""
+        where `may_have_run`: wait `stop_s` for that, by default as long as a stop may take."""
         try:
             if self.server is not None:
                 self.server.close()  # until then a client may start a run

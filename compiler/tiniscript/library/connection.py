@@ -74,7 +74,7 @@ class RobotConnection:
     """
 
     def __init__(
-        self, port: str, profile: Robot, is_named: bool, baud: int | None, language: Language
+        self, port: str, profile: Robot, is_robot_named: bool, baud: int | None, language: Language
     ) -> None:
         """Internal: use `connect` instead."""
         self.port = port
@@ -88,7 +88,7 @@ class RobotConnection:
         self._is_closed = False
         self._client = Client(port, VERB, profile, baud, language)
         try:
-            self._meet(is_named)
+            self._meet(is_robot_named)
         except BaseException:
             self._part()
             raise
@@ -273,9 +273,9 @@ class RobotConnection:
                 for _ in self.events(0):  # it may have been replaced since
                     pass
         self._is_closed = True
-        is_others = (self._client.drives_another or self._is_replaced) and not is_interrupted
+        is_run_of_others = (self._client.drives_another or self._is_replaced) and not is_interrupted
         try:
-            if not (is_clean and self._is_detached) and not is_others:
+            if not (is_clean and self._is_detached) and not is_run_of_others:
                 self._stop()
             if is_clean:
                 self._await_saving()
@@ -330,9 +330,9 @@ class RobotConnection:
 
     # -- asking -----------------------------------------------------------------------------------
 
-    def _meet(self, is_named: bool) -> None:
+    def _meet(self, is_robot_named: bool) -> None:
         device_info = self._client.meet()
-        if not is_named and device_info.kit != self._profile.kit.fingerprint:
+        if not is_robot_named and device_info.kit != self._profile.kit.fingerprint:
             self._profile = robot_of_kit(device_info.kit) or self._profile
         opening.remember(self.port, device_info.name)
 

@@ -39,7 +39,7 @@ def may_run(image: Image, profile: Robot, kit: int) -> bool:
     if not image.devices or kit == profile.kit.fingerprint:
         return True
     robot = robot_of_kit(kit)
-    return robot is None or fits(image, robot)
+    return robot is None or is_runnable(image, robot)
 
 
 def find_robot_for(image: Image, first: Robot) -> Robot | None:
@@ -47,16 +47,17 @@ def find_robot_for(image: Image, first: Robot) -> Robot | None:
 
     Returns None if no such robot is known.
     """
-    if fits(image, first):
+    if is_runnable(image, first):
         return first
     shipped = (robots.load(name) for name in robots.names())
     given_robots = (robot for _, robot in given.profiles())
     return next(
-        (robot for item in (shipped, given_robots) for robot in item if fits(image, robot)), None
+        (robot for item in (shipped, given_robots) for robot in item if is_runnable(image, robot)),
+        None,
     )
 
 
-def fits(image: Image, robot: Robot) -> bool:
+def is_runnable(image: Image, robot: Robot) -> bool:
     """Return whether a robot may run an image that `unpack` has read."""
     try:
         check(image, robot.kit)

@@ -116,12 +116,12 @@ def _connect_past_holder(
 
 def _open_line(
     address: str, baud: int, kit: int, limit_s: float, lock: IO[bytes] | None, language: str,
-    port: str, verb: str = "", is_past: bool = False,
+    port: str, verb: str = "", opens_past_lock: bool = False,
 ) -> PortConnection:  # fmt: skip
     """Open a port and begin a session for this kit. Raises RobotError.
 
-    `port` is the port's name in sentences. The line closes the lock. `is_past`: a serial port that
-    another program has locked.
+    `port` is the port's name in sentences. The line closes the lock. `opens_past_lock`: a serial
+    port that another program has locked.
     """
     from tiniscript.link.keys import KeyFile
     from tiniscript.link.port_connection import PortConnection
@@ -131,7 +131,7 @@ def _open_line(
     with ExitStack() as unless_it_fails:
         if lock is not None:
             unless_it_fails.callback(lock.close)
-        open_it = open_past_lock if is_past else open_port
+        open_it = open_past_lock if opens_past_lock else open_port
         try:
             device = open_it(address, baud, limit_s)
         except PortError as failure:

@@ -64,8 +64,8 @@ class Map(NamedTuple):
         if not any(word in TASKS for word, _ in blocks):
             return None
         for word, map_location in blocks:
-            is_around = map_location[1:3] <= place[1:3] and place[3:] <= map_location[3:]
-            if is_around and word in (*TASKS, "DEF"):
+            is_enclosing = map_location[1:3] <= place[1:3] and place[3:] <= map_location[3:]
+            if is_enclosing and word in (*TASKS, "DEF"):
                 return None if word == "DEF" else (word, map_location.line)
         return "", 0
 

@@ -43,8 +43,8 @@ def with_number(text: str, span: Span, own_names: Container[str] = ()) -> dict[s
     place = call[2].count(",")
     values = f"{call[2]}{amount}{after[0][:-1]}".split(",")
     amount = values[place].strip()
-    is_asked = any(sign in amount for sign in "<>=")  # a part of it is no number
-    if is_asked or not any(is_amount(*value.split()) for value in values):
+    is_comparison = any(sign in amount for sign in "<>=")  # a part of it is no number
+    if is_comparison or not any(is_amount(*value.split()) for value in values):
         return {}
     for k, (value, argument) in enumerate(zip(values, word.arguments, strict=False)):
         words = [word for word in plain(value).split() if word not in own_names]

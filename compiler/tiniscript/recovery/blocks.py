@@ -140,8 +140,8 @@ class Matching:
         indent = self.line.indent
         while self.open and self.item.kind in ("open", "do"):
             block = self.open[-1]
-            is_left = indent < (block.body or 0) and indent <= block.indent
-            if not is_left or block.has_brace:
+            is_further_left = indent < (block.body or 0) and indent <= block.indent
+            if not is_further_left or block.has_brace:
                 break
             self.open.pop()
             self.is_sure = self.is_sure and block.is_begun
@@ -239,8 +239,10 @@ class Matching:
     def is_before_arm(self) -> bool:
         """Whether an end comes too early, and is dropped: the ELSE behind it belongs to its IF."""
         item = self.item
-        is_its = item.word == ANY_END or WORD_OF_END[item.word] == "IF"
-        if not (is_its and self.after.kind == "arm" and self.open and self.open[-1].word == "IF"):
+        is_end_of_if = item.word == ANY_END or WORD_OF_END[item.word] == "IF"
+        if not (
+            is_end_of_if and self.after.kind == "arm" and self.open and self.open[-1].word == "IF"
+        ):
             return False
         outer = sum(block.word == "IF" for block in self.open[:-1])
         rest = [it for _, it in self.flat[self.place + 1 : self.place + MOST_ITEMS_AFTER_ELSE]]
@@ -257,8 +259,10 @@ class Matching:
             if any(line.reading.items is None for line in self.lines):
                 return False
             before = self.line.reading.tokens[self.item.start - 1]
-            is_behind = not self.after.kind and before.text == ";" and before.source is not None
-            is_only_item = len(self.line.reading.items or ()) == 1 or is_behind
+            follows_separator = (
+                not self.after.kind and before.text == ";" and before.source is not None
+            )
+            is_only_item = len(self.line.reading.items or ()) == 1 or follows_separator
             self.is_sure = self.is_sure and is_only_item and len(self.flat) > 2
             self.edit(1)
         elif self.open[-1].word:
@@ -272,7 +276,7 @@ class Matching:
         if self.open and self.open[-1].word not in ("", expected_word):
             words = [block.word for block in self.open]
             block = self.open[-1]
-            is_inside = (len(words) > 1 and block.line == k) or bool(block.body)
+            is_in_block = (len(words) > 1 and block.line == k) or bool(block.body)
             if expected_word not in words:
                 self.edit(1, self.open.pop().end)
                 is_changed = bool(self.line.reading.steps) or block.is_translated
@@ -285,10 +289,12 @@ class Matching:
                 self.is_sure = False
                 del self.open[len(words) - 1 - words[::-1].index(expected_word)]
                 return True
-            if is_inside:
+            if is_in_block:
                 self.open.pop()
-                is_here = block.line == k and (block.is_endless or not self.is_parted(block))
-                is_changed = (block.is_begun or is_here) and not block.is_behind
+                is_in_same_line = block.line == k and (
+                    block.is_endless or not self.is_parted(block)
+                )
+                is_changed = (block.is_begun or is_in_same_line) and not block.is_behind
                 self.is_sure = self.is_sure and is_changed
                 self.edit(0, block.end, ";")
         if self.open and self.open[-1].word == expected_word:
@@ -296,8 +302,8 @@ class Matching:
             self.is_sure = self.is_sure and not block.has_brace and self.line.is_do <= block.is_do
             if block.is_endless and self.open and self.open[-1].last is None:
                 outer = self.open[-1]  # a WHEN that never ends looks no more
-                is_before = outer.word == "WHEN" and outer.line + 1 < block.line
-                outer.last = block.line - 1 if is_before else k
+                is_in_earlier_line = outer.word == "WHEN" and outer.line + 1 < block.line
+                outer.last = block.line - 1 if is_in_earlier_line else k
             return True
         return False
 

@@ -45,10 +45,10 @@ def bracketed(diagnostic: Diagnostic, text: str, kit: Kit, is_offered: bool) -> 
         return diagnostic
     content, word = brackets[1].strip(), values.get("word", "").upper()
     names = Names([lexemes(content)], kit)
-    is_asked = bool(_COMPARISON_SIGN.search(content)) or any(
+    is_condition = bool(_COMPARISON_SIGN.search(content)) or any(
         map(names.is_yes_no, texts(lexemes(content)))
     )
-    question_form = _QUESTION_FORMS.get(word, "") if is_asked else ""
+    question_form = _QUESTION_FORMS.get(word, "") if is_condition else ""
     if question_form and is_offered:
         return diagnostic._replace(values={**values, "fix": question_form.format(what=content)})
     return diagnostic if is_offered else diagnostic._replace(values={**values, "lost": content})

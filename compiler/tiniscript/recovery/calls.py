@@ -200,7 +200,7 @@ def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
         return None
     values = [_PERCENT_AT_END.sub("", value) for value in call.values]
     splits = [(values[-1], values[:-1]), (values[0], values[1:])]
-    candidates = [(_seconds(time), powers) for time, powers in splits if _are_powers(powers)]
+    candidates = [(_seconds_text(time), powers) for time, powers in splits if _are_powers(powers)]
     seconds, powers = next((each for each in candidates if each[0]), ("", []))
     if not seconds:
         return None
@@ -210,7 +210,7 @@ def _seconds_of_motors(call: _Call, text: str) -> Diagnostic | None:
     return _call_diagnostic(call, codes.ARGUMENT_COUNT, fix, False, **gap_values)
 
 
-def _seconds(value: str) -> str:
+def _seconds_text(value: str) -> str:
     """Return the number of a value that says a time, "" for another one."""
     match = _TIME_WITH_UNIT.fullmatch(value)
     unit = lexicon_meaning(plain(match[2]), "unit") if match and match[2] else ("s", "1000")
@@ -240,8 +240,8 @@ def own_example(text: str) -> str:
         return ""
     values = [re.sub(rf"(?i)\b{unit}\b", "", value).strip() for value in call.values]
     values = [re.sub(r"  +", " ", value) for value in values if value]
-    is_whole = len(values) == len(call.word.arguments)
-    return call.with_values([f"{values[0]} {unit}", *values[1:]]) if is_whole else ""
+    has_all_values = len(values) == len(call.word.arguments)
+    return call.with_values([f"{values[0]} {unit}", *values[1:]]) if has_all_values else ""
 
 
 def likely_word(word: str, text: str) -> str:
@@ -270,9 +270,9 @@ def usage_with(word: str, number: str) -> str:
     So much of a turn is degrees; of a way it may be a power.
     """
     word_row = WORDS.get(word)
-    is_long = float(number) >= LONG_TIME_S
-    if word_row is None or not word_row.is_call or (is_long and word not in ("L", "R")):
+    is_long_time = float(number) >= LONG_TIME_S
+    if word_row is None or not word_row.is_call or (is_long_time and word not in ("L", "R")):
         return ""
     names = [argument.name for argument in word_row.arguments][1:]
-    unit = f" {UNIT_OF[word]}" if is_long else ""
+    unit = f" {UNIT_OF[word]}" if is_long_time else ""
     return f"{word}({', '.join((number + unit, *names))})" if word_row.role.lasts else ""

@@ -289,12 +289,12 @@ def _unmentioned_losses(diagnostic: Diagnostic, losses: Sequence[str], text: str
         *_COUNTED_TOKEN.findall(" ".join(text[slice(*edit.span)] for edit in edits).upper())
     }
     kept_words = {*_COUNTED_TOKEN.findall(outcome)}
-    is_cut = kept_words <= removed_words and diagnostic.code not in _NAMING_CODES
+    is_only_cut = kept_words <= removed_words and diagnostic.code not in _NAMING_CODES
     result = []
     for item in losses:
         unit = _NUMBER_WITH_UNIT.fullmatch(item) if diagnostic.repair else None
-        is_unit = unit is not None and unit[1].upper() not in outcome
-        if is_unit or (is_cut and item.upper() in removed_words - kept_words):
+        is_lost_unit = unit is not None and unit[1].upper() not in outcome
+        if is_lost_unit or (is_only_cut and item.upper() in removed_words - kept_words):
             result.append(item)
     return result
 
@@ -365,7 +365,7 @@ class _Said:
         parts = [without_note(line.translate(PLAIN_SIGNS)) for line in text.split("\n")]
         self.notes = Counter(self._all_lines([note for _, note in parts]))
         self.body = self._without_frame("\n".join(body for body, _ in parts))
-        lines = [lexemes(self._apart(line)) for line in self.body.split("\n")]
+        lines = [lexemes(self._separated_numbers(line)) for line in self.body.split("\n")]
         self.names = Names(lines, kit)
         self.tokens = [lexeme for line in lines for lexeme in (*self._join_words(line), _END)]
         self.lines = [0, *accumulate(lexeme is _END for lexeme in self.tokens)]
@@ -397,7 +397,7 @@ class _Said:
         text = apply_edits(text, [Edit(span, "") for span in labels(text)])
         return _FRAME_PATTERN.sub(";", text)
 
-    def _apart(self, line: str) -> str:
+    def _separated_numbers(self, line: str) -> str:
         """Return a line in which numbers stand alone, but for those of names: `F2,80`, `F_2_80`."""
         for part, decimals in _FRACTIONS.items():
             line = re.sub(rf"(?<!\d)(\d) {part}(?!\d)", rf"\1{decimals}", line)
@@ -495,8 +495,8 @@ class _Said:
             return
         word = self._word(token)
         neighbours = {before.text, after.text}
-        is_part = token.text in self._parts
-        is_sign = token.text == "X" and before.kind is NUMBER and after.kind in (NUMBER, WORD)
+        is_name_part = token.text in self._parts
+        is_times_sign = token.text == "X" and before.kind is NUMBER and after.kind in (NUMBER, WORD)
         is_joint = (
             word in ("AND", "OR")
             and not is_in_brackets
@@ -515,7 +515,7 @@ class _Said:
         )
         self.meant.update(self._possible_words(token))
         self.strange += token.text not in WORDS and not self.names.is_name(token.text)
-        if is_part or is_sign or is_joint or is_repetition or is_needless:
+        if is_name_part or is_times_sign or is_joint or is_repetition or is_needless:
             return
         if word in _COUNTED_WORDS or (word and word not in WORDS):
             self.words[word] += 1
@@ -584,8 +584,8 @@ class _Said:
         text = lexicon_meaning(token.text, "unit")
         is_letter = len(token.text) == 1 and token.kind is WORD
         is_separate = is_letter and token.space != "" and next_one not in (",", ")")
-        is_order = is_letter and token.source == token.text and token.space != ""
-        if not text or (is_separate and is_order) or self.names.is_name(token.text):
+        is_move_letter = is_letter and token.source == token.text and token.space != ""
+        if not text or (is_separate and is_move_letter) or self.names.is_name(token.text):
             return None
         return text[0] if text[0] in _COUNTED_UNITS else "", float(text[1])
 
@@ -598,11 +598,11 @@ class _Said:
         )
         texts = {item.kind for item in lexicon().get(token.text, ())}
         is_last_argument = len(token.text) == 1 and after.text in (",", ")") and before.kind is WORD
-        is_unit = texts == {"unit"} or (
+        is_only_unit = texts == {"unit"} or (
             "unit" in texts and (is_last_argument or token.text in WAYS)
         )
         is_unbound = not self.names.is_name(token.text) and after.kind is not NUMBER
-        if not is_unit or not is_unbound or (len(token.text) == 1 and not is_last_argument):
+        if not is_only_unit or not is_unbound or (len(token.text) == 1 and not is_last_argument):
             return False
         return lexicon_meaning(token.text, "unit")[0] in _UNITS
 
@@ -628,8 +628,8 @@ class _Said:
                 slots[at] = slots[at] or self.units.get(one.text, "")
                 slots[k] = slots[k] or self.units.get(other.text, "")
                 before = self.tokens[k - 1] if k else _END
-                is_set = sign.text == "=" and before.text in ("|", ";", _END.text)
-                is_stored = is_set and counts[one.text] == 1
+                is_assignment = sign.text == "=" and before.text in ("|", ";", _END.text)
+                is_stored = is_assignment and counts[one.text] == 1
                 slots[at] = slots[at] or (_STORED_UNIT if is_stored else "")
         return slots
 
@@ -673,10 +673,10 @@ class _Said:
         """Return the words that turn a question round, as they are written."""
         negations = []
         for k, token in enumerate(self.tokens):
-            is_no = token.text in ("NOT", "!") or bool(
+            is_negation = token.text in ("NOT", "!") or bool(
                 lexicon_meaning(token.text, *_NEGATING_KINDS)
             )
-            if not is_no or self.names.is_name(token.text):
+            if not is_negation or self.names.is_name(token.text):
                 continue
             lexemes_before = self.tokens[max(0, k - 4) : k]
             if lexicon_meaning(token.text, "unless") or any(
@@ -692,10 +692,10 @@ class _Said:
         for one, sign, other, inner in zip(
             self.tokens, self.tokens[1:], self.tokens[2:], after, strict=False
         ):
-            is_value = one.text == ")" or self._is_read(one)
+            is_first_value = one.text == ")" or self._is_read(one)
             is_other_value = self._is_read(inner if other.text == "(" else other)
             is_plain = one.kind is NUMBER and other.kind is NUMBER
-            if sign.text in SUMS and is_value and is_other_value and not is_plain:
+            if sign.text in SUMS and is_first_value and is_other_value and not is_plain:
                 sums[sign.text] += 1
         return sums
 
@@ -715,10 +715,10 @@ class _Said:
                 end = closed(left, k + 1) if texts(left[k + 1 : k + 2]) == ("(",) else k + 1
                 end += word == "DEF"
                 if 0 < end < len(left):
-                    is_over = (
+                    is_branch_end = (
                         left[end].text in (*WORD_OF_END, "}") or self._word(left[end]) in _ARMS
                     )
-                    result += is_over
+                    result += is_branch_end
         return result
 
     def _arms_in_brackets(self) -> int:
@@ -761,8 +761,8 @@ def _amounts(before: _Said, after: _Said) -> Iterator[str]:
             new_stock.take([value])
             old_stock.take(parts)
     lost_amounts, new_amounts = old_stock.all(), new_stock.all()
-    for is_near in (True, False):  # first what stays in its line: another line's 50 is no 50 %
-        lost_amounts, new_amounts = _apart(lost_amounts, new_amounts, is_near)
+    for is_same_line in (True, False):  # first what stays in its line: another line's 50 is no 50 %
+        lost_amounts, new_amounts = _unmatched(lost_amounts, new_amounts, is_same_line)
     yield from (amount.source_text for amount in lost_amounts)
     units = {unit for it in after.amounts for unit in it.unit.split("/")}
     units |= {after.units.get(token.text, "") for token in after.tokens}
@@ -792,20 +792,21 @@ class _Stock:
         return [self.amounts[k] for k in sorted(k for item in self.places.values() for k in item)]
 
 
-def _apart(
-    before: Sequence[Amount], after: Sequence[Amount], is_near: bool
+def _unmatched(
+    before: Sequence[Amount], after: Sequence[Amount], is_same_line: bool
 ) -> tuple[list[Amount], list[Amount]]:
-    """Return the amounts of two texts without those that both have; `is_near`: in one line."""
+    """Return the amounts of two texts without those that both have; `is_same_line`: in one line."""
     places: dict[tuple[int, int], dict[str, deque[int]]] = {}
     for k, amount in enumerate(after):
-        key = _thousandths(amount.value), amount.line * is_near
+        key = _thousandths(amount.value), amount.line * is_same_line
         places.setdefault(key, {}).setdefault(amount.unit, deque()).append(k)
     unmatched_amounts: list[Amount] = []
     matched_positions: set[int] = set()
     for amount in before:
         scale = LAP if amount.unit == "turns" else 1
         keys = {
-            (_thousandths(amount.value * factor), amount.line * is_near) for factor in (1, scale)
+            (_thousandths(amount.value * factor), amount.line * is_same_line)
+            for factor in (1, scale)
         }
         fitting = [
             positions

@@ -115,7 +115,7 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
     if not lexicon_meaning(row[start].text, "count") and lexicon_concept(row[start].text) != "LOOP":
         return None
     rest = _Rest(row, start + 1)
-    is_open = rest.take("(")
+    has_bracket = rest.take("(")
     while rest.means("each", "every", "declare"):
         rest.k += 1
     name_start, name = rest.k, rest.text()
@@ -129,22 +129,22 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
         numbers += [rest.number()] if rest.take(",") else []
         step = rest.number() if rest.take(",") else step
         first, bound = (0, *numbers)[-2:]
-        is_whole = rest.take(")")
+        is_complete = rest.take(")")
     elif rest.take("=", ":=") or rest.means("from", "to"):
         rest.k += rest.means("from", "to")
         first = rest.number()
         if rest.take(";"):
-            is_whole = rest.take(name)
+            is_complete = rest.take(name)
             is_closed = rest.text() == "<="
-            is_whole &= rest.take("<", "<=")
+            is_complete &= rest.take("<", "<=")
             bound = _plus(rest.number(), int(is_closed))
-            is_whole &= rest.take(";") and rest.take(name)
-            is_more = rest.text() == "+" and rest.text(1) == "="
-            rest.k += 2 * is_more
-            step = rest.number() if is_more or rest.take("+=") else step
-            is_whole &= is_more or step != 1 or rest.take("++")
+            is_complete &= rest.take(";") and rest.take(name)
+            is_increment = rest.text() == "+" and rest.text(1) == "="
+            rest.k += 2 * is_increment
+            step = rest.number() if is_increment or rest.take("+=") else step
+            is_complete &= is_increment or step != 1 or rest.take("++")
         else:
-            is_whole = rest.means("to", "until")
+            is_complete = rest.means("to", "until")
             while rest.means("to", "until"):
                 rest.k += 1
             bound = _plus(rest.number(), 1)
@@ -153,9 +153,9 @@ def _header(row: Sequence[Lexeme], start: int) -> _Counter | None:
                 step = rest.number()
     else:
         return None
-    is_whole = is_whole and (not is_open or rest.take(")"))
+    is_complete = is_complete and (not has_bracket or rest.take(")"))
     rest.k += rest.text() == ":" or rest.means("do")
-    if not is_whole or first is None or bound is None or bound <= first or not step:
+    if not is_complete or first is None or bound is None or bound <= first or not step:
         return None
     return _Counter(start, name_start, rest.k, name, first, -((first - bound) // step), step)
 

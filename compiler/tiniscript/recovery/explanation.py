@@ -233,10 +233,12 @@ class _Explainer:
             code, step = slips.code_of(part)
             is_brace = code is codes.BRACES and before[0].text in BRACES
             is_arm = bool(after) and after[0].text in _ARMS
-            is_more = code in (_ARM_CODES if is_arm else _BLOCK_CODES) and (
+            has_added_end = code in (_ARM_CODES if is_arm else _BLOCK_CODES) and (
                 closed or is_brace or is_arm
             )
-            message = self.added(closed or enclosing, edit, (k, 1), after) if is_more else None
+            message = (
+                self.added(closed or enclosing, edit, (k, 1), after) if has_added_end else None
+            )
             message = message or self.new(k, part, code, step)
             message.opened |= {closed.first} if closed else set()
             if code is codes.WRONG_END and isinstance(details := message.about, Slipped):
@@ -290,8 +292,8 @@ class _Explainer:
                 changes.append(Change(place, edit, steps.get(n, []), part, instruction))
                 if not steps.get(n) and text.isascii():
                     return []
-        has_all = all(it.after for it in changes)
-        is_separate_line = not self.candidate.is_whole and has_all  # others are not read
+        has_all_texts = all(it.after for it in changes)
+        is_separate_line = not self.candidate.is_whole and has_all_texts  # others are not read
         return (
             changes if len(changes) > 1 or (len(old_instructions) > 1 and is_separate_line) else []
         )
@@ -358,8 +360,8 @@ class _Explainer:
         if code is codes.EXTRA_WORD and not step:
             arm_match = _SECOND_WORD.match(self.program, self.words(part.edit.span).start)
             arm = arm_match[1].upper() if arm_match else ""
-            is_early = bool({arm, meant_by(arm)} & {*_ARMS})
-            return Slipped(slip, early=slips.found_in(slip) if is_early else "")
+            is_early_arm = bool({arm, meant_by(arm)} & {*_ARMS})
+            return Slipped(slip, early=slips.found_in(slip) if is_early_arm else "")
         if code is codes.OTHER_CALL and (words := _words_of_numbers(part)):
             is_tone = all(lexicon_meaning(plain(word), "note") for word in words)
             return Slipped(slip, **{"tones" if is_tone else "digits": ", ".join(words)})
@@ -444,11 +446,11 @@ class _Explainer:
         is_endless = {*texts(lexemes(header))} & {"FOREVER", "TRUE"}
         if len(block_instructions) < 2 or self.candidate.has_sure_blocks or is_deeper or is_endless:
             return False
-        is_sign = (
+        is_sign_of_end = (
             block_instructions[-1] in _WORDS_OF_SIGNS
             and block_instructions[-1] not in block_instructions[:-1]
         )
-        return is_sign or block.word not in ("LOOP", "DEF")
+        return is_sign_of_end or block.word not in ("LOOP", "DEF")
 
 
 def _first_line(change: search.Change) -> str:

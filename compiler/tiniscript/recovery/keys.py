@@ -113,10 +113,10 @@ class _Part:
                 at = start + piece.start() - min(hump_count, piece.start())
                 yield from _split_key(plain(piece[0]), at if hump_count else start + piece.start())
 
-    def diagnostics(self, is_inside: bool) -> Iterator[Diagnostic]:
+    def diagnostics(self, is_in_block: bool) -> Iterator[Diagnostic]:
         """Give what is told of an instruction, which is inside a block or not."""
         if order := self._assigned_key():
-            yield self._order(*order, "IF" if is_inside else "WHEN")
+            yield self._order(*order, "IF" if is_in_block else "WHEN")
             return
         asking_positions = (
             k for k, each in enumerate(self.pieces) if self._key_of(each) in ASKING_WORDS
@@ -224,14 +224,14 @@ class _Part:
         )
         if "(" in signs and self._word(end) == ")":
             end += 1
-        is_not = bool({*signs} & {"<>", "!="})
+        is_negated = bool({*signs} & {"<>", "!="})
         if self._word(end) in ("=", "==") and self._word(end + 1) in ("0", "1"):
-            is_not, end = self._word(end + 1) == "0", end + 2
+            is_negated, end = self._word(end + 1) == "0", end + 2
         first = k if self._mentions_pressed(k, side_position) else side_position
         before = self.pieces[k - 1] if k else _Piece("", Span(0, 0))
         if before.word == "(" or self._key_of(before) in ASKING_WORDS:
             first = k  # with its article
-        return _Key(first, end, f"{'NOT ' if is_not else ''}KEY_{side}" if side else "")
+        return _Key(first, end, f"{'NOT ' if is_negated else ''}KEY_{side}" if side else "")
 
     def _stick(self, k: int) -> _Key | None:
         """Return what the stick is asked: the number that says its side."""
@@ -263,8 +263,8 @@ class _Part:
             is_button = self._word(end) in ("A", "B") and self._word(end + 1) in ("", *_BEHIND)
             return _Key(k, end + 1, f"KEY_{self._word(end)}", is_sure=False) if is_button else None
         end = self._while(end, lambda it: _is_key_word(it, "is", "pressed"))
-        is_no, end = self._as_yes_no(end)
-        no, arrow = "NOT " * (is_negated or is_no), "" if has_axis else f"KEY_{side}"
+        is_asked_for_no, end = self._as_yes_no(end)
+        no, arrow = "NOT " * (is_negated or is_asked_for_no), "" if has_axis else f"KEY_{side}"
         return _Key(
             k, end, f"{no}{_STICK_CONDITIONS[side]}", arrow and f"{no}{arrow}", is_sure=False
         )

@@ -52,7 +52,7 @@ def labelled(source: Source) -> list[Diagnostic]:
 
 
 def _in_lines(text: str) -> Iterator[Span]:
-    start, is_open = 0, False
+    start, is_value_open = 0, False
     for line in text.split("\n"):
         body = without_note(line)[0]
         depth = counted_to = 0  # of brackets, up to where they are counted
@@ -62,9 +62,9 @@ def _in_lines(text: str) -> Iterator[Span]:
             )
             counted_to = place.start()
             label = _LABEL.match(body, place.end())
-            if label and not is_open and depth <= 0 and _is_label(label, text):
+            if label and not is_value_open and depth <= 0 and _is_label(label, text):
                 yield Span(start + label.start(), start + label.end())
-        is_open = body.rstrip()[-1:] in ("(", ",")  # it goes on in the next line
+        is_value_open = body.rstrip()[-1:] in ("(", ",")  # it goes on in the next line
         start += len(line) + 1
 
 

@@ -67,9 +67,9 @@ def _ending(rows: Sequence[str], starts: Sequence[int], names: Names) -> Iterato
         if part.strip()
     ]
     calls = [_CALL.fullmatch(part) for part in instructions_above]
-    is_open = any(it is None or not _is_call(it, names) for it in calls)
+    has_block_start = any(it is None or not _is_call(it, names) for it in calls)
     is_end = len(tokens) == 1 and last > 0 and bool(lexicon_meaning(tokens[0].text, "end"))
-    if is_end and not is_open and not names.is_name(tokens[0].text):
+    if is_end and not has_block_start and not names.is_name(tokens[0].text):
         begin = starts[last] + len(rows[last]) - len(rows[last].lstrip())
         span = Span(begin, starts[last] + len(rows[last]))
         word = tokens[0].source or ""
@@ -87,10 +87,10 @@ def _is_call(part: re.Match[str], names: Names) -> bool:
 def _setups(row: str, start: int) -> Iterator[Diagnostic]:
     """Give each `SI|` behind an instruction of its line: what follows it comes next."""
     for match in _SETUP_ANYWHERE.finditer(row):
-        is_behind = match["before"] == ")" or bool(
+        follows_instruction = match["before"] == ")" or bool(
             _SETUP_AT_START.search(row[: match.start("setup")])
         )
-        if match["before"] is None or not is_behind or match["setup"][1:2] in "Bb":
+        if match["before"] is None or not follows_instruction or match["setup"][1:2] in "Bb":
             continue
         place = Span(start + match.start("setup"), start + match.end("setup"))
         edit = Edit(Span(start + match.end("before"), start + match.end()), "; ")

@@ -187,8 +187,13 @@ class _Search:
         readings = self.search(
             first, MOST_QUICK_STATES if is_quick else MOST_STATES, self.rewritten
         )
-        has_words = any(token.kind in (WORD, NUMBER) for token in tokens)
-        if not is_quick and not readings and has_words and len(tokens) < MOST_TOKENS_WITH_SLIPS:
+        has_word_or_number = any(token.kind in (WORD, NUMBER) for token in tokens)
+        if (
+            not is_quick
+            and not readings
+            and has_word_or_number
+            and len(tokens) < MOST_TOKENS_WITH_SLIPS
+        ):
             readings_found = self.search(first, MOST_SLIP_STATES, self.with_slips)
             readings_found = [
                 reading
@@ -245,9 +250,9 @@ class _Search:
         for _ in range(_MOST_FIRST_STEPS):
             one = rewrites.one_word(reading.tokens, self.names)
             if one is not None:
-                tokens, is_name = one
-                code = codes.NAME_WITH_SPACE if is_name else codes.OTHER_LANGUAGE
-                reading = reading.with_change(tokens, 1.0 if is_name else 0.5, code)
+                tokens, is_sensor_name = one
+                code = codes.NAME_WITH_SPACE if is_sensor_name else codes.OTHER_LANGUAGE
+                reading = reading.with_change(tokens, 1.0 if is_sensor_name else 0.5, code)
                 continue
             after = next(self._apply_patterns(reading, None), None)
             if after is None:
@@ -333,8 +338,8 @@ class _Search:
                 code = codes.MISSING_SEPARATOR if sign == ";" else codes.OTHER_CALL
                 line = [*head, made(sign), *rest]
                 yield reading.with_change(line, rows.CONFUSED_COST, code, sign not in neighbours)
-            is_kept = _CALCULATION_SIGNS & {token.text, *texts(rest[:1])} or _is_group(tokens, k)
-            if is_sign and not is_kept and category(token.text[0]) != "Sm":
+            is_needed = _CALCULATION_SIGNS & {token.text, *texts(rest[:1])} or _is_group(tokens, k)
+            if is_sign and not is_needed and category(token.text[0]) != "Sm":
                 code = codes.EXTRA_CLOSE if token.text == ")" else codes.OTHER_CALL
                 yield reading.with_change([*head, *rest], rows.EXTRA_COST, code, is_bracket)
             if rest and (is_bracket or rest[0].text in ("(", ")")):
@@ -382,8 +387,8 @@ def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
     start = 0
     for k, token in enumerate([*tokens, made(";")]):
         is_edge = token.text in _EDGE_WORDS
-        is_next = k > 0 and tokens[k - 1].text == ")" and token.text in CALL_WORDS
-        if (is_edge or is_next) and start < k:
+        is_next_call = k > 0 and tokens[k - 1].text == ")" and token.text in CALL_WORDS
+        if (is_edge or is_next_call) and start < k:
             yield start, k
             start = k
         if is_edge:

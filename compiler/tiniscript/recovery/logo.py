@@ -92,20 +92,20 @@ def _pieces(body: str, start: int) -> list[list[_Token]]:
     """Return the instructions of a line, each nothing where it has other signs."""
     pieces: list[list[_Token]] = [[]]
     depth = end = 0
-    is_read = True
+    is_readable = True
     for match in _TOKEN.finditer(body):
-        is_read = is_read and match.start() == end
+        is_readable = is_readable and match.start() == end
         end = match.end()
         depth += (match[0] == "[") - (match[0] == "]")
         if match["apart"] and (not depth or "|" in match[0]):
-            pieces[-1] = pieces[-1] if is_read else []
+            pieces[-1] = pieces[-1] if is_readable else []
             pieces.append([])
-            is_read = True
+            is_readable = True
         elif match.lastgroup and match.lastgroup != "apart":
             span = Span(start + match.start(), start + match.end())
             pieces[-1].append(_Token(plain(match[0]), match.lastgroup, span))
-    is_read = is_read and end == len(body.rstrip())
-    return pieces if is_read else [*pieces[:-1], []]
+    is_readable = is_readable and end == len(body.rstrip())
+    return pieces if is_readable else [*pieces[:-1], []]
 
 
 def _diagnostic(tokens: Sequence[_Token], source: Source, names: Names) -> Diagnostic | None:

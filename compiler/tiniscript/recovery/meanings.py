@@ -223,10 +223,10 @@ def _in_two_words(word: str) -> str | None:
         is_framed = (
             bool(texts & {"F", "M"} or filler_words) or len({*map(lexicon_concept, halves)}) == 1
         )
-        is_all = all(
+        are_all_known = all(
             half in filler_words or half == "STOP" or lexicon_concept(half) for half in halves
         )
-        if len(commands) == 1 and is_framed and is_all:
+        if len(commands) == 1 and is_framed and are_all_known:
             only = next(iter(commands))
             if only == "STOP" and any(lexicon_meaning(half, "engine") for half in halves):
                 return "S"
@@ -363,8 +363,8 @@ def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
             break
         row.append(text)
     ends = tokens[len(row)].text if len(tokens) > len(row) else ";"
-    is_name = len(row) > 1 and ends == after and row[0] not in WORDS and row[-1] != "-"
-    return tuple(row) if is_name else ()
+    is_long_name = len(row) > 1 and ends == after and row[0] not in WORDS and row[-1] != "-"
+    return tuple(row) if is_long_name else ()
 
 
 class Names:
@@ -491,12 +491,12 @@ class Names:
     def label(self, token: Lexeme) -> str:
         """Return all classes of a token, as one text that a pattern finds them in."""
         is_glued = token.space == "" or token.text in WAYS
-        is_unit = (
+        is_unit_position = (
             is_glued and token.text in WORDS and lexicon_meaning(token.text, "unit")
         )  # `5S`, `5 CM`
-        key = (token.kind, token.text, bool(is_unit))
+        key = (token.kind, token.text, bool(is_unit_position))
         if key not in self._labels:
-            classes = [*self._classes(token), *(["@unit"] if is_unit else [])]
+            classes = [*self._classes(token), *(["@unit"] if is_unit_position else [])]
             self._labels[key] = f"\x01|{'|'.join(dict.fromkeys(classes))}|\x02"
         return self._labels[key]
 

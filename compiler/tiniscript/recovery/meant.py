@@ -56,8 +56,8 @@ def meant_in(
     if not message:
         return []
     explained_diagnostics = [(each, _diagnostic(each, candidate, diagnostics)) for each in message]
-    is_part = is_sure or not candidate.is_whole  # what is read of a part gives up nothing
-    if is_part and difference(text, candidate.text, recovery.kit).losses:
+    loses_nothing = is_sure or not candidate.is_whole  # what is read of a part gives up nothing
+    if loses_nothing and difference(text, candidate.text, recovery.kit).losses:
         is_kept_of = (
             []
             if is_sure
@@ -156,10 +156,10 @@ def _in_words(explanation: Explanation) -> tuple[Code, dict[str, str]]:
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
     values = explanation.values_as(code)
     found_word, suggestion = values.get("found", "").upper(), values.get("right", "")
-    is_near = nearest(found_word, [suggestion]) or (
+    is_misspelling = nearest(found_word, [suggestion]) or (
         suggestion in WAYS and is_slip(found_word, suggestion)
     )
-    if code is codes.OTHER_LANGUAGE and is_near:
+    if code is codes.OTHER_LANGUAGE and is_misspelling:
         code = codes.UNKNOWN_WORD
         values |= {"found": values["found"].upper(), "near": suggestion}
     elif suggestion == "FOREVER" and _ENDLESS_LOOP in explanation.fix:

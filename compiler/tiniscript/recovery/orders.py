@@ -100,7 +100,7 @@ def _orders_with_condition(
     first: list[Order], words: Sequence[Lexeme], names: Names
 ) -> list[Order]:
     """Return orders and the condition after them; a move that it stops is watched meanwhile."""
-    question = block(words, names, is_open=False)
+    question = block(words, names, goes_on=False)
     if not question and [order.word for order in first[-1:]] in (["S"], ["STOP"]):
         return _stopped_when(first[:-1], words, names)
     if not first or not question:
@@ -180,21 +180,21 @@ def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
     if call is None or call.times or "DISTANCE" not in names.sensors:
         return None
     word = call.tokens[0].text
-    condition, sample = _parse_condition(words[k + 1 :], names, is_ahead=word == "F")
+    condition, sample = _parse_condition(words[k + 1 :], names, may_be_distance=word == "F")
     text = f"{laid_out(call.tokens)} UNTIL({condition})"
     return Order(word, text, call.samples + sample) if condition else None
 
 
 def _parse_condition(
-    words: Sequence[Lexeme], names: Names, is_ahead: bool = True
+    words: Sequence[Lexeme], names: Names, may_be_distance: bool = True
 ) -> tuple[str, tuple[str, ...]]:
     """Return the condition that words ask, and what they do not say of it.
 
-    `is_ahead`: it may be one for something near, which DISTANCE sees.
+    `may_be_distance`: it may be one for something near, which DISTANCE sees.
     """
     if exact := laid_out(condition_in(words, names)):
         return exact, ()
-    text = (worded(words, names) if is_ahead else None) or {}
+    text = (worded(words, names) if may_be_distance else None) or {}
     condition = text.get("asked") or text.get("question", "")
     has_other_question = any(
         names.meant(it.text) in _SIDEWAYS_MOVES or it.text in COMPARISONS for it in words
@@ -204,10 +204,10 @@ def _parse_condition(
     return condition, () if "asked" in text else (f"{NEAR_CM} cm",)
 
 
-def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
+def block(tokens: Sequence[Lexeme], names: Names, goes_on: bool) -> str:
     """Return the block that one sentence says: its header, what is done, and its end.
 
-    `is_open`: it goes on further down.
+    `goes_on`: it goes on further down.
     """
     word = names.meant(tokens[0].text)
     if word not in ("IF", "WHEN", "WHILE", "LOOP") or len(tokens) > MOST_WORDS:
@@ -229,8 +229,8 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
             return ""  # another order than the words after it say
         if not body or any(order.is_side_free for order in (*body, *other)):
             continue
-        is_side = names.meant(texts[k]) in _TURNS and texts[k + 1 : k + 2] != ["("]
-        if word != "LOOP" and tokens[k].source and is_side:
+        is_side_word = names.meant(texts[k]) in _TURNS and texts[k + 1 : k + 2] != ["("]
+        if word != "LOOP" and tokens[k].source and is_side_word:
             return ""  # where the wall is, or where to go
         place = next((j for j in range(k, arm) if not lexicon_meaning(texts[j], "filler")), k)
         if lexicon_meaning(texts[place], "front") and place + 1 < arm:
@@ -241,7 +241,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
         if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):
             return ""
         parts = [header, written(body), *(["ELSE", written(other)] if other else [])]
-        return ";".join(parts if is_open else [*parts, BLOCK_ENDS[word]])
+        return ";".join(parts if goes_on else [*parts, BLOCK_ENDS[word]])
     return ""
 
 

@@ -263,8 +263,8 @@ class Encoded:
             new += made_of
         new = _without_double_brackets(new)
         start, end = self.span(match)
-        is_set = row.code is codes.OTHER_ASSIGNMENT
-        if is_set and start and self.tokens[start - 1].text in _BEFORE_VALUE:
+        is_assignment = row.code is codes.OTHER_ASSIGNMENT
+        if is_assignment and start and self.tokens[start - 1].text in _BEFORE_VALUE:
             return None  # in brackets it would be a condition
         if new and new[-1].text == ";" and end < len(self.tokens) and self.tokens[end].text == ";":
             new.pop()
@@ -332,11 +332,11 @@ def _decimal(place: _Place) -> _Made:
     (whole_part,), (comma,), (decimals,) = place.captured
     before = place.line.tokens[place.start - 1].text if place.start else ""
     longest = 3 if whole_part.text == "0" else 2 if before == "=" else 1
-    is_list = decimals.text == "0" or (len(whole_part.text) > 1 and decimals.text != "5")
+    is_value_list = decimals.text == "0" or (len(whole_part.text) > 1 and decimals.text != "5")
     has_space = bool(comma.space or decimals.space)
     if (
         "." in whole_part.text + decimals.text
-        or is_list
+        or is_value_list
         or len(decimals.text) > longest
         or has_space
     ):

@@ -173,10 +173,10 @@ class Recovery:
                 for _ in row.pattern.findall(body):  # a step each, which is told at its place
                     new = row.pattern.sub(row.replacement, body, count=1)
                     before, after = lexemes(body), lexemes(new)
-                    is_lost = names.defs & ({*texts(before)} - {*texts(after)})
+                    lost_defs = names.defs & ({*texts(before)} - {*texts(after)})
                     if (
                         new != body
-                        and not is_lost
+                        and not lost_defs
                         and _open_brackets(after) <= _open_brackets(before)
                     ):
                         line.steps.append(Step(row.code, before, after))
@@ -206,7 +206,7 @@ class Recovery:
         text = plain(self.program)
         if not until_pattern.search(text) or _END_UNTIL.search(text):
             return  # there is none, or it is taken for a block
-        is_do = False
+        is_do_line = False
         for line in self.lines:
             text_above = next((text for text in reversed(texts) if text.body.strip()), None)
             body = (
@@ -217,7 +217,7 @@ class Recovery:
             if (
                 text_above
                 and body.endswith(")")
-                and not is_do
+                and not is_do_line
                 and until_pattern.match(plain(line.body))
             ):
                 text_above.body, text_above.note = f"{body} {line.body.strip()}", line.note
@@ -227,7 +227,7 @@ class Recovery:
                 )
             else:
                 texts.append(line)
-            is_do = is_do or _LONE_LOOP_START.match(plain(line.body)) is not None
+            is_do_line = is_do_line or _LONE_LOOP_START.match(plain(line.body)) is not None
         self.lines = texts
 
     def read_line(self, line: _Text) -> None:
@@ -244,13 +244,13 @@ class Recovery:
             return
         first = readings[0]
         line.rivals = [reading for reading in readings[1:] if reading.text_read != first.text_read]
-        is_close = any(
+        has_close_rival = any(
             rival.is_sure
             and rival.cost < first.cost + SURE_MARGIN
             and _count_kept(rival) >= _count_kept(first)
             for rival in line.rivals
         )
-        is_sure = first.is_sure and not is_close and not _is_key(tokens, first.tokens)
+        is_sure = first.is_sure and not has_close_rival and not _is_key(tokens, first.tokens)
         line.reading = first._replace(is_sure=is_sure)
 
     def parts(self, tokens: list[Lexeme], names: Names) -> Reading:

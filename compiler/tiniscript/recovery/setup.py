@@ -67,9 +67,9 @@ def setup(text: str) -> Diagnostic | None:
     head, sign, rest = plain(match["head"]), match["sep"].strip(), body[match.end() :]
     end = match.end("head") + len(match["sep"].rstrip())
     is_start_word = head in ("SI", "SB")
-    is_begun = is_start_word and (not rest or sign in rows.BARS)
+    is_setup = is_start_word and (not rest or sign in rows.BARS)
     is_separate = match.end() > match.end("head")
-    if SEAL in line[end:] or not (is_begun or _begins_instruction(rest, sign, is_separate)):
+    if SEAL in line[end:] or not (is_setup or _begins_instruction(rest, sign, is_separate)):
         return None
     head_meant = head if is_start_word else "SI"
     fix = head_meant + "|"
@@ -129,7 +129,7 @@ def _spoken(source: Source, kit: Kit) -> Diagnostic | None:
     if match := _HEAD_IN_WORDS.match(body):
         head, words = plain(match[1]), lexemes(body[match.end() :])
         start_text, values = match[1], {"found": head}
-        if block([made("IF"), *words], names, is_open=False):
+        if block([made("IF"), *words], names, goes_on=False):
             return None
     else:
         words = lexemes(body)
@@ -233,8 +233,8 @@ def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
         words = lexemes(title)
         if not words:
             continue
-        is_set = lexicon_meaning(words[0].text, "set") or title.lower().startswith("#define")
-        if is_set or lines.is_right(words, Names([], kit)) or "(" in title or "{" in title:
+        is_assignment = lexicon_meaning(words[0].text, "set") or title.lower().startswith("#define")
+        if is_assignment or lines.is_right(words, Names([], kit)) or "(" in title or "{" in title:
             return []
         span, fix = Span(row.start(), row.start() + len(title)), f"// {title}"
         values = {"command": title} if words[0].text == "TSC" else {"fix": fix}

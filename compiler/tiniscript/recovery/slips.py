@@ -176,8 +176,8 @@ def _code_of_steps(change: Change) -> tuple[Code, Step]:
     foreign = next((item for item in lost_words if meant_by(item) in new - words), "")
     translated = next((it for it in steps if it.code is codes.OTHER_LANGUAGE), None)
     if translated and (foreign or not own_steps):
-        is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
-        return codes.OTHER_LANGUAGE if is_said else codes.MISSING_OPEN, translated
+        is_foreign_call = foreign or "(" in words or "(" not in new or before[0].text not in new
+        return codes.OTHER_LANGUAGE if is_foreign_call else codes.MISSING_OPEN, translated
     if foreign:
         changed_texts = (
             it for it in own_steps if foreign in {*texts(it.before)} - {*texts(it.after)}
@@ -223,8 +223,8 @@ def _foreign_words(slip: Slip) -> Slip:
     elif has_dot:
         result = with_next
     end = next((k for k, it in enumerate(result) if it.text in ("=", "(")), len(result))
-    is_set = end < len(result) and result[end].text == "="
-    result = result[: end - is_set] or result
+    is_assignment = end < len(result) and result[end].text == "="
+    result = result[: end - is_assignment] or result
     if any(lexeme.kind is NUMBER for lexeme in result):  # PARA of `PARA I DE 1 A 4`
         result = [*takewhile(_is_counting, result)] or result
     if right and result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in result):
@@ -290,9 +290,11 @@ def found_in(slip: Slip) -> str:
     code, found = slip.code, slip.found
     if _has_gap(slip):
         return text_of(slip.old[slip.start : slip.start + 1])
-    is_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
-    is_all = code is codes.REPEATED or (code is codes.OTHER_SIGN and not slip.right)
-    old_text = text_of(slip.was if is_all or not (found or is_sign) else found)
+    is_missing_sign = code is codes.OTHER_ASSIGNMENT  # `X 5`: else it is missing
+    is_whole_instruction = code is codes.REPEATED or (code is codes.OTHER_SIGN and not slip.right)
+    old_text = text_of(
+        slip.was if is_whole_instruction or not (found or is_missing_sign) else found
+    )
     if code is codes.LINE_NUMBER and old_text[:1] == "_":
         return "_"
     if code in (codes.OTHER_LANGUAGE, codes.EXTRA_WORD):

@@ -119,10 +119,14 @@ class _Reader:
             rest = self.words[k + 1 :]
             if sign == ")" and any(it.kind in (WORD, NUMBER) or it.text == "(" for it in rest):
                 return False
-            is_odd = sign == "," and after in (",", ")")
+            is_odd_comma = sign == "," and after in (",", ")")
             has_second_group = sign == "(" and k > 2 and "(" in signs[:k]
             is_call = sign == "(" and self.names.meant(after, NEAR) in CALL_WORDS
-            if is_odd or has_second_group or (is_call and self.names.meant(signs[0], NEAR) != "M"):
+            if (
+                is_odd_comma
+                or has_second_group
+                or (is_call and self.names.meant(signs[0], NEAR) != "M")
+            ):
                 self.is_sure = False
         return True
 
@@ -216,9 +220,9 @@ class _Reader:
             self._add_value("-" + number_text(float(self.text(k + 1))), self.mark)
             return k + 2
         if is_minus and (before in ("(", ",") or self._is_glued(k)):
-            is_back = self.command in MOVES and not self.is_back and not self.values
+            is_minus_of_move = self.command in MOVES and not self.is_back and not self.values
             self.is_sure, self.is_back = False, True
-            return k + 1 if is_back else None  # nobody drops a sign
+            return k + 1 if is_minus_of_move else None  # nobody drops a sign
         if sign not in _PASSED_SIGNS or (sign == "=" and not self.mark):
             return None
         if sign == "," and self.mark and before != ",":
@@ -304,9 +308,9 @@ class _Reader:
         cost = meanings[0].cost if meanings else 0
         self.is_sure = self.is_sure and cost < 2
         before = self.command
-        is_way = before == "F" and command in ("B", "L", "R") and not self.values
-        is_side = self.is_turn and command in ("L", "R") and before not in ("L", "R")
-        if before is None or is_way or is_side:
+        is_way_of_f = before == "F" and command in ("B", "L", "R") and not self.values
+        is_side_of_turn = self.is_turn and command in ("L", "R") and before not in ("L", "R")
+        if before is None or is_way_of_f or is_side_of_turn:
             self.command = command
         elif before == command and not self.values and command in MOVES:
             pass
@@ -378,8 +382,8 @@ class _Reader:
                 _Value(number_text(it.number / 1000), "s") if it in plain_values else it
                 for it in values
             ]
-        is_long = any(it.number >= MILLISECONDS_FROM for it in plain_values)
-        return None if self.command == "W" and is_long else values
+        is_in_milliseconds = any(it.number >= MILLISECONDS_FROM for it in plain_values)
+        return None if self.command == "W" and is_in_milliseconds else values
 
     def _slots(
         self, values: list[_Value], arguments: tuple[Argument, ...], has_until: bool
@@ -425,8 +429,8 @@ class _Reader:
         places = [order[k] for k in sorted(order)]
         self.is_sure = self.is_sure and places == sorted(places)
         for k, place in order.items():
-            is_long = values[k].number >= LONG_TIME_S and values[k].unit is None
-            if is_long and arguments[place].unit == "s" and len(arguments) > 1:
+            is_long_time = values[k].number >= LONG_TIME_S and values[k].unit is None
+            if is_long_time and arguments[place].unit == "s" and len(arguments) > 1:
                 if self.words[0].text not in WORDS:
                     return None  # of another language: rarely seconds, as in `move(50, 50)`
                 self.is_sure = False

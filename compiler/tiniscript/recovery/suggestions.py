@@ -185,8 +185,10 @@ def _parts(body: str, start: int, line_context: LineContext) -> Iterator[_Words]
                 yield _Words(line_context, at, tokens, 0, before)
                 break
             if any(token.text in ASKING_WORDS for token in tokens[:size]):
-                is_ended = all(lexicon_meaning(item.text, "do") for item in rest)  # by a THEN
-                yield _Words(line_context, at, tokens if is_ended else tokens[:size], 0, before)
+                has_only_then = all(lexicon_meaning(item.text, "do") for item in rest)  # by a THEN
+                yield _Words(
+                    line_context, at, tokens if has_only_then else tokens[:size], 0, before
+                )
             if not instruction_length(rest, names) or rest[0].text in ("IF", "WHILE"):
                 yield _Words(line_context, at, tokens, size, before)
                 break
@@ -373,10 +375,10 @@ def _worded_condition(gaps: Gaps) -> dict[str, str]:
     """What the words of a condition ask."""
     row, names = gaps.tokens("s"), gaps.part.names
     is_bare = [item.text for item in gaps.from_on("s")[len(row) :][:1]] != [")"]
-    is_order = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
-    is_order |= is_bare and any("|@start|" in names.label(item) for item in row)
-    is_read = is_order or bool(_condition_tokens(gaps, "s"))
-    result = None if is_read else worded(row, names)
+    is_for_instruction = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
+    is_for_instruction |= is_bare and any("|@start|" in names.label(item) for item in row)
+    has_other_reader = is_for_instruction or bool(_condition_tokens(gaps, "s"))
+    result = None if has_other_reader else worded(row, names)
     if result is None:
         raise NoGap
     return result
@@ -518,9 +520,9 @@ def _as_note(part: Trailing) -> dict[str, str]:
     words = part.words.strip(_NEEDLESS_SIGNS)
     if is_joined or not is_prose or not words or not lines.is_right(part.tokens, part.names):
         return {}
-    is_order = any(it.text in WORDS and it.source == it.text for it in part.row)
-    is_order |= any(lexicon_meaning(it.text, "unit")[:1] in _UNIT_MEANINGS for it in part.row)
-    if is_order:
+    is_instruction = any(it.text in WORDS and it.source == it.text for it in part.row)
+    is_instruction |= any(lexicon_meaning(it.text, "unit")[:1] in _UNIT_MEANINGS for it in part.row)
+    if is_instruction:
         return {}
     note = f"// {words}"
     return {"note": f"{part.call} {note}"} if _is_last(part) else {"last_note": note}

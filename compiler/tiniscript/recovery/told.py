@@ -70,10 +70,10 @@ class WrongText:
         text = self.source.text.replace("\r\n", "\n").replace("\r", "\n")
         if len(text) > MOST_CHARACTERS or SEAL in text:
             return None
-        return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own=to == text))
+        return Recovery(text, self.kit, lambda to: self._mistakes(to, is_own_text=to == text))
 
-    def _mistakes(self, text: str, is_own: bool) -> list[Code]:
-        diagnostics = self.diagnostics if is_own else self.check(text)
+    def _mistakes(self, text: str, is_own_text: bool) -> list[Code]:
+        diagnostics = self.diagnostics if is_own_text else self.check(text)
         return [diagnostic.code for diagnostic in diagnostics if diagnostic.is_mistake]
 
 

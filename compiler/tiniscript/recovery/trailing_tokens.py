@@ -162,11 +162,11 @@ class Trailing:
         own_word, word_row = self.own, WORDS.get(self.own)
         is_timed = word_row is not None and word_row.role.lasts
         if self.tokens:
-            is_order = word_row is not None and not self.is_arm and own_word != "START"
+            is_instruction = word_row is not None and not self.is_arm and own_word != "START"
             labels: dict[str, object] = {
                 own_word: True,
                 "@any": True,
-                "@cmd": is_order,
+                "@cmd": is_instruction,
                 "@did": self.tokens[0].text in self.names.defs,
                 "@set": [token.text for token in self.tokens[1:2]] == ["="],
                 "@move": own_word in MOVES,
@@ -174,7 +174,7 @@ class Trailing:
                 "@asked": self.is_asked,
                 "@unasked": is_timed and not self.is_asked,
                 "@outer": not self.is_in_block,
-                "@more": is_order and self.is_more,
+                "@more": is_instruction and self.is_more,
                 "@later": self.is_later and not self.is_arm,
             }
         else:
@@ -274,10 +274,14 @@ class Trailing:
         is_number = self._text(k + 1)[:1].isdigit() and not self._is_told(k + 1)
         is_bracket = text == "(" and (is_number or (bool(k) and self.row[k - 1].kind is WORD))
         if not k:
-            is_sign = text in _SIGNS_BEFORE_NOTE or (token.kind is ODD and text != "#")
-            return is_sign and not is_bracket and not self.is_arm
-        is_list = text == "," and self.row[k - 1].kind is NUMBER
-        return not is_bracket and not is_list and (is_first or text not in _SIGNS_OUTSIDE_NOTES)
+            is_note_sign = text in _SIGNS_BEFORE_NOTE or (token.kind is ODD and text != "#")
+            return is_note_sign and not is_bracket and not self.is_arm
+        is_list_of_words = text == "," and self.row[k - 1].kind is NUMBER
+        return (
+            not is_bracket
+            and not is_list_of_words
+            and (is_first or text not in _SIGNS_OUTSIDE_NOTES)
+        )
 
     def _is_alone(self, k: int) -> bool:
         """Whether a single word is rather a misspelt one, or the name of a DEF."""
@@ -293,16 +297,16 @@ class Trailing:
         if is_explained or len(words) > 1:
             return False
         source = token.source or ""
-        is_name = len(source) > 1 and source.isupper()
-        return is_name or nearest(token.text, _LONG_WORDS) is not None
+        is_capital_name = len(source) > 1 and source.isupper()
+        return is_capital_name or nearest(token.text, _LONG_WORDS) is not None
 
     def _is_order(self, k: int) -> bool:
         """Whether the word at a place says what the instruction does not."""
         text, own_word = self.row[k].text, self.own
         is_last = not any(lexeme.kind in (WORD, NUMBER) for lexeme in self.row[k + 1 :])
-        is_begun = k or len(text) == 1 or lexicon_meaning(text, "count")
-        is_small = lexicon_meaning(text, "small") and not is_last and is_begun
-        if is_small or (own_word == "BEEP" and lexicon_meaning(text, "note")):
+        is_after_word = k or len(text) == 1 or lexicon_meaning(text, "count")
+        is_small_word = lexicon_meaning(text, "small") and not is_last and is_after_word
+        if is_small_word or (own_word == "BEEP" and lexicon_meaning(text, "note")):
             return False
         if lexicon_meaning(text, "lap", "turn"):
             return own_word not in ("L", "R", "M") and not (

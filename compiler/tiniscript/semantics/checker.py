@@ -119,7 +119,7 @@ class _Checker(Scope):
 
     # -- readings -----------------------------------------------------------------------------
 
-    def take(self, values: Sequence[Value], span: Span, output: list[Statement]) -> int:
+    def add_readings(self, values: Sequence[Value], span: Span, output: list[Statement]) -> int:
         """Add the readings that come before an instruction; return them as bits."""
         result = 0
         for sensor in self.unread_sensors(values, self.definitely_read_mask):
@@ -160,7 +160,7 @@ class _Checker(Scope):
             other = f"{free} = {self.source[node.value.span]}"
             self.report(codes.TYPE_CHANGES, node.value.span, name=node.name, other=other,
                         old="@" + known_type, new="@" + value.type)  # fmt: skip
-        self.take([value], node.span, output)
+        self.add_readings([value], node.span, output)
         output.append(ir.Assign(number, value.terms, node.span))
 
     def variable(self, node: ast.Assign, value: Value) -> int:
@@ -212,7 +212,7 @@ class _Checker(Scope):
                 self.spell_out(word, arguments, span, output)
             return
         self.check_stack_fits(values, span)
-        self.take(values, span, output)
+        self.add_readings(values, span, output)
         terms = [value.terms for value in values]
         if word.role.lasts:
             until = None if node.until is None else self.until(node.until)
@@ -314,7 +314,7 @@ class _Checker(Scope):
         else:
             value = self.number(argument, word.arguments[0], device.name)
         self.check_stack_fits([value], node.span)
-        self.take([value], node.span, output)
+        self.add_readings([value], node.span, output)
         output.append(ir.Set(number, value.terms, node.span))
 
     def call(self, node: ast.Command, number: int, output: list[Statement]) -> None:
@@ -326,11 +326,13 @@ class _Checker(Scope):
         if depth + self.beside_blocks > BLOCKS:
             self.report(codes.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
         self.deepest = max(self.deepest, depth)
-        self.give(node, self.procedures[number], output)
+        self.set_values(node, self.procedures[number], output)
         self.definitely_read_mask |= facts.definitely_read_mask
         output.append(ir.Call(number, node.span))
 
-    def give(self, node: ast.Command, procedure: ir.Procedure, output: list[Statement]) -> None:
+    def set_values(
+        self, node: ast.Command, procedure: ir.Procedure, output: list[Statement]
+    ) -> None:
         """Add what sets the values of a DEF before it is called."""
         arguments = node.arguments or ()
         if len(arguments) != len(procedure.values):
@@ -351,7 +353,7 @@ class _Checker(Scope):
                 self.report(codes.CALL_KIND, argument.span, name=self.variables[number],
                             word=node.word, old="@" + expected, new="@" + value.type)  # fmt: skip
         self.check_stack_fits(values, node.span)
-        self.take(values, node.span, output)
+        self.add_readings(values, node.span, output)
         for value, number in zip(values, procedure.values, strict=True):
             output.append(ir.Assign(number, value.terms, node.span))
 
@@ -391,7 +393,7 @@ class _Checker(Scope):
                 for sensor in reads:
                     chain |= 1 << sensor
             else:
-                chain = self.take([value], arm.span, output)
+                chain = self.add_readings([value], arm.span, output)
             body = self.nested_body(arm.body, False, arm.span)
             after &= self.definitely_read_mask
             self.definitely_read_mask = before
@@ -405,7 +407,7 @@ class _Checker(Scope):
         if node.times is not None:
             value = self.number(node.times, Argument("n", ""), "LOOP")
             self.check_stack_fits([value], node.times.span)
-            self.take([value], node.span, output)
+            self.add_readings([value], node.span, output)
             count = value.terms
         body = self.loop_body(node)
         output.append(ir.Loop(count, body, node.span))

@@ -24,7 +24,7 @@ def find_move_end(source: Source, program: ast.Program, move: ast.Command) -> di
     power = source[move.arguments[1].span]
     if not power.isdecimal():
         return {}
-    after = _after(program.body, move)
+    after = _instructions_after(program.body, move)
     first, second = (*after[:2], None, None)[:2]
     if isinstance(first, ast.Command) and first.word == "W" and _is_stop(second):
         time = source[first.arguments[0].span] if first.arguments else ""
@@ -44,7 +44,7 @@ def find_move_end(source: Source, program: ast.Program, move: ast.Command) -> di
     return {}
 
 
-def _after(body: Body, node: ast.Command) -> Body:
+def _instructions_after(body: Body, node: ast.Command) -> Body:
     """Return what comes after an instruction in its own block."""
     start = node.span.start
     while body:

@@ -92,8 +92,10 @@ class Debugger:
         if event.name != "HALTED":
             return False
         place = self._place(event.at)
-        is_inside = place is not None and statement_of(self.statements, place.offset) != event.at
-        if self.is_stepping and is_inside:  # of one instruction of the text
+        is_inside_statement = (
+            place is not None and statement_of(self.statements, place.offset) != event.at
+        )
+        if self.is_stepping and is_inside_statement:  # of one instruction of the text
             self._resume(RESUME_STEP)
             return True
         self._print_halt(event.at, event.task, place)

@@ -227,12 +227,12 @@ def trim_in_words(trim: Trim, language: str) -> str:
     """Return a trim in words."""
     result = [
         text(key, language)
-        for key, is_so in (
+        for key, is_set in (
             ("trim_exchanged", trim.is_exchanged),
             ("trim_left_reversed", trim.is_left_reversed),
             ("trim_right_reversed", trim.is_right_reversed),
         )
-        if is_so
+        if is_set
     ] or [text("trim_as_wired", language)]
     key = "trim_left_weaker" if trim.balance > 0 else "trim_right_weaker"
     balance = key if trim.balance else "trim_even"

@@ -99,10 +99,10 @@ class Recorder:
         if self._began_s is None:
             self._began_s = monotonic()
         row = Row(self._ms(event), event)
-        is_kept = self._kept.add(row)
-        if is_kept:
+        is_row_kept = self._kept.add(row)
+        if is_row_kept:
             self._rows.line(recordings.line(row))
-        if not is_kept or name in ENDING_EVENTS:
+        if not is_row_kept or name in ENDING_EVENTS:
             self._end(row.ms)
 
     def end(self, event: str) -> None:

@@ -126,13 +126,13 @@ class CommandSimulator(SimulatorThread):
         """
         expected = "STOP" if event == "STOPPED" else event
 
-        def is_there() -> bool:
+        def has_event() -> bool:
             return any(event.text == expected for event in self._told)
 
         with self._drawing:
             started_ms = self.robot.started_ms or 0
             if expected.partition(" ")[0] not in TOLD_EVENTS or not self._drawing.wait_for(
-                is_there, LONGEST_ROUND_S
+                has_event, LONGEST_ROUND_S
             ):
                 return self.robot.now_ms - started_ms
             while True:

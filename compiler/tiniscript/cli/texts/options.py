@@ -355,11 +355,11 @@ def first_word(verb: str, words: list[str]) -> int | None:
     commands = (verb, *steps_of(verb))
     valued = {flag for command in commands for option in options_of(command)
               if option.kind is not None for flag in option.flags.split()}  # fmt: skip
-    is_value = False
+    is_option_value = False
     for k, word in enumerate(words):
-        if not is_value and not word.startswith("-"):
+        if not is_option_value and not word.startswith("-"):
             return k
-        is_value = not is_value and word in valued
+        is_option_value = not is_option_value and word in valued
     return None
 
 

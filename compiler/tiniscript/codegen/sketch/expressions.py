@@ -60,8 +60,8 @@ class Expressions:
             elif op == "VARIABLE":
                 stack.append(_Operand(self.variables[value], _PRIMARY))
             elif op == "SENSOR":
-                is_read = reading is not None and reading[0] == value
-                name = reading[1] if reading is not None and is_read else self.sensors[value]
+                is_own_reading = reading is not None and reading[0] == value
+                name = reading[1] if reading is not None and is_own_reading else self.sensors[value]
                 stack.append(_Operand(name, _PRIMARY))
             elif op == "TIME":
                 stack.append(_Operand(f"{self.use('time')}()", _PRIMARY))

@@ -21,7 +21,7 @@ from tiniscript.codegen.sketch.names import (
     translated_name,
 )
 from tiniscript.codegen.sketch.statements import Comment, SketchNames, Statements, comment_text
-from tiniscript.codegen.sketch.wiring import SketchPlan, is_count, is_small
+from tiniscript.codegen.sketch.wiring import SketchPlan, is_exact_as_float, reads_counts
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant
@@ -35,14 +35,16 @@ def needs_numbers(program: ir.Program, robot: Robot) -> bool:
     for statement in ir.all_statements(program):
         if isinstance(statement, ir.Show) and not statement.is_yes_no:
             value = statement.value[0]
-            if value.op == "SENSOR" and not is_count(kit.sensors[value.value], wired[value.value]):
+            if value.op == "SENSOR" and not reads_counts(
+                kit.sensors[value.value], wired[value.value]
+            ):
                 return True
         if isinstance(statement, ir.Assign) or any(map(_is_computed, _arguments(statement, robot))):
             return True
         for expression in ir.expressions(statement):
             if any(_needs_arithmetic(term) for term in expression):
                 return True
-    return not is_small(kit.sensors)
+    return not is_exact_as_float(kit.sensors)
 
 
 def _arguments(statement: ir.Statement, robot: Robot) -> tuple[ir.Expression | None, ...]:

@@ -56,21 +56,21 @@ def line_of(source: Source) -> str:
     parts: list[str] = []
     brackets = 0
     before = ""  # the kind of the last token, or nothing at the beginning
-    is_ended = False  # whether an instruction has ended since then
+    has_ended = False  # whether an instruction has ended since then
     for token in spell_out(scan(source.text).tokens):
         kind = token.kind
         if kind is END:
             break
         if kind is NEWLINE or kind == ";":
-            is_ended = is_ended or not brackets
+            has_ended = has_ended or not brackets
             continue
-        if is_ended and before not in ("", "|"):
+        if has_ended and before not in ("", "|"):
             parts.append(";")
         elif before in (WORD, NUMBER) and kind in (WORD, NUMBER):
             parts.append(" ")
         parts.append(ALIASES.get(token.text, token.text))
         brackets += (kind == "(") - (kind == ")")
-        before, is_ended = kind, False
+        before, has_ended = kind, False
     return with_checksum("".join(parts) or EMPTY_PROGRAM)
 
 

@@ -159,7 +159,7 @@ class _Conditions:
 
     def _report_turned_while(self, loop: ir.While, comparison: Comparison) -> None:
         """`WHILE(DISTANCE < 10); F(0.2, 60); END_WHILE`: what ends it does not come that way."""
-        way, end = self._turned(loop, comparison)
+        way, end = self._way_and_end(loop, comparison)
         if end:
             device, _, number = comparison
             turned = comparison._replace(op=_opposite(end))
@@ -169,7 +169,7 @@ class _Conditions:
             values = {"sensor": device.name, number_is: as_text(number), "fix": fix}
             self._context.report(codes.TURNED_ROUND, self._context.head(loop.span), **values)
 
-    def _turned(self, loop: ir.While, comparison: Comparison) -> tuple[str, str]:
+    def _way_and_end(self, loop: ir.While, comparison: Comparison) -> tuple[str, str]:
         """Return the way that all moves of a loop go, and what else would end it, if anything."""
         moves = [item for item in loop.body if not isinstance(item, STANDING_STATEMENTS)]
         ways = {item.direction if isinstance(item, ir.Move) else "" for item in moves}
@@ -199,8 +199,8 @@ class _Conditions:
         if sensor_of_variable:
             values["sensor"] = sensor_of_variable[name]
             condition_text = self._condition_text(condition, sensor_of_variable, loop.span, "WHILE")
-            comparison = self._comparison(self._asking(condition, sensor_of_variable))
-            is_turned = comparison is not None and bool(self._turned(loop, comparison)[1])
+            comparison = self._comparison(self._condition_of_sensors(condition, sensor_of_variable))
+            is_turned = comparison is not None and bool(self._way_and_end(loop, comparison)[1])
             values["fix"] = f"WHILE({condition_text})" if condition_text and not is_turned else ""
         elif [term.op for term in condition[:-1]] == ["VARIABLE", "NUMBER"]:
             is_down = condition[-1].op in ("GT", "GE")
@@ -346,7 +346,7 @@ class _Conditions:
     def _comparison(self, condition: ir.Expression) -> Comparison | None:
         return comparison(condition, self._kit)
 
-    def _asking(
+    def _condition_of_sensors(
         self, condition: ir.Expression, sensor_of_variable: Mapping[str, str]
     ) -> ir.Expression:
         """Return a condition that asks the sensors in place of the variables that hold them."""
@@ -370,7 +370,7 @@ class _Conditions:
 
         Nothing where it is none to write, as where a move in this direction never makes it true.
         """
-        asking = self._asking(condition, sensor_of_variable)
+        asking = self._condition_of_sensors(condition, sensor_of_variable)
         can_become_true = can_come_true(asking, direction, self._kit)
         text = self._context.condition(span, word)
         if not can_become_true and (can_become_true is not None or direction):

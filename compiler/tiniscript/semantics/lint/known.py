@@ -46,10 +46,10 @@ def report_past_clock(context: LintContext) -> None:
             elif not ir.breaks_out(statement.body):
                 past_ms = max(past_ms, clock_comparison.number)
         else:
-            past_ms += _lasts(statement)
+            past_ms += _least_duration(statement)
 
 
-def _lasts(statement: ir.Statement) -> int:
+def _least_duration(statement: ir.Statement) -> int:
     """Return how long a statement surely lasts, in thousandths of a second."""
     if isinstance(statement, ir.Move) and (statement.unit or statement.until is not None):
         return 0
@@ -150,8 +150,8 @@ def _is_fine(value: ir.Expression, number: int, context: LintContext) -> bool:
 def report_thrown_arms(statement: ir.If, body_context: BodyContext, context: LintContext) -> None:
     """`IF(RANDOM(1, 3) = 1) … ELSEIF(RANDOM(1, 3) = 2)`: it may be that none is TRUE."""
     for one, other in pairwise(statement.arms):
-        thrown = _thrown(one.condition)
-        if thrown and thrown == _thrown(other.condition) and other.condition[-1].op == "EQ":
+        thrown = _throw_of(one.condition)
+        if thrown and thrown == _throw_of(other.condition) and other.condition[-1].op == "EQ":
             _report_throw(thrown, other.span, context)
             return
 
@@ -160,7 +160,7 @@ def report_thrown_again(body: ir.Body, body_context: BodyContext, context: LintC
     """`SHOW(RANDOM(1, 6))`, then `LOOP(RANDOM(1, 6))`: no number is shown that counts."""
     for one, other in pairwise(body):
         thrown = one.value if isinstance(one, ir.Show) and len(one.value) == len(_THROW_OPS) else ()
-        if thrown and _thrown(thrown) and isinstance(other, ir.Loop) and other.times == thrown:
+        if thrown and _throw_of(thrown) and isinstance(other, ir.Loop) and other.times == thrown:
             _report_throw(thrown, context.head(other.span), context)
 
 
@@ -169,7 +169,7 @@ def _report_throw(thrown: ir.Expression, span: Span, context: LintContext) -> No
     context.report(codes.NEW_THROW, span, random=f"RANDOM({low}, {high})")
 
 
-def _thrown(value: ir.Expression) -> ir.Expression:
+def _throw_of(value: ir.Expression) -> ir.Expression:
     """Return the throw that a value begins with."""
     is_throw = tuple(term.op for term in value[: len(_THROW_OPS)]) == _THROW_OPS
     return value[: len(_THROW_OPS)] if is_throw else ()

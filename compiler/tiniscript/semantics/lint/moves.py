@@ -74,7 +74,7 @@ class _LateConditions:
         """`IF(DISTANCE < 15); B(1, 70); ENDIF; F(10, 50)`: it looks once, and then drives on."""
         condition = branch.arms[0].condition
         sensor = self._distance_in(condition)
-        move = _nearest(body, range(k + 1, len(body)))
+        move = _nearest_move(body, range(k + 1, len(body)))
         if sensor is None or branch.has_else or not asks_if_near(condition, self._kit):
             return
         if _only_stop(branch) or not isinstance(move, ir.Move):
@@ -106,7 +106,7 @@ class _LateConditions:
         text = self._source[move.span]
         values = {
             "word": move.direction,
-            "time": as_text(_time(move) or 0),
+            "time": as_text(_time_of(move) or 0),
             "sensor": name,
             "move": text,
             "fix": f"{text} UNTIL({condition_text})" if condition_text else "",
@@ -121,8 +121,8 @@ class _LateConditions:
         condition = branch.arms[0].condition
         if stop is None or self._context.uses_motors or not _can_change(condition):
             return
-        before = _nearest(body, range(k - 1, -1, -1))
-        after = _nearest(body, range(k + 1, len(body)))
+        before = _nearest_move(body, range(k - 1, -1, -1))
+        after = _nearest_move(body, range(k + 1, len(body)))
         stands = [item for item in branch.arms[0].body if isinstance(item, (ir.Move, ir.Beep))]
         if any(isinstance(move, ir.Move) and move.direction == "W" for move in stands):
             return  # S with its wait is a pause
@@ -137,7 +137,7 @@ class _LateConditions:
                     if place == "move":
                         break
                     return  # it drives away from what is near
-                values = self._idle(stop, move, place, branch)
+                values = self._idle_stop_values(stop, move, place, branch)
                 if values["fix"]:
                     values |= self._replacement_values(body, move, branch)
                 if place == "move" or not pauses:
@@ -154,7 +154,9 @@ class _LateConditions:
             values["again"] = self._source[repeated_move.span]
             self._context.report(codes.IDLE_STOP, stop.span, **values)
 
-    def _idle(self, stop: ir.Stop, move: ir.Move, place: str, branch: ir.If) -> dict[str, str]:
+    def _idle_stop_values(
+        self, stop: ir.Stop, move: ir.Move, place: str, branch: ir.If
+    ) -> dict[str, str]:
         """Return the words for an S before or after a move, with a repair where one is sure."""
         stop_text, move_text = self._source[stop.span], self._source[move.span]
         condition = branch.arms[0].condition
@@ -194,7 +196,7 @@ class _LateConditions:
 
     def _is_blind(self, move: ir.Move, least_ms: int) -> bool:
         """Whether a move lasts long, and looks at nothing."""
-        time = _time(move)
+        time = _time_of(move)
         if move.direction not in ("F", "B") or move.until is not None:
             return False
         return time is not None and time >= least_ms
@@ -207,12 +209,12 @@ class _LateConditions:
         return None
 
 
-def _nearest(body: ir.Body, places: range) -> ir.Statement | None:
+def _nearest_move(body: ir.Body, places: range) -> ir.Statement | None:
     """Return the first statement there that may move the robot."""
     return next((body[at] for at in places if not isinstance(body[at], STANDING_STATEMENTS)), None)
 
 
-def _time(move: ir.Move) -> int | None:
+def _time_of(move: ir.Move) -> int | None:
     return None if move.unit else known_value(move.time)
 
 

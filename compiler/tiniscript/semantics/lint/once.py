@@ -26,7 +26,7 @@ def report_asked_once(context: LintContext, remote: AbstractSet[int]) -> None:
     for body in (program.body, *(task.body for task in program.tasks if task.until is None)):
         is_before_loop = True
         for statement in _statements_done_once(body):
-            reading = next((item for item in _read(statement) if item[0] in remote), None)
+            reading = next((item for item in _readings_of(statement) if item[0] in remote), None)
             if reading is not None:
                 context.diagnostics.append(
                     _diagnostic(*reading, statement, body, is_before_loop, context)
@@ -49,7 +49,7 @@ def _statements_done_once(body: ir.Body) -> Iterator[ir.Statement]:
                 yield from _statements_done_once(inner)
 
 
-def _read(statement: ir.Statement) -> Iterator[tuple[int, Span]]:
+def _readings_of(statement: ir.Statement) -> Iterator[tuple[int, Span]]:
     """Yield the readings that a statement takes once, each with the place to point at."""
     if isinstance(statement, ir.While):
         return
