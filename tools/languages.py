@@ -244,7 +244,7 @@ def report(translation: Translation) -> int:
         path = translation.path(name)
         problem_count += tell(path, [*check_robot(catalogue)] if name == "robot" else [])
         expected_entries = [
-            entry for entry in catalogue.entries.values() if entry.seen or not entry.is_same
+            entry for entry in catalogue.entries.values() if entry.seen_hash or not entry.is_same
         ]
         entries += expected_entries
         stale_entries = [entry for entry in expected_entries if entry.is_stale]
@@ -258,7 +258,7 @@ def report(translation: Translation) -> int:
         )
         if translation.language.is_complete:
             missing_count += tell(path, [*missing_rows(expected_entries)])
-    new_entries = [entry for entry in entries if entry.seen == UNKNOWN_HASH]
+    new_entries = [entry for entry in entries if entry.seen_hash == UNKNOWN_HASH]
     if new_entries:
         print(f"{translation.code}: {len(new_entries)} texts are new. "
               "Note of which English texts they are:  "

@@ -91,7 +91,7 @@ class Translation:
             if (now := _without_end([entry.translation for entry in group])) != texts:
                 translation_file.texts[row.key] = now
                 row.text = format_rows(row.key, now, len(group) > 1)
-                self._note(name, row.key, [entry.seen for entry in group])
+                self._note(name, row.key, [entry.seen_hash for entry in group])
 
     def pair_texts(self, name: str, key: str) -> list[Entry]:
         """Return the texts of a key with their translations, none where that is not possible."""
@@ -120,8 +120,11 @@ class Translation:
                 fitting = {pattern for pattern in patterns if fnmatchcase(key, pattern)}
                 unused -= fitting
                 if group := self.pair_texts(name, key):
-                    new = (UNKNOWN_HASH, *[entry.seen for entry in group if fitting and entry.seen])
-                    self._note(name, key, [entry.hash if entry.seen in new else entry.seen
+                    new = (
+                        UNKNOWN_HASH,
+                        *[entry.seen_hash for entry in group if fitting and entry.seen_hash],
+                    )
+                    self._note(name, key, [entry.hash if entry.seen_hash in new else entry.seen_hash
                                            for entry in group])  # fmt: skip
             current_rows = {f"{name} {key}" for key in translation_file.texts}
             for item in [
@@ -143,7 +146,7 @@ class Translation:
             row.text = format_rows(key, texts, len(group) > 1)
             translation_file.texts[key], translation_file.lines[key] = texts, row.line
         if name != NAMES_CATALOGUE:
-            self._note(name, key, [entry.seen for entry in group])
+            self._note(name, key, [entry.seen_hash for entry in group])
 
     def put_all(self, name: str, texts: Catalogue) -> None:
         """Take what these entries say of each text that somebody translates."""
@@ -157,7 +160,7 @@ class Translation:
         for name, translation_file in self.own.items():
             places = {key: place for place, key in enumerate(self.groups[name])}
             rows = sorted(translation_file.rows, key=lambda row: places.get(row.key, len(places)))
-            text = "".join(row.above + row.text for row in rows) + translation_file.below
+            text = "".join(row.text_above + row.text for row in rows) + translation_file.text_below
             if not translation_file.problems and (rows or self.path(name).is_file()):
                 _write(self.path(name), text)
         if self._is_seen_new and not self.seen_problems:

@@ -123,10 +123,10 @@ def _take_text(message: Message, forms: Forms, translation: Translation) -> str:
     entry = next((entry for entry in group if (entry.english, entry.plural) == expected), None)
     if entry is None:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
-    old_translation, old_seen = entry.translation, entry.seen
-    entry.translation, entry.seen = forms, entry.hash
+    old_translation, old_seen = entry.translation, entry.seen_hash
+    entry.translation, entry.seen_hash = forms, entry.hash
     if why := misfits(entry, translation.language):
-        entry.translation, entry.seen = old_translation, old_seen
+        entry.translation, entry.seen_hash = old_translation, old_seen
         return f"{message.context}: {why[0]}"
     translation.put(name, key, group)
     return ""

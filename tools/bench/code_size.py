@@ -25,14 +25,14 @@ STATEMENTS = 259  # that they had when BYTES_IN_ISA_1_0 was measured
 
 
 class Measured(NamedTuple):
-    programs: int
-    statements: int
+    program_count: int
+    statement_count: int
     code_bytes: int
     opcodes: Counter[str]
 
     @property
     def per_statement(self) -> float:
-        return self.code_bytes / self.statements
+        return self.code_bytes / self.statement_count
 
 
 def corpus() -> Iterator[Compiled]:

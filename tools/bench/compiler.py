@@ -38,11 +38,11 @@ def sizes() -> None:
 
 
 def median_pair(
-    own_work: Callable[[], object], other_work: Callable[[], object], runs: int
+    own_work: Callable[[], object], other_work: Callable[[], object], run_count: int
 ) -> list[float]:
     """Return the median times of both, in seconds, and of their ratio; taken in turn."""
     pairs = []
-    for _ in range(runs):
+    for _ in range(run_count):
         times = []
         for item in (own_work, other_work):
             start = time.perf_counter()

@@ -32,7 +32,7 @@ class UploadTimes(NamedTuple):
     code_bytes: int
     took_ms: int
     wire_ms: float
-    frames: int
+    frame_count: int
     sent_bytes: int
 
     @property
@@ -112,7 +112,7 @@ def main() -> int:
         robot.wait(300)
         took = upload(robot, profile.kit.fingerprint, code_bytes)
         robot.close()
-        print(f"| {took.code_bytes} | {took.frames} | {took.sent_bytes} | {took.took_ms} ms "
+        print(f"| {took.code_bytes} | {took.frame_count} | {took.sent_bytes} | {took.took_ms} ms "
               f"| {took.times:.2f} |")  # fmt: skip
         is_enough = code_bytes < profile.board.program_bytes or took.times <= MUST
     print(f"\nThe last one must take {MUST:.0f} times the wire's time at most.")

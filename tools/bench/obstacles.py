@@ -38,7 +38,7 @@ ROBOT = "tinibot32"
 
 
 class Drive(NamedTuple):
-    contacts: int
+    contact_count: int
     driven_m: float
     stood_s: float  # the longest time in one place
 
@@ -49,7 +49,7 @@ def main() -> None:
         text = (ROOT / "examples" / name).read_text(encoding="utf-8")
         with ProcessPoolExecutor() as pool:
             drives = list(pool.map(partial(drive, text), range(SEED_COUNT)))
-        contacts = [item.contacts for item in drives]
+        contacts = [item.contact_count for item in drives]
         metres = median(item.driven_m for item in drives)
         stood_s = max(item.stood_s for item in drives)
         stuck = sum(item.stood_s >= STUCK_S for item in drives)

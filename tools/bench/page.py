@@ -56,13 +56,13 @@ def tables(name: str) -> list[Table]:
     return [Table(head, rule, tuple(rows)) for head, rule, *rows in table_lines]
 
 
-def show(name: str, rows: Sequence[Sequence[str]], position: int = 0, keys: int = 1) -> None:
-    """Print a table of the page with these rows, each known by its first cells, `keys` of them.
+def show(name: str, rows: Sequence[Sequence[str]], position: int = 0, key_cells: int = 1) -> None:
+    """Print a table of the page with these rows, each known by its first `key_cells` cells.
 
     Raises LookupError for a row that the page lacks, ValueError for one with more cells or fewer.
     """
     table = tables(name)[position]
-    placed = sorted((table.row_of(row[:keys]), format_row(row)) for row in rows)
+    placed = sorted((table.row_of(row[:key_cells]), format_row(row)) for row in rows)
     for place, row in placed:
         if len(cells(row)) != len(cells(table.rows[place])):
             raise ValueError(f"{PAGE.name} has other columns than {row}")

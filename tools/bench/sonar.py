@@ -38,7 +38,7 @@ ROWS = (
 
 
 class WrongReadings(NamedTuple):
-    readings: int
+    reading_count: int
     wrong_count: int
 
 
@@ -104,7 +104,7 @@ def main() -> None:
         runs = [look_at_wall(seed, is_trusting) for seed in range(SEED_COUNT)]
         wrong_count, readings = (
             sum(run.wrong_count for run in runs),
-            sum(run.readings for run in runs),
+            sum(run.reading_count for run in runs),
         )
         figure_rows[0].append(f"{wrong_count:,} of {readings:,}")
         figure_rows[1].append(f"{sum(run.wrong_count > 0 for run in runs)} of {SEED_COUNT}")

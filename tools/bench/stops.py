@@ -54,7 +54,7 @@ class Place(NamedTuple):
 class Slowest(NamedTuple):
     """Of how many stops, and microseconds; `together` is what they would take at most."""
 
-    stops: int
+    stop_count: int
     us: float
     median_us: float
     together_us: float
@@ -145,17 +145,17 @@ class Busy:
         """Return the cycles of a stop before which all comes that may: once, at its longest."""
         received = RECEIVE_INTERRUPT[self.chip.board]
         spans = [item for item in self.chip.longest_masked() if item.vector != received]
-        entries = {span.vector: span.cycles for span in spans if _is_before(span, received)}
+        entries = {span.vector: span.cycle_count for span in spans if _is_before(span, received)}
         before = max(
-            span.cycles + sum(entries[vector] for vector in entries if vector != span.vector)
+            span.cycle_count + sum(entries[vector] for vector in entries if vector != span.vector)
             for span in spans
         )
         return min(self.cycles) + INSTRUCTION + before
 
 
-def _is_before(place: Masked, received: int) -> bool:
+def _is_before(place: Masked, received_cycle: int) -> bool:
     """Return whether it is an interrupt that is served before the one of a byte."""
-    return place.is_entry and 0 < place.vector < received
+    return place.is_entry and 0 < place.vector < received_cycle
 
 
 def busy(kit: Kit) -> str:
@@ -207,5 +207,5 @@ def sample(stopped: Busy, count: int, seed: int) -> list[Place]:
     return places + (with_edges([places[0].at]) if stopped.has_discs else [])
 
 
-def _microseconds(cycles: int) -> float:
-    return cycles / CYCLES_PER_MS * 1000
+def _microseconds(cycle_count: int) -> float:
+    return cycle_count / CYCLES_PER_MS * 1000

@@ -288,10 +288,10 @@ def _visit(browser: Browser, address: str) -> Iterator[Page]:
         context.close()
 
 
-def _program(lines: int = PROGRAM_LINES) -> str:
+def _program(line_count: int = PROGRAM_LINES) -> str:
     """Return a program of so many lines."""
     rows = ["SI|LOOP(3)"]
-    for k in range((lines - 4) // 4):
+    for k in range((line_count - 4) // 4):
         rows += [f"  IF(DISTANCE < {k})", "    R(0.5, 60)", "  END_IF", "  F(1, 80)"]
     return ";\n".join([*rows, "  S", "  W(1)", "END_LOOP"])
 

@@ -90,9 +90,9 @@ def parts_of(firmware: Path) -> dict[str, Counter[str]]:
     return parts
 
 
-def turns_cycles(tasks: int) -> int:
+def turns_cycles(task_count: int) -> int:
     """Return the cycles of the machine while each task goes so often around an empty loop."""
-    text = f"TASK;LOOP({TURN_COUNT});END_LOOP;END_TASK;" * tasks + "W(1.2)"
+    text = f"TASK;LOOP({TURN_COUNT});END_LOOP;END_TASK;" * task_count + "W(1.2)"
     code = image_of(text, ROBOT.kit).code
     return count(code, (), BUDGET, WITH_TASKS)[1]
 

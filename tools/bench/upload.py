@@ -78,15 +78,15 @@ class Bench:
         return took_ms
 
 
-def measure(bench: Bench, runs: int) -> tuple[float, float]:
+def measure(bench: Bench, run_count: int) -> tuple[float, float]:
     """Return the medians (ms) of an upload and of a process that does nothing, taken in turn."""
     bench.measure_move_ms()  # what is cached is cached now
-    pairs = [(bench.measure_move_ms(), bench.measure_nothing_ms()) for _ in range(runs)]
+    pairs = [(bench.measure_move_ms(), bench.measure_nothing_ms()) for _ in range(run_count)]
     moves_ms, nothing_ms = (statistics.median(item) for item in zip(*pairs, strict=True))
     return moves_ms, nothing_ms
 
 
-def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
+def crowd(count: int, run_count: int, folder: str) -> tuple[float, float]:
     """Return how long (ms) until all of some robots move, and until all have stopped; medians."""
     environ = environment(folder)
     moving, stopping = [], []
@@ -105,7 +105,7 @@ def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
                 raise RuntimeError(f"tsc {verb[0]} failed")
             return took_s * 1000
 
-        for _ in range(runs):
+        for _ in range(run_count):
             moving.append(measure_ms(UPLOAD, True))
             stopping.append(measure_ms(("stop",), False))
     return statistics.median(moving), statistics.median(stopping)

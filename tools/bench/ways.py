@@ -135,11 +135,11 @@ def flash() -> int:
         return measure("uno").flash - measure("uno", project).flash
 
 
-def main(seeds: int = SEED_COUNT, is_uno: bool = False) -> int:
+def main(seed_count: int = SEED_COUNT, is_uno: bool = False) -> int:
     if is_uno:
         firmware = measure(ENVIRONMENT).firmware
         result = WorstOffsets.summarise(
-            "discs", [offset_of_uno(firmware, seed, SLIPS[0]) for seed in range(1, seeds + 1)]
+            "discs", [offset_of_uno(firmware, seed, SLIPS[0]) for seed in range(1, seed_count + 1)]
         )
         along_cell, aside_cell, turn_cell = result.cells()
         print(
@@ -152,11 +152,11 @@ def main(seeds: int = SEED_COUNT, is_uno: bool = False) -> int:
     for method, (row, slips) in SHOWN_ROWS.items():
         for slip in slips:
             result = WorstOffsets.summarise(
-                method, [offset_of(seed, slip, method) for seed in range(1, seeds + 1)]
+                method, [offset_of(seed, slip, method) for seed in range(1, seed_count + 1)]
             )
             rows.append((row, f"{100 * slip:g} %", *result.cells(), result.within))
             is_good = is_good and (result.is_good or slip != SLIPS[0])
-    page.show("ways", rows, keys=2)
+    page.show("ways", rows, key_cells=2)
     return int(not is_good)
 
 

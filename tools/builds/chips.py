@@ -101,8 +101,12 @@ def missing(chip: Chip, can_run: bool = False) -> str:
     if can_run:
         tools.append(chip.emulator)
     names = dict.fromkeys(words[0] for words in tools if words)
-    expected = [name for name in names if not shutil.which(name)]
-    return f"no {' and no '.join(expected)} on this computer: no {chip.board}" if expected else ""
+    missing_names = [name for name in names if not shutil.which(name)]
+    return (
+        f"no {' and no '.join(missing_names)} on this computer: no {chip.board}"
+        if missing_names
+        else ""
+    )
 
 
 def build(

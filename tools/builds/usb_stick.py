@@ -42,11 +42,11 @@ class Missing(NamedTuple):
     """What could not be had: the key of its sentence, what fills it, and why, for who builds it."""
 
     key: str
-    what: str
+    name: str
     why: str
 
     def sentence(self, language: str) -> str:
-        return text("documents", f"stick/{self.key}", language).format(what=self.what)
+        return text("documents", f"stick/{self.key}", language).format(what=self.name)
 
 
 def main(words: Sequence[str] | None = None) -> int:

@@ -66,10 +66,10 @@ def _command(command: str, language: str, table: Table) -> Iterator[str]:
         language,
         table,
     )
-    virtual = [option for option in options if has_virtual_section and option.virtual]
-    if virtual:
+    virtual_options = [option for option in options if has_virtual_section and option.virtual]
+    if virtual_options:
         yield verb_text("virtual", language)
-        yield _options(virtual, language, table)
+        yield _options(virtual_options, language, table)
     yield verb_sentence(command, "ends", language).replace("\n", "\\\n")
 
 

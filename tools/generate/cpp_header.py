@@ -168,8 +168,8 @@ class DecodeForm(NamedTuple):
 
     family: str
     role: str
-    pops: int
-    pushes: int
+    pop_count: int
+    push_count: int
     size: int
     is_far: bool
     is_back: bool
@@ -325,8 +325,10 @@ def names(ops: Sequence[opcodes.Op]) -> str:
 
 def pack_form(form: DecodeForm) -> str:
     roles = ("none", *opcodes.CONTROL_ROLES)
-    assert form.size < 8 and form.pops < 4 and form.pushes < 2 and roles.index(form.role) < 32
-    effects = form.pops << 6 | form.pushes << 5 | roles.index(form.role)
+    assert (
+        form.size < 8 and form.pop_count < 4 and form.push_count < 2 and roles.index(form.role) < 32
+    )
+    effects = form.pop_count << 6 | form.push_count << 5 | roles.index(form.role)
     size = form.size | FAR_BIT * form.is_far | BACK_BIT * form.is_back
     number = list(operands()).index(operand_bytes(form))
     assert number < 8, "three bits say which operands a form has"

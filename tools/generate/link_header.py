@@ -190,8 +190,12 @@ def number_rows(table: Sequence[tuple[str, str]]) -> Rows:
     return ("number", "name", "meaning"), rows
 
 
-def bit_rows(table: Sequence[tuple[int, str, str]], bits: str = "bits", digits: int = 2) -> Rows:
-    rows = [(f"0x{number:0{digits}x}", f"`{name}`", meaning) for number, name, meaning in table]
+def bit_rows(
+    table: Sequence[tuple[int, str, str]], bits: str = "bits", digit_count: int = 2
+) -> Rows:
+    rows = [
+        (f"0x{number:0{digit_count}x}", f"`{name}`", meaning) for number, name, meaning in table
+    ]
     return (bits, "name", "meaning"), rows
 
 
@@ -200,7 +204,7 @@ DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
         "messages": message_rows,
         "modes": lambda: bit_rows(messages.MODES),
         "wheels": lambda: bit_rows(messages.WHEELS, "bit"),
-        "features": lambda: bit_rows(messages.FEATURES, digits=4),
+        "features": lambda: bit_rows(messages.FEATURES, digit_count=4),
         "text levels": lambda: number_rows(messages.TEXT_LEVELS),
         "statuses": status_rows,
         "states": lambda: number_rows(messages.STATES),

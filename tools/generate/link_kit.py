@@ -104,9 +104,9 @@ def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
         yield {"name": run.name, "code": code.hex(), "rule": rule, "at": int(at)}
 
 
-def verdict(code: bytes, devices: int) -> str:
+def verdict(code: bytes, device_count: int) -> str:
     try:
-        verify(code, devices, devices)
+        verify(code, device_count, device_count)
     except Refused as refused:
         return f"{refused.name} {refused.offset}"
     return ""

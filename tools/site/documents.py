@@ -107,7 +107,7 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
 
     `built` are the names of those that are there beside its files.
     """
-    in_clone = [
+    documents_in_clone = [
         *_guides(root, "teach", "monday", "bring-up", "lessons", "materials", "measure", "modules"),
         *_guides(root, "write", "language", "robots", "studio", "command"),
         *_guides(root, "teach", "class"),
@@ -126,14 +126,15 @@ def documents(root: Path, built: Collection[str] = ()) -> list[Document]:
         *_rows(root, "build", "CHANGELOG.md"),
         Document("documents", "build", {SOURCE_LANGUAGE: INDEX_PAGE}),
     ]
-    readable = [
+    readable_documents = [
         document
-        for document in in_clone
+        for document in documents_in_clone
         if document.sources[SOURCE_LANGUAGE] in built
         or (root / document.sources[SOURCE_LANGUAGE]).is_file()
     ]
     return [
-        document._replace(sources=_with_built(built, document.sources)) for document in readable
+        document._replace(sources=_with_built(built, document.sources))
+        for document in readable_documents
     ]
 
 

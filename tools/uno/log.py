@@ -71,7 +71,7 @@ class Stack:
     of the two went by itself.
     """
 
-    untouched: int
+    untouched_bytes: int
     room: int
     program: int
     interrupt: int
@@ -97,7 +97,7 @@ class Masked:
     vector: int
     is_entry: bool
     pc: int
-    cycles: int
+    cycle_count: int
 
     @classmethod
     def of(cls, event: Event) -> Masked:

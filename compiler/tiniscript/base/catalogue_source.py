@@ -45,7 +45,7 @@ class Entry:
     english: str
     plural: str = ""
     translation: Forms = field(default_factory=dict)
-    seen: str = ""
+    seen_hash: str = ""
     notes: list[str] = field(default_factory=list)
     is_same: bool = False
     like: str = ""
@@ -62,7 +62,7 @@ class Entry:
 
     @property
     def is_stale(self) -> bool:
-        return self.seen not in ("", UNKNOWN_HASH, self.hash)
+        return self.seen_hash not in ("", UNKNOWN_HASH, self.hash)
 
     @property
     def is_translated(self) -> bool:
@@ -99,7 +99,7 @@ class Row:
     value: Any
     line: int
     text: str
-    above: str = ""
+    text_above: str = ""
     table: str = ""
 
     def takes(self, other: Row) -> bool:
@@ -112,7 +112,7 @@ class Row:
         ):
             return False
         self.value = {**one, **other_value}
-        self.text += other.above + other.text
+        self.text += other.text_above + other.text
         return True
 
 
@@ -138,7 +138,7 @@ def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
     row_by_key: dict[str, Row] = {}
     repeated_rows: list[Row] = []  # a key that is there twice
     problems: list[Problem] = []
-    above, table = "", ""
+    text_above, table = "", ""
     lines = re.findall(r".*\n|.+", text)
     at = 0
     while at < len(lines):
@@ -152,17 +152,21 @@ def rows(text: str) -> tuple[list[Row], str, list[Problem]]:
             )
             value, block = {_key(lines[at]): None} if is_row else {}, "".join(lines[at:end])
         if is_row:
-            row = Row(*next(iter(value.items())), at + 1, block, above, table)
+            row = Row(*next(iter(value.items())), at + 1, block, text_above, table)
             if (first := row_by_key.setdefault(row.key, row)) is not row and not first.takes(row):
                 repeated_rows.append(row)
-            above = ""
+            text_above = ""
         else:
-            above += block
+            text_above += block
             table = next(iter(value), table)
         at = end
     if not problems and not repeated_rows:
         problems = [(line, f"this is no TOML: {reason}") for line, reason in _toml_problems(text)]
-    return sorted([*row_by_key.values(), *repeated_rows], key=lambda row: row.line), above, problems
+    return (
+        sorted([*row_by_key.values(), *repeated_rows], key=lambda row: row.line),
+        text_above,
+        problems,
+    )
 
 
 def _is_row_start(line: str) -> bool:

@@ -144,7 +144,7 @@ class TranslationFile:
     texts: dict[str, list[Forms]] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
-    below: str = ""
+    text_below: str = ""
 
 
 def read_translation_file(path: Path) -> TranslationFile:
@@ -153,7 +153,7 @@ def read_translation_file(path: Path) -> TranslationFile:
     if not path.is_file():
         return result
     text, result.problems = decode_file(path)
-    result.rows, result.below, problems = rows(text)
+    result.rows, result.text_below, problems = rows(text)
     result.problems += problems
     for row in result.rows:
         if row.key in result.texts:
@@ -211,7 +211,7 @@ def merge_translations(
             entry.line = line
             for why in misfits(entry, language):
                 catalogue.problems.append((line, f"{key}: {why}"))
-                entry.translation, entry.seen = {}, ""
+                entry.translation, entry.seen_hash = {}, ""
     for entry in catalogue.entries.values():
         if entry.like and not entry.translation:
             first = catalogue.entries[entry.like, entry.english]
@@ -233,7 +233,7 @@ def assign_translations(group: list[Entry], texts: list[Forms], hashes: list[str
         if places := [at for at, value in english_hashes.items() if value == hashes[place]]:
             at = place if place in places else places[0]
             has_moved |= at != place
-            group[at].translation, group[at].seen = texts[place], hashes[place]
+            group[at].translation, group[at].seen_hash = texts[place], hashes[place]
             del english_hashes[at]
             places_left.remove(place)
     for place in sorted(places_left):
@@ -241,7 +241,7 @@ def assign_translations(group: list[Entry], texts: list[Forms], hashes: list[str
             return "its English texts have other places now: first run  python -m tools.languages"
         if place not in english_hashes:
             return f"it has {len(texts)} texts, and English {len(group)}"
-        group[place].translation, group[place].seen = texts[place], hashes[place]
+        group[place].translation, group[place].seen_hash = texts[place], hashes[place]
     return ""
 
 

@@ -214,7 +214,7 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
     """Return the readings that `--sensor NAME=1,2,3` say, by the sensor's number."""
     sensors = robot.kit.readings
     names = [device.name for device in sensors]
-    lists: dict[int, list[int]] = {}
+    lists_by_sensor: dict[int, list[int]] = {}
     for sentence in texts:
         name, equals, values = sentence.partition("=")
         name = name.strip().upper()
@@ -230,12 +230,12 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
         if not equals or not values.strip():
             example = f"{name}={device.text(device.low)},{device.text(device.high)}"
             raise CommandError(2, "sensor_form", example=example)
-        if number in lists:
+        if number in lists_by_sensor:
             raise CommandError(2, "sensor_twice", name=name)
-        lists[number] = [
+        lists_by_sensor[number] = [
             _parse_reading(device, value.strip(), language) for value in values.split(",")
         ]
-    return lists
+    return lists_by_sensor
 
 
 def _parse_reading(device: Device, typed: str, language: str) -> int:

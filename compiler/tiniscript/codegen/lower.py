@@ -71,11 +71,11 @@ class _LoopEnd(NamedTuple):
 
 
 class _Lowering:
-    def __init__(self, plain: bool, procedures: int) -> None:
+    def __init__(self, plain: bool, procedure_count: int) -> None:
         self.plain = plain
         self.out = Emitter(plain)
         # the label of each DEF's first instruction
-        self.entries = [self.out.new_label() for _ in range(procedures)]
+        self.entries = [self.out.new_label() for _ in range(procedure_count)]
         self.loops: list[_LoopEnd] = []
 
     def routine(self, routine: ir.Procedure | ir.Task, number: int | None) -> None:
@@ -85,14 +85,14 @@ class _Lowering:
         end = emitter.new_label()
         if isinstance(routine, ir.Procedure):
             assert number is not None
-            emitter.add("DEF", to=end)
+            emitter.add("DEF", label=end)
             emitter.mark(self.entries[number])
             last = "RETURN"
         elif routine.until is None:
-            emitter.add("TASK", to=end)
+            emitter.add("TASK", label=end)
             last = "END_TASK"
         else:
-            emitter.add("WHEN", to=end)
+            emitter.add("WHEN", label=end)
             self.add_readings(routine.until.reads)
             add_value(emitter, routine.until.condition)
             emitter.add("LOOK")
@@ -128,9 +128,9 @@ class _Lowering:
             self.while_(statement)
         elif isinstance(statement, ir.Break):
             loop = self.loops[-1]
-            emitter.add("BREAK_LOOP" if loop.is_counted else "BREAK", to=loop.label)
+            emitter.add("BREAK_LOOP" if loop.is_counted else "BREAK", label=loop.label)
         elif isinstance(statement, ir.Call):
-            emitter.add("CALL", to=self.entries[statement.procedure])
+            emitter.add("CALL", label=self.entries[statement.procedure])
         elif isinstance(statement, ir.Motors):
             self.motors(statement)
         elif isinstance(statement, ir.Beep):
@@ -244,7 +244,7 @@ class _Lowering:
             self.body(arm.body)
             if not is_last:
                 if self.plain or ir.falls_through(arm.body):
-                    emitter.add("ELSE", to=end)
+                    emitter.add("ELSE", label=end)
                 emitter.mark(following)
         self.body(statement.otherwise)
         emitter.mark(end)
@@ -261,13 +261,13 @@ class _Lowering:
                 emitter.add("LOOP8", count)
             else:
                 add_value(emitter, loop.times)
-                emitter.add("LOOP", to=end)
+                emitter.add("LOOP", label=end)
         self.add_loop(loop.body, end, loop.times is not None, loop.span)
 
     def while_(self, loop: ir.While) -> None:
         emitter = self.out
         end = emitter.new_label()
-        emitter.add("WHILE", to=end)
+        emitter.add("WHILE", label=end)
         start = emitter.mark_here()
         self.add_readings(loop.reads)
         emit_unless(emitter, loop.condition, end)
@@ -284,7 +284,7 @@ class _Lowering:
         self.body(body)
         self.loops.pop()
         emitter.span = span
-        emitter.add("NEXT" if is_counted else "AGAIN", to=start)
+        emitter.add("NEXT" if is_counted else "AGAIN", label=start)
         emitter.mark(end)
 
     # -- numbers that the text says -----------------------------------------------------------
@@ -323,7 +323,7 @@ def _assemble(emitter: Emitter) -> Lowered:
         short = {
             k
             for k, item in enumerate(emitter.items)
-            if item.to is not None and not _is_in_reach(item, starts[k], targets[item.to])
+            if item.label is not None and not _is_in_reach(item, starts[k], targets[item.label])
         }
         if not short or offset > 2 * CODE_BYTES:  # then it is refused, however long it is
             break
@@ -333,7 +333,7 @@ def _assemble(emitter: Emitter) -> Lowered:
     for item, start in zip(emitter.items, starts, strict=False):
         if not places or places[-1].span != item.span:
             places.append(SourceLocation(start, item.span))
-        _write(code, item, None if item.to is None else targets[item.to])
+        _write(code, item, None if item.label is None else targets[item.label])
     return Lowered(bytes(code), tuple(places))
 
 

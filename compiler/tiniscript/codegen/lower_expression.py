@@ -26,7 +26,7 @@ class Item(NamedTuple):
 
     op: Op
     operands: tuple[int, ...]
-    to: int | None
+    label: int | None
     span: Span
 
 
@@ -40,9 +40,9 @@ class Emitter:
         self.span = Span(0, 0)
         self._last_mark = -1
 
-    def add(self, name: str, *operands: int, to: int | None = None) -> None:
+    def add(self, name: str, *operands: int, label: int | None = None) -> None:
         op, operands = _shortest_op(name, *operands)
-        self.items.append(Item(op, operands, to, self.span))
+        self.items.append(Item(op, operands, label, self.span))
 
     def new_label(self) -> int:
         self.labels.append(-1)
@@ -98,7 +98,7 @@ def _far_form(item: Item) -> tuple[Item, ...]:
     ]
     return (
         *(Item(*each, None, item.span) for each in parts),
-        Item(BY_NAME["IF_FAR"], (), item.to, item.span),
+        Item(BY_NAME["IF_FAR"], (), item.label, item.span),
     )
 
 
@@ -162,7 +162,7 @@ def add_value(emitter: Emitter, expression: Expression) -> None:
                 joins.append(None)
             else:
                 joins.append(emitter.new_label())
-                emitter.add("AND_THEN" if term.op == "AND_LEFT" else "OR_ELSE", to=joins[-1])
+                emitter.add("AND_THEN" if term.op == "AND_LEFT" else "OR_ELSE", label=joins[-1])
         elif term.op in _JOIN_OPS:
             join = joins.pop()
             if join is None:
@@ -177,7 +177,7 @@ def emit_unless(emitter: Emitter, condition: Expression, target: int) -> None:
     """Add branches to the label `target` that are taken where `condition` is FALSE."""
     if emitter.plain:
         add_value(emitter, condition)
-        emitter.add("IF", to=target)
+        emitter.add("IF", label=target)
         return
     # where a part of it begins and ends, and whether its being TRUE branches
     pending_branches = [(0, len(condition), False)]
@@ -202,30 +202,30 @@ def emit_until(emitter: Emitter, condition: Expression) -> None:
         emitter.add("UNTIL")
     else:
         add_value(emitter, comparison.value)
-        emitter.add(f"UNTIL{comparison.bits}_{comparison.comparator}", comparison.number)
+        emitter.add(f"UNTIL{comparison.bit_count}_{comparison.comparator}", comparison.number)
 
 
-def _emit_branch(emitter: Emitter, expression: Expression, wanted_answer: bool, to: int) -> None:
+def _emit_branch(emitter: Emitter, expression: Expression, wanted_answer: bool, label: int) -> None:
     comparison = _comparison_to_constant(expression)
     if comparison is None:
         add_value(emitter, expression)
-        emitter.add("IF_NOT" if wanted_answer else "IF", to=to)
+        emitter.add("IF_NOT" if wanted_answer else "IF", label=label)
         return
     value, bits, comparator, number = comparison
     if wanted_answer:
         comparator = NEGATED[comparator]
     if len(value) == 1 and value[0].op == "VARIABLE":
-        emitter.add(f"IF_VAR{bits}_{comparator}", value[0].value, number, to=to)
+        emitter.add(f"IF_VAR{bits}_{comparator}", value[0].value, number, label=label)
     else:
         add_value(emitter, value)
-        emitter.add(f"IF{bits}_{comparator}", number, to=to)
+        emitter.add(f"IF{bits}_{comparator}", number, label=label)
 
 
 class _Compared(NamedTuple):
     """`value` is compared to a whole number of so many bits."""
 
     value: Expression
-    bits: int
+    bit_count: int
     comparator: str
     number: int
 

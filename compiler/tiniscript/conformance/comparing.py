@@ -28,7 +28,7 @@ class Verdict(NamedTuple):
     what: str
     line: int = 0
     wanted_row: str | None = None
-    got: str | None = None
+    got_row: str | None = None
     detail: str = ""
 
 

@@ -127,7 +127,7 @@ class LinkRefused(NamedTuple):
 
 class LinkTestSuite(NamedTuple):
     programs: tuple[LinkProgram, ...]
-    refused: tuple[LinkRefused, ...]
+    refusals: tuple[LinkRefused, ...]
 
 
 def link_test_suite() -> LinkTestSuite:

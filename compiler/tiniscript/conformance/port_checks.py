@@ -95,7 +95,7 @@ def all_checks(kit: LinkTestSuite) -> list[Check]:
                 (f"{link_refused.rule} {link_refused.at}",),
                 _refusal_check(link_refused.code),
             )
-            for link_refused in kit.refused
+            for link_refused in kit.refusals
         ),
         *IMAGE_CHECKS,
         *STOP_CHECKS,

@@ -100,7 +100,7 @@ class Finding(NamedTuple):
     cause: str
     is_sure: bool
     values: Mapping[str, str] = {}
-    of: str = ""
+    part_name: str = ""
 
     @property
     def verdict(self) -> str:
@@ -112,7 +112,7 @@ class Finding(NamedTuple):
 
     @property
     def part(self) -> str:
-        return self.of or CAUSES[self.cause].part
+        return self.part_name or CAUSES[self.cause].part
 
 
 def sure(cause: str, **values: str) -> Finding:

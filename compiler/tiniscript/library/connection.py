@@ -280,7 +280,7 @@ class RobotConnection:
             if is_clean:
                 self._await_saving()
         finally:
-            self._part(holds=not is_interrupted)
+            self._part(holds_port=not is_interrupted)
 
     def _stop(self) -> None:
         if not self._client.stop():
@@ -291,10 +291,10 @@ class RobotConnection:
         if self._follower is not None and self._ending is None:
             self._ending = Ending("STOPPED", cause="SEQUENCE")
 
-    def _part(self, holds: bool = False) -> None:
-        """Close the port: at once, or where it `holds` once no other command drives the robot
+    def _part(self, holds_port: bool = False) -> None:
+        """Close the port: at once, or where it `holds_port` once no other command drives the robot
         through it, which a thread waits for. The run of a client ends with this server."""
-        if not holds or not self._client.holds_for_others:
+        if not holds_port or not self._client.holds_for_others:
             self._client.close()
             return
         text = languages.text("library", "holds_for_others", self.language)

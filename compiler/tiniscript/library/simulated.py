@@ -96,7 +96,7 @@ class VirtualRobotConnection(RobotConnection):
         """Push and release its start button."""
         self._simulated.push()
 
-    def _part(self, holds: bool = False) -> None:
+    def _part(self, holds_port: bool = False) -> None:
         """Close it at once: nobody drives a virtual robot that has ended."""
         try:
             super()._part()

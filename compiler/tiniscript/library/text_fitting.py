@@ -45,7 +45,7 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         values = {"level": level.name, "limit": str(MOST_BRACKETS)}
         diagnostics.append(Diagnostic(codes.LEVEL_BRACKETS, reader.one_too_many, values))
     for need_of_bytes in reader.needs:
-        if need_of_bytes.bytes > level.room:
+        if need_of_bytes.byte_count > level.room:
             diagnostics.append(
                 _too_many(codes.LEVEL_ROOM, need_of_bytes.span, level, reader.most, level.room)
             )

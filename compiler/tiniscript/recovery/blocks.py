@@ -125,11 +125,11 @@ class Matching:
             self.close_behind(last if block.last is None else block.last, block)
         return True
 
-    def edit(self, old: int, *new: str) -> None:
-        self.edit_tokens(self.item.start, old, [made(item) for item in new])
+    def edit(self, old: int, *new_lexemes: str) -> None:
+        self.edit_tokens(self.item.start, old, [made(item) for item in new_lexemes])
 
-    def edit_tokens(self, at: int, old: int, new: list[Lexeme]) -> None:
-        self.edits.setdefault(self.k, []).append(Edit(at, old, new))
+    def edit_tokens(self, at: int, old: int, new_lexemes: list[Lexeme]) -> None:
+        self.edits.setdefault(self.k, []).append(Edit(at, old, new_lexemes))
 
     def close_behind(self, k: int, block: _Block) -> None:
         self.behind.setdefault(k, []).append(" " * block.indent + block.end)
@@ -201,9 +201,9 @@ class Matching:
         if item.word != "WHILE" or not self.open or not self.open[-1].is_do:
             return False
         condition = self.line.reading.tokens[item.start + 2 : item.end - 1]
-        new = [made("IF"), made("("), *negated(condition), made(")")]
-        new += map(made, (";", "BREAK", ";", BLOCK_ENDS["IF"], ";", BLOCK_ENDS["LOOP"]))
-        self.edit_tokens(item.start, item.end - item.start, new)
+        new_lexemes = [made("IF"), made("("), *negated(condition), made(")")]
+        new_lexemes += map(made, (";", "BREAK", ";", BLOCK_ENDS["IF"], ";", BLOCK_ENDS["LOOP"]))
+        self.edit_tokens(item.start, item.end - item.start, new_lexemes)
         self.open.pop()
         return True
 

@@ -808,15 +808,15 @@ def _unmatched(
             (_thousandths(amount.value * factor), amount.line * is_same_line)
             for factor in (1, scale)
         }
-        fitting = [
+        fitting_positions = [
             positions
             for key in keys
             for positions in places.get(key, {}).values()
             if positions and _is_same(amount, after[positions[0]])
         ]
-        if fitting:
+        if fitting_positions:
             nearest = min(
-                fitting,
+                fitting_positions,
                 key=lambda positions: (after[positions[0]].unit != amount.unit, positions[0]),
             )
             matched_positions.add(nearest.popleft())
@@ -900,22 +900,22 @@ def _questions(before: _Said, after: _Said) -> Iterator[str]:
 
 def _senses(words_said: _Said) -> Counter[str]:
     senses: Counter[str] = Counter()
-    is_call_bracket = [False]
+    open_brackets = [False]
     for one, sign, other in zip(
         words_said.tokens, words_said.tokens[1:], words_said.tokens[2:], strict=False
     ):
         if sign.text == "(":
-            is_call_bracket.append(one.text in CALL_WORDS)
+            open_brackets.append(one.text in CALL_WORDS)
         elif sign.text == ")":
-            is_call_bracket = is_call_bracket[:-1] or [False]
+            open_brackets = open_brackets[:-1] or [False]
         elif sign is _END:
-            is_call_bracket = [False]
+            open_brackets = [False]
         is_comparison = one.kind in (WORD, NUMBER) or one.text == ")"
         is_comparison &= other.kind in (WORD, NUMBER) or other.text in ("(", "-", "+")
         if (
             sign.text in _COMPARISON_SENSES
             and is_comparison
-            and not is_call_bracket[-1]
+            and not open_brackets[-1]
             and one.text not in CALL_WORDS
         ):
             senses[_COMPARISON_SENSES[sign.text]] += 1

@@ -75,9 +75,15 @@ def counters(source: Source) -> list[Diagnostic]:
     return diagnostics
 
 
-def _counter_diagnostic(span: Span, found: str, right: str, fix: str) -> Diagnostic:
+def _counter_diagnostic(span: Span, found_text: str, right_word: str, fix: str) -> Diagnostic:
     code: Code = codes.OTHER_LANGUAGE
-    values = {"found": found, "right": right, "fix": fix, "usage": WORDS[right].usage, "lost": ""}
+    values = {
+        "found": found_text,
+        "right": right_word,
+        "fix": fix,
+        "usage": WORDS[right_word].usage,
+        "lost": "",
+    }
     return Diagnostic(code, span, values, span, Repair((Edit(span, fix),), False))
 
 

@@ -82,8 +82,8 @@ def _taught(source: Source) -> list[Diagnostic]:
     return diagnostics
 
 
-def _taught_part(source: Source, span: Span, found: str, fix: str) -> Diagnostic:
-    values = {"found": found, "right": fix.split()[0], "fix": fix}
+def _taught_part(source: Source, span: Span, found_text: str, fix: str) -> Diagnostic:
+    values = {"found": found_text, "right": fix.split()[0], "fix": fix}
     repair = Repair((Edit(span, fix),), False)
     return Diagnostic(codes.OTHER_LANGUAGE, span, values, span, repair)
 

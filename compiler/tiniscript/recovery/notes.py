@@ -48,12 +48,20 @@ def _notes(text: str) -> Iterator[tuple[Span, str, tuple[Edit, ...]]]:
         sign = next((it for it in _NOTE_SIGN.finditer(body) if _is_note(body, it)), None)
         if sign is not None:
             end = _NOTE_END.search(line, sign.end())
-            begin = Edit(Span(start + sign.start(), start + sign.end()), "// ")
+            sign_edit = Edit(Span(start + sign.start(), start + sign.end()), "// ")
             edits = (
-                (begin, Edit(Span(start + end.start(), start + end.end()), "")) if end else (begin,)
+                (sign_edit, Edit(Span(start + end.start(), start + end.end()), ""))
+                if end
+                else (sign_edit,)
             )
-            right = line[: sign.start()] + "// " + line[sign.end() : end.start() if end else None]
-            yield Span(start + sign.start(), start + sign.end("sign")), right.strip(), tuple(edits)
+            corrected_line = (
+                line[: sign.start()] + "// " + line[sign.end() : end.start() if end else None]
+            )
+            yield (
+                Span(start + sign.start(), start + sign.end("sign")),
+                corrected_line.strip(),
+                tuple(edits),
+            )
         start += len(line) + 1
 
 

@@ -255,12 +255,12 @@ class Encoded:
         """Return the line after a row, or None where it does not hold here."""
         new: list[Lexeme] = []
         for part in row.replacement:
-            made_of = self._replacement(part, match)
-            if made_of is None:
+            sources = self._replacement(part, match)
+            if sources is None:
                 return None
-            if new and made_of and new[-1].source is None and made_of[0].space == "":
-                made_of = [made_of[0]._replace(space=None), *made_of[1:]]
-            new += made_of
+            if new and sources and new[-1].source is None and sources[0].space == "":
+                sources = [sources[0]._replace(space=None), *sources[1:]]
+            new += sources
         new = _without_double_brackets(new)
         start, end = self.span(match)
         is_assignment = row.code is codes.OTHER_ASSIGNMENT

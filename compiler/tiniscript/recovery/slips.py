@@ -106,11 +106,13 @@ def values_of(slip: Slip, code: Code) -> dict[str, str]:
 def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
     """Return what is wrong with an instruction that is told with a code, of a rewrite if of one."""
     is_of_step = step is not None and code is not codes.OTHER_NOTE
-    old, new = (step.before, step.after) if step and is_of_step else (change.before, change.after)
+    old_texts, new = (
+        (step.before, step.after) if step and is_of_step else (change.before, change.after)
+    )
     if "WHEN" in texts(change.after):  # what the steps took for an IF
-        old, new = (
+        old_texts, new = (
             [it._replace(text="WHEN") if it.text == "IF" else it for it in line]
-            for line in (old, new)
+            for line in (old_texts, new)
         )
     old_lexemes, new_lexemes = without_setup(change.before), without_setup(change.after)
     is_begun = setup_of(change.after) and not setup_of(change.before)
@@ -121,11 +123,13 @@ def slip_of(change: Change, code: Code, step: Step | None) -> Slip:
         [lexeme for part in parts[head : len(parts) - tail] for lexeme in part]
         for parts in (old_lexemes, new_lexemes)
     )
-    start, found, right = first_difference(old, new)
+    start, found, right = first_difference(old_texts, new)
     has_end = bool(head) and any(lexeme.text in WORD_OF_END for lexeme in new_part)
     parts = new_lexemes[0 if has_end else head : len(new_lexemes) - tail]
     until = len(new_lexemes[head]) if len(old_lexemes) < len(new_lexemes) else None
-    slip = Slip(code, old, new, start, found, right, old_part, new_part, change.after, parts, until)
+    slip = Slip(
+        code, old_texts, new, start, found, right, old_part, new_part, change.after, parts, until
+    )
     return _EXACT_SLIPS[code](slip) if code in _EXACT_SLIPS else slip
 
 
@@ -213,13 +217,13 @@ def _code_of_words(before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Code:
 
 def _foreign_words(slip: Slip) -> Slip:
     """A word of another language, with what belongs to it: `bot.forward`, FOR of `FOR I = 1 TO`."""
-    old, start, result, right = slip.old, slip.start, slip.found, slip.right
-    with_next = old[start : start + len(result) + 1]
+    old_texts, start, result, right = slip.old, slip.start, slip.found, slip.right
+    with_next = old_texts[start : start + len(result) + 1]
     has_dot = texts(result[-1:]) == (".",)
     if has_dot and not right:
         result, right = with_next, slip.new[start : start + 1]
-    elif not right and start and old[start - 1].text != "|":
-        result, right = [old[start - 1], *result], [old[start - 1]]
+    elif not right and start and old_texts[start - 1].text != "|":
+        result, right = [old_texts[start - 1], *result], [old_texts[start - 1]]
     elif has_dot:
         result = with_next
     end = next((k for k, it in enumerate(result) if it.text in ("=", "(")), len(result))
@@ -228,7 +232,7 @@ def _foreign_words(slip: Slip) -> Slip:
     if any(lexeme.kind is NUMBER for lexeme in result):  # PARA of `PARA I DE 1 A 4`
         result = [*takewhile(_is_counting, result)] or result
     if right and result and all(lexicon_meaning(lexeme.text, "filler") for lexeme in result):
-        meant_lexemes = [lexeme for lexeme in old if meant_by(lexeme.text) == right[0].text]
+        meant_lexemes = [lexeme for lexeme in old_texts if meant_by(lexeme.text) == right[0].text]
         result = meant_lexemes[:1] or result  # `oi robô, anda`
     return slip._replace(found=result, right=right)
 
@@ -446,20 +450,24 @@ _VALUE_GAPS: dict[str, Callable[[Slip], str]] = {
 # -- tokens -------------------------------------------------------------------------------------
 
 
-def alike(old: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
+def alike(old_texts: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
     """Return how much two texts, or two lines, have alike at their beginning and at their end."""
-    most_lexemes = min(len(old), len(new))
-    head = next((k for k in range(most_lexemes) if old[k] != new[k]), most_lexemes)
+    most_lexemes = min(len(old_texts), len(new))
+    head = next((k for k in range(most_lexemes) if old_texts[k] != new[k]), most_lexemes)
     most_lexemes -= head
-    return head, next((k for k in range(most_lexemes) if old[-1 - k] != new[-1 - k]), most_lexemes)
+    return head, next(
+        (k for k in range(most_lexemes) if old_texts[-1 - k] != new[-1 - k]), most_lexemes
+    )
 
 
 def first_difference(
     before: Sequence[Lexeme], after: Sequence[Lexeme]
 ) -> tuple[int, Sequence[Lexeme], Sequence[Lexeme]]:
     """Return where two lines differ first, and what stands there in each of them."""
-    old = [lexeme.text if (lexeme.source or "").isascii() else lexeme.source for lexeme in before]
-    matched = SequenceMatcher(None, old, texts(after), autojunk=False)
+    old_texts = [
+        lexeme.text if (lexeme.source or "").isascii() else lexeme.source for lexeme in before
+    ]
+    matched = SequenceMatcher(None, old_texts, texts(after), autojunk=False)
     for kind, start, end, begin, stop in matched.get_opcodes():
         if kind != "equal":
             return start, before[start:end], after[begin:stop]

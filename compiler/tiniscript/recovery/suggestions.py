@@ -71,7 +71,7 @@ class Row(NamedTuple):
 
     pattern: rewrites.Pattern
     code: Code | None
-    how: Sequence[str]
+    conditions: Sequence[str]
     values: dict[str, str]
     example: tuple[str, str]
 
@@ -102,7 +102,7 @@ class Suggestion(NamedTuple):
     """What is told, and the words that are passed over so that the rest can be read."""
 
     diagnostic: Diagnostic
-    passed: Edit
+    blanking_edit: Edit
 
 
 @cache
@@ -142,7 +142,8 @@ def suggested(text: str, kit: Kit) -> list[Suggestion]:
                 instructions_left -= 1
                 each = _suggestion_for(part)
                 if each and not (
-                    suggestions_of_line and overlap([suggestions_of_line[-1].passed], [each.passed])
+                    suggestions_of_line
+                    and overlap([suggestions_of_line[-1].blanking_edit], [each.blanking_edit])
                 ):
                     suggestions_of_line.append(each)
         suggestions += suggestions_of_line

@@ -103,9 +103,9 @@ def told_of(
     return codes.in_order([pointed(item, source) for item in diagnostics_told])
 
 
-def _read(wrong_text: WrongText, rounds: int) -> list[Diagnostic]:
+def _read(wrong_text: WrongText, rounds_left: int) -> list[Diagnostic]:
     """Return what the readers say of a text, and then of what their edits leave wrong."""
-    findings = (reader(wrong_text) for reader in READERS if rounds)
+    findings = (reader(wrong_text) for reader in READERS if rounds_left)
     diagnostics, edits = next((each for each in findings if each.diagnostics), Findings([], []))
     if not diagnostics:
         diagnostics = with_usage(wrong_text.diagnostics, wrong_text.source, wrong_text.kit)
@@ -119,7 +119,7 @@ def _read(wrong_text: WrongText, rounds: int) -> list[Diagnostic]:
                 WrongText(
                     Source(repaired_text), diagnostics_left, wrong_text.check, wrong_text.kit
                 ),
-                rounds - 1,
+                rounds_left - 1,
             )
             sure_edits = {it for each in diagnostics for it in _sure_edits(each)}
             later_diagnostics = [
@@ -234,10 +234,10 @@ def _words_after(wrong_text: WrongText) -> Findings:
     suggestions = suggested(wrong_text.source.text, wrong_text.kit)
     if recovery := wrong_text.recovery:  # they belong to the instruction by its sign: `X = 20 x 3`
         suggestions = [
-            item for item in suggestions if not recovery.has_signs(item.passed.span.start)
+            item for item in suggestions if not recovery.has_signs(item.blanking_edit.span.start)
         ]
     return Findings(
-        [item.diagnostic for item in suggestions], [item.passed for item in suggestions]
+        [item.diagnostic for item in suggestions], [item.blanking_edit for item in suggestions]
     )
 
 

@@ -130,23 +130,21 @@ def with_usage(diagnostics: Sequence[Diagnostic], source: Source, kit: Kit) -> l
         "LOOP"
     ]
     diagnostics = text.with_name(diagnostics)
-    diagnostics_told: list[Diagnostic] = []
+    result: list[Diagnostic] = []
     for item in diagnostics[:_MOST_DIAGNOSTICS]:
-        diagnostics_told.append(
+        result.append(
             (_usage_diagnostic(Usage(text, item)) if item.repair is None else None) or item
         )
-    parts = [it for it in diagnostics_told if it.values.get("part")]
-    if parts and any(item.code is codes.TASK_NOT_TOP for item in diagnostics_told):  # rather an IF
+    parts = [it for it in result if it.values.get("part")]
+    if parts and any(item.code is codes.TASK_NOT_TOP for item in result):  # rather an IF
         part = {"part": parts[0].values["part"]}
-        diagnostics_told = [
-            it._replace(values={**it.values, **part}) for it in diagnostics_told if it not in parts
-        ]
-    if any("usage" in item.values for item in diagnostics_told if item.code is codes.OUT_OF_RANGE):
-        diagnostics_told += text.turned()
+        result = [it._replace(values={**it.values, **part}) for it in result if it not in parts]
+    if any("usage" in item.values for item in result if item.code is codes.OUT_OF_RANGE):
+        result += text.turned()
     return [
         item
-        for item in (*diagnostics_told, *diagnostics[_MOST_DIAGNOSTICS:])
-        if not (item.code in _NAME_CODES and text.is_in_wrong_def(item, diagnostics_told))
+        for item in (*result, *diagnostics[_MOST_DIAGNOSTICS:])
+        if not (item.code in _NAME_CODES and text.is_in_wrong_def(item, result))
     ]
 
 
@@ -319,19 +317,19 @@ class Usage:
         """Return what a row tells: of the place, or where its words say."""
         values, fix = gaps.filled, gaps.filled.get("fix", "")
         span = next(
-            (_PLACE_FUNCTIONS[item](self) for item in row.how if item in _PLACE_FUNCTIONS),
+            (_PLACE_FUNCTIONS[item](self) for item in row.conditions if item in _PLACE_FUNCTIONS),
             self.found.span,
         )
         code = row.code or self.found.code
         if row.code is None:
             values = {**self.found.values, **values}
-        place = self.piece if {*row.how} & {"offered", "whole"} else None
-        repair = Repair((Edit(self.piece, fix),), False) if "offered" in row.how else None
-        if "everywhere" in row.how:
+        place = self.piece if {*row.conditions} & {"offered", "whole"} else None
+        repair = Repair((Edit(self.piece, fix),), False) if "offered" in row.conditions else None
+        if "everywhere" in row.conditions:
             edits = (Edit(item, values["right"]) for item in self.renamed())
             repair = Repair(tuple(edits), False)
         diagnostic = Diagnostic(code, span, values, place, repair)
-        if "again" not in row.how:
+        if "again" not in row.conditions:
             return diagnostic
         return _usage_diagnostic(Usage(self.around, diagnostic)) or diagnostic
 

@@ -94,12 +94,12 @@ def _mixed_condition(row: Sequence[Lexeme], names: Names) -> dict[str, str]:
     """Return what is asked where words are joined with a comparison: `DISTANCE < 10 o hay luz`."""
     places = [k for k, lexeme in enumerate(row) if _joint_of(lexeme.text, names)]
     pieces = [row[a + 1 : b] for a, b in pairwise((-1, *places, len(row)))]
-    has_comparison = [any(lexeme.text in COMPARISONS for lexeme in piece) for piece in pieces]
-    if not any(has_comparison) or all(has_comparison):
+    are_comparisons = [any(lexeme.text in COMPARISONS for lexeme in piece) for piece in pieces]
+    if not any(are_comparisons) or all(are_comparisons):
         return {}
     joint = _joint_of(row[places[0]].text, names)
     messages = []
-    for piece, is_compared in zip(pieces, has_comparison, strict=True):
+    for piece, is_compared in zip(pieces, are_comparisons, strict=True):
         text = " ".join(names.meant(lexeme.text) or lexeme.text for lexeme in piece)
         result = {"asked": text} if is_compared else worded([_EMPTY_WORD, *piece], names) or {}
         messages.append(result.get("asked") or result.get("question", ""))

@@ -154,12 +154,12 @@ def _choices(
 ) -> str:  # fmt: skip
     """Return the pins that can do `ability`, except those of the timers in `without_timers`."""
     every = sorted((chip.digital | chip.reading | chip.analog) - without_pins)
-    fit = [
+    fitting_pins = [
         pin
         for pin in every
         if chip.can(pin, ability) and chip.pwm.get(pin, -1) not in without_timers
     ]
-    return ", ".join(chip.pin_name(pin) for pin in fit)
+    return ", ".join(chip.pin_name(pin) for pin in fitting_pins)
 
 
 def read_board(table: Table, kit: Kit) -> Board:

@@ -82,7 +82,7 @@ class Shape(NamedTuple):
     """
 
     icon: str
-    need: str
+    need_key: str
     terminals: tuple[Terminal, ...]
     model: str = ""
     motors: tuple[str, ...] = ()
@@ -253,7 +253,7 @@ class SensorDriver(Driver):
 
     @abstractmethod
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
         """Return the lines of a sketch that put a reading into `name`."""
 
@@ -268,7 +268,9 @@ class ActuatorDriver(Driver):
         """Return the lines that set it to `value`."""
 
     @abstractmethod
-    def sketch(self, plan: Plan, device: Device, wiring: Wiring, function: str, beside: str) -> str:
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, function: str, comment: str
+    ) -> str:
         """Return the function of a sketch that sets it."""
 
 
@@ -282,14 +284,14 @@ def in_limits(device: Device, low: int, high: int) -> list[str]:
     return [f"      *value = in_limits(*value, {device.low}, {device.high});"]
 
 
-def module(output: str, need: str, *notes: str) -> Shape:
+def module(output: str, need_key: str, *notes: str) -> Shape:
     """Return the shape of a sensor on a small board with three pins."""
     terminals = (
         Terminal("VCC", rail=BOARD_5V),
         Terminal(output, "pin"),
         Terminal("GND", rail=GROUND),
     )
-    return Shape("module", need, terminals, notes=notes)
+    return Shape("module", need_key, terminals, notes=notes)
 
 
 def photoresistor() -> Shape:

@@ -38,9 +38,9 @@ def channels_of(board: Board) -> dict[int, int]:
     return channels
 
 
-def timers_of(pins: int) -> int:
+def timers_of(pin_count: int) -> int:
     """Return how many timers so many pins of one frequency take."""
-    return -(-pins // PER_TIMER)
+    return -(-pin_count // PER_TIMER)
 
 
 def _pin_needs(used_by: str, wiring: Wiring) -> Iterable[tuple[int, str]]:

@@ -44,8 +44,8 @@ def read(text: str, name: str, chip: str | None = None) -> Robot:
 def _read_kit(table: Table) -> Kit:
     names_taken: set[str] = set()
 
-    def speed(key: str, most: int) -> int:
-        return table.number(key, 1, most) if table.has(key) else 0
+    def speed(key: str, highest: int) -> int:
+        return table.number(key, 1, highest) if table.has(key) else 0
 
     kit = Kit(
         _read_devices(table, "sensors", names_taken),
@@ -112,9 +112,9 @@ def _read_unit(table: Table) -> str:
 
 
 def _read_range(table: Table, example: str, is_actuator: bool) -> tuple[int, int]:
-    before = len(table.reasons)
+    reason_count_before = len(table.reasons)
     low, high = table.pair("range", example)
-    if len(table.reasons) == before and table.has("range"):
+    if len(table.reasons) == reason_count_before and table.has("range"):
         if low >= high:
             table.complain("range_empty", "range")
         elif is_actuator and (low % ONE or high % ONE):
@@ -123,8 +123,8 @@ def _read_range(table: Table, example: str, is_actuator: bool) -> tuple[int, int
 
 
 def _read_body(table: Table, kit: Kit) -> Body:
-    def size(key: str, sample: str, most: int = FARTHEST_CM) -> float:
-        return table.number(key, 1, most, f"{key} = {sample}") / ONE
+    def size(key: str, sample: str, greatest: int = FARTHEST_CM) -> float:
+        return table.number(key, 1, greatest, f"{key} = {sample}") / ONE
 
     wheel_base_cm = size("wheel_base_cm", "13.5")
     said_cm_s = 0.0
@@ -142,8 +142,8 @@ def _read_body(table: Table, kit: Kit) -> Body:
 
 
 def _read_place(table: Table, servos: Sequence[str]) -> Place:
-    def number(key: str, most: int, example: str = "") -> float:
-        return table.number(key, -most, most, example) / ONE
+    def number(key: str, greatest: int, example: str = "") -> float:
+        return table.number(key, -greatest, greatest, example) / ONE
 
     x_cm = number("x_cm", FARTHEST_CM, "x_cm = 8")
     y_cm = number("y_cm", FARTHEST_CM, "y_cm = 0")

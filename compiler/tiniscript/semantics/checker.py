@@ -61,16 +61,16 @@ class _Procedure(NamedTuple):
     """What a call of a DEF brings with it."""
 
     definitely_read_mask: int
-    blocks: int
-    calls: int
+    block_depth: int
+    call_depth: int
 
 
 class _Outside(NamedTuple):
     """What is known of the program around a DEF or a task, while that is checked."""
 
     definitely_read_mask: int
-    blocks: int
-    calls: int
+    block_depth: int
+    call_depth: int
     beside_blocks: int
     beside_calls: int
 
@@ -198,17 +198,17 @@ class _Checker(Scope):
             self.way(node, way)
             arguments = (arguments[0]._replace(unit=None), *arguments[1:])
             expected = (WAYS[UNIT_OF[word.text]], *expected[1:])
-        text = len(self.diagnostics)
+        diagnostic_count = len(self.diagnostics)
         values = [
             self.types.value(argument)
             if spec is VALUE
             else self.number(argument, spec, word.text, (node, word))
             for argument, spec in zip(arguments[forever:], expected[forever:], strict=True)
         ]
-        if len(self.diagnostics) > text:
-            self.wrong.report_values(node, word, text)
+        if len(self.diagnostics) > diagnostic_count:
+            self.wrong.report_values(node, word, diagnostic_count)
         if word.stands_for:
-            if len(self.diagnostics) == text:
+            if len(self.diagnostics) == diagnostic_count:
                 self.spell_out(word, arguments, span, output)
             return
         self.check_stack_fits(values, span)
@@ -319,10 +319,10 @@ class _Checker(Scope):
 
     def call(self, node: ast.Command, number: int, output: list[Statement]) -> None:
         facts = self.facts[number]
-        if facts.calls + 1 + self.beside_calls > CALLS:
+        if facts.call_depth + 1 + self.beside_calls > CALLS:
             self.report(codes.CALLS_TOO_DEEP, node.span, name=node.word, limit=str(CALLS))
-        self.calls = max(self.calls, facts.calls + 1)
-        depth = self.depth + facts.blocks
+        self.calls = max(self.calls, facts.call_depth + 1)
+        depth = self.depth + facts.block_depth
         if depth + self.beside_blocks > BLOCKS:
             self.report(codes.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
         self.deepest = max(self.deepest, depth)
@@ -476,8 +476,8 @@ class _Checker(Scope):
 
     def task(self, node: ast.Task, output: list[Statement]) -> None:
         outer_scope = self.enter_scope()
-        self.beside_blocks += outer_scope.blocks
-        self.beside_calls += outer_scope.calls
+        self.beside_blocks += outer_scope.block_depth
+        self.beside_calls += outer_scope.call_depth
         until = None
         if node.is_when:
             nothing = ir.Until((), self.types.nothing.terms)

@@ -52,10 +52,10 @@ def _rewrite_if(
     whole_span = Span(if_node.span.start, rest[-1].span.end)
     arm = if_node.arms[0]
     branches = [[*arm.body], [*if_node.otherwise]]
-    last = [branch[-1] if branch else None for branch in branches]
-    if break_node not in last or arm.condition is None:
+    last_instructions = [branch[-1] if branch else None for branch in branches]
+    if break_node not in last_instructions or arm.condition is None:
         return None
-    ended_branch = last.index(break_node)
+    ended_branch = last_instructions.index(break_node)
     branch_texts = [
         [source[each.span] for each in branch if each is not break_node] for branch in branches
     ]

@@ -32,10 +32,10 @@ _TRUTH_BY_VALUE = {"TRUE": "TRUE", "1": "TRUE", "FALSE": "FALSE", "0": "FALSE"}
 MOST_REPETITIONS = 20  # that a DEF is done by hand in a class
 
 
-def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
-    """Report a command that is neither a word nor a known name; `inside` is the DEF around it."""
+def report_unknown(scope: Scope, node: ast.Command, def_name: str | None) -> None:
+    """Report a command that is neither word nor known name; `def_name` is the DEF around it."""
     word, span = node.word, node.word_span
-    if word == inside:
+    if word == def_name:
         scope.report(codes.CALLS_ITSELF, span, name=word)
     elif word in scope.def_names:
         scope.report(codes.CALL_BEFORE_DEF, span, name=word)

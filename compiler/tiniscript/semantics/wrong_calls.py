@@ -77,8 +77,8 @@ class WrongCalls:
         self.scope = scope
         self._free: dict[str, tuple[Iterator[str], list[str]]] = {}  # see `free_name`
 
-    def report_unknown(self, node: ast.Command, inside: str | None) -> None:
-        report_unknown(self.scope, node, inside)
+    def report_unknown(self, node: ast.Command, def_name: str | None) -> None:
+        report_unknown(self.scope, node, def_name)
 
     def report_not_callable(self, node: ast.Command) -> None:
         report_not_callable(self.scope, node)

@@ -62,7 +62,7 @@ class ExpressionParser:
     def expression(self, in_brackets: bool) -> Argument:
         cursor = self.cursor
         first = cursor.i
-        postfix = Postfix(brackets=1 if in_brackets else 0)
+        postfix = Postfix(bracket_count=1 if in_brackets else 0)
         while not self.operand(postfix) or self.operator(postfix):
             pass
         parts = tuple(postfix.parts)

@@ -167,7 +167,7 @@ def _rows(verdict: Verdict, timeout_s: int, language: str) -> list[str]:
         nothing = text("conform_nothing", language)
         row_got, wanted_row = (
             nothing if row is None else printable_name(row)
-            for row in (verdict.got, verdict.wanted_row)
+            for row in (verdict.got_row, verdict.wanted_row)
         )
         rows.append(
             text("conform_line", language).format(line=verdict.line, got=row_got, want=wanted_row)

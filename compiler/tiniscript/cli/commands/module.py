@@ -38,12 +38,14 @@ def run(options: Namespace, language: str) -> int:
     try:
         wire = Wire(ports.open_port(port, BAUDS[0]))
     except PortError as failure:
-        return _print_finding(open_failure(System(), port, failure)._replace(of="module"), language)
+        return _print_finding(
+            open_failure(System(), port, failure)._replace(part_name="module"), language
+        )
     steps: list[Step] = []  # the speed, once a command for it may have been sent
     try:
         return _SetUp(wire, options, expected, language, steps).run()
     except OSError:
-        exit_code = _print_finding(sure("port_gone")._replace(of="module"), language)
+        exit_code = _print_finding(sure("port_gone")._replace(part_name="module"), language)
         print(_speed_after_abort(steps, language))
         return exit_code
     except KeyboardInterrupt:

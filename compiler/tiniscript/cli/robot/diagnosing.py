@@ -62,11 +62,11 @@ def diagnosis_of(
         status_line.end()
 
 
-def expected_of(options: Namespace, language: str, pings: int = PING_COUNT) -> Expectations:
+def expected_of(options: Namespace, language: str, ping_count: int = PING_COUNT) -> Expectations:
     """Return the robot that the options name, and what this computer knows of all."""
     robot = inputs.robot(options, language)
     kit = None if options.robot is None else robot.kit.fingerprint
-    return Expectations(kit, robot.name, robot_name_of_kit, _has_key, _doubt, pings=pings)
+    return Expectations(kit, robot.name, robot_name_of_kit, _has_key, _doubt, pings=ping_count)
 
 
 def examination_of(
@@ -97,7 +97,7 @@ def _doubt(port: str, hello: HelloReply) -> str:
 
 
 def _doors(
-    options: Namespace, language: str, status_line: Doing, pings: int, is_agreed: bool
+    options: Namespace, language: str, status_line: Doing, ping_count: int, is_agreed: bool
 ) -> Doors:
     def open_wire(port: str, baud: int) -> Wire:
         return Wire(ports.open_port(port, baud))
@@ -121,5 +121,5 @@ def _doors(
 
     return Doors(
         System(), open_wire, lambda port: join(port, "doctor"), confirms_opening, ports.is_radio,
-        share, lambda what: status_line.tell(text(f"doing_{what}", language).format(n=pings)),
+        share, lambda what: status_line.tell(text(f"doing_{what}", language).format(n=ping_count)),
     )  # fmt: skip

@@ -48,18 +48,18 @@ def targets(options: Namespace) -> list[Target]:
     Ports in use come first, then ports of known robots. Opens none.
     """
     names_by_port = known_ports.remembered_ports().names
-    expected = [inputs.port(port) for port in options.ports]
+    expected_ports = [inputs.port(port) for port in options.ports]
     if options.all:
-        expected = [registration.port for registration in find_all()]
-        expected += [
+        expected_ports = [registration.port for registration in find_all()]
+        expected_ports += [
             port for port in names_by_port if is_there(port) and not directory.is_gone(port)
         ]
         from tiniscript.link import ports
 
-        expected += [item.port for item in ports.list_ports()]
-        expected += [robot.address for robot in directory.running_robots()]
+        expected_ports += [item.port for item in ports.list_ports()]
+        expected_ports += [robot.address for robot in directory.running_robots()]
     names = {canonical_port(port): name for port, name in reversed(names_by_port.items())}
-    port_of = {canonical_port(port): port for port in reversed(expected)}
+    port_of = {canonical_port(port): port for port in reversed(expected_ports)}
     return [
         Target(port, names.get(canonical, ""), not options.all, canonical in names)
         for canonical, port in reversed(port_of.items())

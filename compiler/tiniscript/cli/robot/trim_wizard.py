@@ -102,7 +102,7 @@ class TrimWizard(Conversation):
         for side in ("left", "right"):
             wheel_turns.append(self.turn_motor(side))
             if not wheel_turns[-1].wheel:
-                raise self._failure(sure("still")._replace(of=side))
+                raise self._failure(sure("still")._replace(part_name=side))
         trim = trim_from_answers(Trim(), *wheel_turns)
         if trim is None:
             raise self._failure(sure("same_wheel"))

@@ -33,10 +33,10 @@ def handle_signals() -> Iterator[EndRequest]:
             hook_before(dropped)
 
     sys.unraisablehook = tell_others
-    before = [signal.signal(number, end_request.ask) for number in numbers]
+    handlers_before = [signal.signal(number, end_request.ask) for number in numbers]
     try:
         yield end_request
     finally:
         sys.unraisablehook = hook_before
-        for number, handler in zip(numbers, before, strict=True):
+        for number, handler in zip(numbers, handlers_before, strict=True):
             signal.signal(number, handler)

@@ -28,7 +28,7 @@ _UNARY, _PRIMARY = 10, 11
 
 class _Operand(NamedTuple):
     text: str
-    binds: int  # how tightly, as C++ has it
+    precedence: int  # how tightly, as C++ has it
     is_literal: bool = False  # a number that C++ itself would calculate with
     is_random: bool = False
 
@@ -84,13 +84,15 @@ class Expressions:
 
     def _unary(self, op: str, operand: _Operand) -> _Operand:
         if op == "NOT":
-            return operand._replace(text="!" + _bracket(operand, _UNARY), binds=_UNARY)
+            return operand._replace(text="!" + _bracket(operand, _UNARY), precedence=_UNARY)
         result = self._as_number(operand)
         if op == "ABS":
-            return result._replace(text=f"{self.use('absolute')}({result.text})", binds=_PRIMARY)
+            return result._replace(
+                text=f"{self.use('absolute')}({result.text})", precedence=_PRIMARY
+            )
         self.use("NEG")
         gap = " " if result.text.startswith("-") else ""
-        return result._replace(text=f"-{gap}{_bracket(result, _UNARY)}", binds=_UNARY)
+        return result._replace(text=f"-{gap}{_bracket(result, _UNARY)}", precedence=_UNARY)
 
     def _binary(self, op: str, left: _Operand, right: _Operand) -> _Operand:
         is_random = left.is_random or right.is_random or op == "RANDOM"
@@ -114,7 +116,7 @@ class Expressions:
         # Brackets that C++ does not need stand where it warns without them.
         low, high = (8, 8) if op in COMPARISON_OPS else (binds, binds + 1)
         if op == "OR":
-            low, high = (6 if left.binds == _PRECEDENCE["AND"] else binds), 6
+            low, high = (6 if left.precedence == _PRECEDENCE["AND"] else binds), 6
         made_text = f"{_bracket(left, low)} {sign} {_bracket(right, high)}"
         if first:
             return _Operand(f"({assignment}{made_text})", _PRIMARY, is_random=True)
@@ -127,9 +129,9 @@ class Expressions:
         return _Operand(f"{self.use('Number')}({operand.text})", _PRIMARY)
 
 
-def _bracket(operand: _Operand, binds: int) -> str:
+def _bracket(operand: _Operand, precedence: int) -> str:
     """Return an operand as it stands beside an operator that binds so tightly."""
-    return operand.text if operand.binds >= binds else f"({operand.text})"
+    return operand.text if operand.precedence >= precedence else f"({operand.text})"
 
 
 def is_float(value: int) -> bool:

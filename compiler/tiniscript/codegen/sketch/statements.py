@@ -285,7 +285,7 @@ class Statements:
         for k, arm in enumerate(statement.arms):
             text = self.instruction_text(arm.span.start)
             self.remarks_in(arm.span.start, k)
-            before = len(self.lines)
+            line_count_before = len(self.lines)
             inline = len(arm.reads) == 1 and reads_once(arm.condition, arm.reads[0])
             if k and arm.reads and not inline:
                 self.line("} else {")
@@ -295,7 +295,7 @@ class Statements:
                 self.line(f"if ({condition}) {{", text)
             else:
                 condition = self.condition(arm.reads, arm.condition)
-                assert before == len(self.lines)
+                assert line_count_before == len(self.lines)
                 self.line(f"{'} else ' if k else ''}if ({condition}) {{", text)
             self.block(arm.body)
         if statement.otherwise:

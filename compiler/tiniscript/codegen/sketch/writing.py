@@ -169,17 +169,17 @@ class _Sketch:
             start = last.span.start
             rows.remarks(start)
             rows.line(f"// {rows.instruction_text(start)}: {self.text_of_key('in_loop')}")
-        main, rows.lines = rows.lines, []
+        main_lines, rows.lines = rows.lines, []
         rows.body(loop)
         rows.remaining_comments()
-        repeated, rows.lines = rows.lines, []
+        repeated_lines, rows.lines = rows.lines, []
         if is_ping:
-            main = []
+            main_lines = []
         elif not loop:
             rows.line(f"{self.use('finish')}();", self.text_of_key("no_more"))
-            main += [*repeated, *rows.lines]
-            repeated = []
-        return self.layout(rows, main, repeated, procedures)
+            main_lines += [*repeated_lines, *rows.lines]
+            repeated_lines = []
+        return self.layout(rows, main_lines, repeated_lines, procedures)
 
     def statements(self) -> Statements:
         comments = [
@@ -214,7 +214,11 @@ class _Sketch:
         return "\n".join([*head, commented_header, *body, "}"])
 
     def layout(
-        self, rows: Statements, main: list[str], repeated: list[str], procedures: list[str]
+        self,
+        rows: Statements,
+        main_lines: list[str],
+        repeated_lines: list[str],
+        procedures: list[str],
     ) -> str:
         """Return the sketch; what the program uses is known by now."""
         is_ping, parts = self.program.start == "PING", self.plan
@@ -233,7 +237,9 @@ class _Sketch:
         self.functions.update(parts.functions)
         self.functions["halt"] = self.halt()
         begin = [] if is_ping else self.begin()
-        self.add_needed_helpers([*main, *repeated, *procedures, *own_functions.values(), *begin])
+        self.add_needed_helpers(
+            [*main_lines, *repeated_lines, *procedures, *own_functions.values(), *begin]
+        )
         wiring_functions = [*own_functions.values()]
         kit = self.robot.kit
         introduction = [
@@ -266,8 +272,8 @@ class _Sketch:
             self.number() if self.is_exact else "",
             self.variables(rows),
             self.prototypes(all_functions),
-            f"void setup() {{\n{_lines(begin, main)}}}\n",
-            f"void loop() {{\n{_lines(repeated)}}}\n",
+            f"void setup() {{\n{_lines(begin, main_lines)}}}\n",
+            f"void loop() {{\n{_lines(repeated_lines)}}}\n",
         ]
         if procedures:
             pieces += [

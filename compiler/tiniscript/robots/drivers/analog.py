@@ -52,9 +52,9 @@ class Analog(SensorDriver):
         ]
 
     def sketch(
-        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, comment: str
     ) -> list[str]:
-        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", beside)
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)
         if self.is_count(device, wiring):
             return [f"{name} = analogRead({pin});"]
         zero_volts, full_volts = wiring.settings["zero"], wiring.settings["full"]
@@ -74,8 +74,8 @@ class Analog(SensorDriver):
         is_plain = (wiring.settings["zero"], wiring.settings["full"]) == (0, FULL_COUNT * ONE)
         return is_plain and device.low <= 0 and device.high >= FULL_COUNT * ONE
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
-        if sees == "light":
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
+        if sensed == "light":
             return photoresistor()
         full = wiring.settings["full"]
         if device and device.unit == "V" and wiring.settings["zero"] == 0 and full > pin_volts:

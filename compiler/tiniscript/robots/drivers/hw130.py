@@ -107,7 +107,7 @@ void $drive_motor(int pwmPin, int percent) {
             *lines,
         ]
 
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
+    def shape(self, wiring: Wiring, device: Device | None, sensed: str, pin_volts: int) -> Shape:
         wired_pins = [pin for pin in self.pins if pin.key in wiring.pins]
         return Shape(
             "bridge",

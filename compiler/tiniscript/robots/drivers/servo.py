@@ -51,8 +51,10 @@ class Servo(ActuatorDriver):
         part.off.append(f"{condition}servo_set({number}, 0, 0);  // {device.name}")
         return [f"      servo_set({number}, {pulse}, 0);", "      return;"]
 
-    def sketch(self, plan: Plan, device: Device, wiring: Wiring, function: str, beside: str) -> str:
-        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", beside)
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, function: str, comment: str
+    ) -> str:
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", comment)
         number = plan.servo(pin)
         first, last = wiring.settings["low_us"], wiring.settings["high_us"]
         if wiring.settings[AT_STOP] != HOLD:

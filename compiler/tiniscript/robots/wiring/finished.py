@@ -215,7 +215,7 @@ class _Finished:
 
 
 def _is_supply(part: Part) -> bool:
-    return part.shape.need in ("need_battery", "need_servo_supply")
+    return part.shape.need_key in ("need_battery", "need_servo_supply")
 
 
 def _box(

@@ -107,14 +107,14 @@ class _Channel:
                     improved = True
         return {wire: track for track, wire in enumerate(order)}
 
-    def _cost(self, rest: Sequence[int], wire: int, at: int) -> int:
-        nearer = sum(self._crossings(other, wire) for other in rest[:at])
-        return nearer + sum(self._crossings(wire, other) for other in rest[at:])
+    def _cost(self, other_wires: Sequence[int], wire: int, at: int) -> int:
+        crossing_count = sum(self._crossings(other, wire) for other in other_wires[:at])
+        return crossing_count + sum(self._crossings(wire, other) for other in other_wires[at:])
 
-    def _crossings(self, near: int, far: int) -> int:
-        """Count where two wires cross if `near` has the track that is nearer to the board."""
-        near_from, near_to = self.spans[near]
-        far_from, far_to = self.spans[far]
+    def _crossings(self, near_wire: int, far_wire: int) -> int:
+        """Count where two wires cross if `near_wire` has the track that is nearer to the board."""
+        near_from, near_to = self.spans[near_wire]
+        far_from, far_to = self.spans[far_wire]
         first = min(near_from, near_to) < far_from < max(near_from, near_to)
         return first + (min(far_from, far_to) < near_to < max(far_from, far_to))
 

@@ -119,8 +119,8 @@ class _Page:
     def _shopping_list(self) -> list[str]:
         parts_by_need: dict[str, list[Part]] = {}
         for part in self.plan.parts:
-            if part.shape.need:
-                parts_by_need.setdefault(part.shape.need, []).append(part)
+            if part.shape.need_key:
+                parts_by_need.setdefault(part.shape.need_key, []).append(part)
         need_texts = [self.say("need_board", board=self.board)]
         for key, parts in parts_by_need.items():
             need_text = f"{len(parts)} × {self.say(key)}"
@@ -148,14 +148,14 @@ class _Page:
                 for key, terminals in zip(("left_motor", "right_motor"), motors, strict=True)
             ]
             result.append(self.say("motor_wires", ends=", ".join(ends)))
-        free = [
+        free_pins = [
             f"{part.title} {end.name}"
             for part in self.plan.parts
             for end in part.ends
             if not end.wire and not end.rail
         ]
-        if free:
-            result.append(self.say("free", ends=", ".join(free)))
+        if free_pins:
+            result.append(self.say("free", ends=", ".join(free_pins)))
         return result
 
     def _power(self) -> list[str]:
