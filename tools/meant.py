@@ -22,7 +22,7 @@ MEANT = ".meant.ts"
 
 
 class Figures(NamedTuple):
-    """`known` are the programs of which it is known what they mean."""
+    """`known_count` counts the programs of which it is known what they mean."""
 
     program_count: int = 0
     right_count: int = 0

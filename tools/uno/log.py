@@ -67,8 +67,8 @@ class Byte:
 class Stack:
     """Bytes of RAM after what is there all the time, and how much of it the stack has taken.
 
-    `untouched` are as power-on has left them. `program` and `interrupt` are the deepest that each
-    of the two went by itself.
+    `untouched_bytes` are as power-on has left them. `program` and `interrupt` are the deepest that
+    each of the two went by itself.
     """
 
     untouched_bytes: int

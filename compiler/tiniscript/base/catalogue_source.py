@@ -35,9 +35,9 @@ Problem = tuple[int, str]  # a line of a file, and a sentence
 class Entry:
     """An English text, and what a language has of it.
 
-    `said` are the forms of its translation, empty without one, and `seen` is the hash of the text
-    that it translates, UNKNOWN where nobody has said that. A stale one is of what the English text
-    was before. `notes` are for translators. `is_same`: no translator is asked for it, since no
+    `said` are the forms of its translation, empty without one, and `seen_hash` is the hash of the
+    text that it translates, UNKNOWN where nobody has said that. A stale one is of what the English
+    text was before. `notes` are for translators. `is_same`: no translator is asked for it, since no
     language says it in another way, or since its words stand under the key `like`, too.
     """
 
@@ -92,7 +92,7 @@ class Catalogue:
 class Row:
     """A key of a file with what stands after it, which is None where it cannot be read.
 
-    `above` are the rows of notes and tables before it.
+    `text_above` are the rows of notes and tables before it.
     """
 
     key: str

@@ -29,9 +29,8 @@ LOCK_ENDING = (
     ".lock"  # the end of the name of a file that commands lock while they change another one
 )
 LOCK_WAIT_S = 5.0  # for which a command waits for another one
-REPLACE_WAIT_S = (
-    1.0  # for which a file may be open elsewhere until it cannot be replaced on Windows
-)
+# For which a file may be open elsewhere until it cannot be replaced on Windows.
+REPLACE_WAIT_S = 1.0
 OWNER_ONLY = 0o700  # a folder that only its user may look into
 ABANDONED_AFTER_S = 3600.0  # a new file that is older has lost its command
 

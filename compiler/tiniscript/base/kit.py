@@ -64,8 +64,8 @@ KIT_WORDS_SINCE = {device.name: "0.3" for device in REMOTE}
 class Kit(NamedTuple):
     """`speed` and `turn` are thousandths of a centimetre and of a degree in a second at 100 %.
 
-    0: not known, and programs have no moves by the one or the other. `given` are the words that
-    have given way to one program's own.
+    0: not known, and programs have no moves by the one or the other. `given_words` are the words
+    that have given way to one program's own.
     """
 
     sensors: tuple[Device, ...]

@@ -58,7 +58,7 @@ NO_PROGRAM = "no_program"  # notes beside the programs; they count for nothing
 class Mark(NamedTuple):
     """What came of a program. `seed` is that of the world where it failed, 0 for none.
 
-    `said` are pairs of a criterion's kind and a sentence; `run` is the last run.
+    `sentences` are pairs of a criterion's kind and a sentence; `run` is the last run.
     """
 
     name: str

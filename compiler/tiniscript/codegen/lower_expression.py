@@ -22,7 +22,7 @@ _MAX_EAGER_TERMS = 6  # terms up to which evaluating a needless side costs less 
 
 
 class Item(NamedTuple):
-    """An instruction that is not yet laid out; `to` is a label and stands for the last operand."""
+    """An instruction that is not yet laid out; `label` stands for the last operand."""
 
     op: Op
     operands: tuple[int, ...]

@@ -27,8 +27,8 @@ class Verdict(NamedTuple):
     name: str
     what: str
     line: int = 0
-    wanted_row: str | None = None
-    got_row: str | None = None
+    want: str | None = None
+    got: str | None = None
     detail: str = ""
 
 

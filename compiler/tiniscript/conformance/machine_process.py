@@ -31,7 +31,7 @@ EXIT_LIMIT_S = 0.5  # for a process whose output has ended, to end with its code
 
 
 class Problem(Exception):
-    """No answer. `what` is hang, crash, flood or more; `detail` is the exit code or what it wrote;
+    """No answer. `kind` is hang, crash, flood or more; `detail` is the exit code or what it wrote;
     `rows` are the lines that came before."""
 
     def __init__(self, kind: str, detail: str, rows: tuple[str, ...]) -> None:

@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
 
-MOST_DIAGNOSTICS = (
-    100  # diagnostics of one text, after which more help nobody: it is read no further
-)
+# Diagnostics of one text, after which more help nobody: it is read no further.
+MOST_DIAGNOSTICS = 100
 
 
 class Code(NamedTuple):

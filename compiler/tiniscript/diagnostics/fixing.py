@@ -50,7 +50,7 @@ MOST_OFFERS = 20  # repairs of one text that are tried
 
 
 class Fixed(NamedTuple):
-    """`text` is the program with its sure repairs, `left` what it still has."""
+    """`text` is the program with its sure repairs, `diagnostics_left` what it still has."""
 
     text: str
     repair_count: int

@@ -94,7 +94,7 @@ CAUSES = dict((
 class Finding(NamedTuple):
     """A cause, whether it is sure or only probable, and what was seen: it fills the sentences.
 
-    `of` is the part that it is about, if that is another one than the table says: `left`.
+    `part_name` is the part that it is about, if that is another one than the table says: `left`.
     """
 
     cause: str

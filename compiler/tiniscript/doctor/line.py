@@ -65,9 +65,8 @@ def _greet(wire: Wire, greeting: bytes, answer: bytes) -> bool:
     return False
 
 
-BOOT_WAIT_MS = (
-    1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
-)
+# An Uno takes 1.4 s after its port was opened, and a Mega wants silence until then.
+BOOT_WAIT_MS = 1700
 HELLO_TRIES = 5  # an old Nano's bootloader takes longer
 BAUDS = (9600, 115200, 57600, 38400, 19200)
 LISTEN_LIMIT_MS = 400  # at a speed, to what a sketch prints

@@ -39,9 +39,8 @@ if TYPE_CHECKING:
 
 PATIENCE_MS = DEADLINE_MS  # of a robot that does not answer, or is busy, from its last progress
 SAVE_LIMIT_S = 10.0  # timeout for saving a program while the motors stand
-LOW_VOLTAGE_LIMIT_S = (
-    2.0  # timeout while the voltage is too low for saving: the robot checks every 0.5 s
-)
+# Timeout while the voltage is too low for saving: the robot checks every 0.5 s.
+LOW_VOLTAGE_LIMIT_S = 2.0
 
 
 class Client:

@@ -56,9 +56,9 @@ class Shows:
 
 
 class Finder:
-    """Finds the SHOW of a value. `own` has the maps of programs that are known here, by checksum;
-    those of others are in the cache. A run keeps the text that its program had when it began, or
-    when it was first heard of: another one may have the same code."""
+    """Finds the SHOW of a value. `own_maps` has the maps of programs that are known here, by
+    checksum; those of others are in the cache. A run keeps the text that its program had when it
+    began, or when it was first heard of: another one may have the same code."""
 
     def __init__(self, own_maps: Mapping[int, Map] | None = None) -> None:
         self._own = {} if own_maps is None else own_maps

@@ -132,7 +132,7 @@ MOST_LAYERS = 8
 
 
 class Difference(NamedTuple):
-    """What is `lost`, as it is written, and which commands there are `more` of."""
+    """The `losses`, as they are written, and the commands that there are more of: `additions`."""
 
     losses: list[str]
     additions: list[str]
@@ -357,7 +357,8 @@ def _with_losses(diagnostic: Diagnostic, losses: Sequence[str]) -> Diagnostic:
 
 
 class _Said:
-    """What a text says, in words of any language; `others` are all words of the repaired one."""
+    """What a text says, in words of any language; `other_words` are all words of the repaired
+    one."""
 
     def __init__(self, text: str, other_words: frozenset[str], kit: Kit, is_right: bool) -> None:
         self.is_right = is_right  # as far as it is repaired

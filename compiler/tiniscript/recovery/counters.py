@@ -25,9 +25,10 @@ _IN_WORDS = ("IN", "EN", "EM")
 
 
 class _Counter(NamedTuple):
-    """A header: tokens `start` up to `end` count `times` with `name`, from `first` on, by `step`.
+    """A header: tokens `start` up to `end` count `loop_count` with `name`, from `first` on, by
+    `step`.
 
-    The words before `begun` say that it is one: `for each`.
+    The words before `name_start` say that it is one: `for each`.
     """
 
     start: int

@@ -90,7 +90,7 @@ def key_edits(text: str, kit: Kit) -> list[Edit]:
 
 
 class _Part:
-    """An instruction, which begins at a place of a text that has names of its `own`."""
+    """An instruction, which begins at a place of a text with `own_names`."""
 
     def __init__(self, text: str, at: int, names: Names, own_names: Set[str]) -> None:
         self.own_names = own_names

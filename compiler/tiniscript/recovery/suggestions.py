@@ -67,7 +67,8 @@ _NEEDLESS_SIGNS = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
 
 class Row(NamedTuple):
-    """A row: its code is None where it is told with that which was found, and `how` says where."""
+    """A row: its code is None where it is told with that which was found, and `conditions` says
+    where."""
 
     pattern: rewrites.Pattern
     code: Code | None

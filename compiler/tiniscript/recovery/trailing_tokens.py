@@ -52,7 +52,8 @@ _LONG_WORDS = tuple(word for word in WORDS if len(word) > 2)
 class LineContext(NamedTuple):
     """Where an instruction stands: `depth` blocks are open there.
 
-    `above` are the lines before it, "" for one of no orders, None for one that begins a block.
+    `orders_above` are the lines before it, "" for one of no orders, None for one that begins a
+    block.
     """
 
     text: str
@@ -92,7 +93,7 @@ class Trailing:
     """An instruction of `size` tokens and the words after it; or words without one, where it is 0.
 
     `before` are the other instructions of its line, None for one of a block. `own` is the word of
-    the language that it begins with, "" for none. `said` is the call where words say it.
+    the language that it begins with, "" for none. `spoken` is the call where words say it.
     """
 
     def __init__(

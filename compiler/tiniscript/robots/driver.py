@@ -76,7 +76,7 @@ class Terminal(NamedTuple):
 class Shape(NamedTuple):
     """What a part is: its icon, the key of what to buy, its terminals from top to bottom.
 
-    `need` is empty where resistors are all. `model` is printed in its title. `motors` are the
+    `need_key` is empty where resistors are all. `model` is printed in its title. `motors` are the
     terminals of the left and the right motor; `notes` are keys of what to mind, `checks` of what
     to look at before switching on. `power` is the key of which battery suits it.
     """

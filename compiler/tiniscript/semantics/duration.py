@@ -16,7 +16,7 @@ from tiniscript.semantics.ways import way_ms
 
 
 class Duration(NamedTuple):
-    """Milliseconds from `least` to `most`, which is None without an upper bound.
+    """Milliseconds from `least_ms` to `most_ms`, which is None without an upper bound.
 
     `never_ends`: the program never ends by itself.
     """

@@ -145,7 +145,7 @@ class Procedure(NamedTuple):
 
 
 class Task(NamedTuple):
-    """TASK, or a WHEN with the check `look`, beside the main task."""
+    """TASK, or a WHEN with the check `until`, beside the main task."""
 
     until: Until | None
     body: Body

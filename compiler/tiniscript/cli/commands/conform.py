@@ -37,9 +37,8 @@ from tiniscript.link.wire import Wire
 PATIENCE_S = 10
 MOST_ROWS = 20
 CABLE_MS, RADIO_MS = 300, 700  # for one try of an answer
-BOOT_WAIT_MS = (
-    1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
-)
+# An Uno takes 1.4 s after its port was opened, and a Mega wants silence until then.
+BOOT_WAIT_MS = 1700
 CASES_BUILDER = "tools.builds.conformance"  # which no package brings
 ISA = f"{ISA_MAJOR}.{ISA_MINOR}"
 
@@ -166,8 +165,7 @@ def _rows(verdict: Verdict, timeout_s: int, language: str) -> list[str]:
     if verdict.line:
         nothing = text("conform_nothing", language)
         row_got, wanted_row = (
-            nothing if row is None else printable_name(row)
-            for row in (verdict.got_row, verdict.wanted_row)
+            nothing if row is None else printable_name(row) for row in (verdict.got, verdict.want)
         )
         rows.append(
             text("conform_line", language).format(line=verdict.line, got=row_got, want=wanted_row)

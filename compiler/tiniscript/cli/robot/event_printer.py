@@ -44,10 +44,10 @@ def _err(line: str) -> None:
 class EventPrinter:
     """Prints events. `has_times`: each with the milliseconds since `began_ms`, else the first.
 
-    `places` is the map of the program that is followed, `program` its checksum, and `whole` its map
-    with what a person has not typed, if there is such a thing. `rows` gets the
-    cells of each event, for a CSV file. `out` and `err` replace `print` while a picture
-    is on the terminal. JSON lines also get the fields of `about`.
+    `places` is the map of the program that is followed, `program` its checksum, and `whole_map` its
+    map with what a person has not typed, if there is such a thing. `rows` gets the cells of each
+    event, for a CSV file. `print_line` and `print_error` replace `print` while a picture is on the
+    terminal. JSON lines also get the `robot_fields`.
     """
 
     def __init__(

@@ -31,8 +31,9 @@ from tiniscript.virtual import directory
 
 
 class InReach(NamedTuple):
-    """`about` maps ports to descriptions; `others` are ports that mean one of these, too;
-    `absent` are known ports without a robot; `notes` say what was not searched, and why."""
+    """`descriptions` maps ports to descriptions; `other_ports` are ports that mean one of these,
+    too; `absent_ports` are known ports without a robot; `notes` say what was not searched, and
+    why."""
 
     descriptions: dict[str, str]
     other_ports: list[str]

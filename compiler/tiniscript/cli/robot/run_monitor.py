@@ -29,7 +29,7 @@ DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
 class RunMonitor:
     """Prints the events of a run until it ends. `hold` returns True for an event to keep back.
 
-    `look` is called repeatedly meanwhile, every `look_s` at least.
+    `on_wait` is called repeatedly meanwhile, every `wait_s` at least.
     """
 
     def __init__(

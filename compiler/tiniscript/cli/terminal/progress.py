@@ -72,9 +72,8 @@ class Doing:
 
 
 SILENCE_LIMIT_S = 2.0
-NEW_WAIT_PAUSE_S = (
-    0.5  # between two waits: the person has typed or read something, so a new one begins
-)
+# Between two waits: the person has typed or read something, so a new one begins.
+NEW_WAIT_PAUSE_S = 0.5
 
 
 class Silence:

@@ -27,7 +27,8 @@ class BodyContext(NamedTuple):
 
 
 class LintContext:
-    """A program before it is optimised, its text and tokens; `found` are its warnings so far."""
+    """A program before it is optimised, its text and tokens; `diagnostics` are its warnings so
+    far."""
 
     def __init__(self, program: ir.Program, kit: Kit, source: Source, scan: Scan) -> None:
         self.program = program
