@@ -143,7 +143,7 @@ class _Routine:
 class _Verifier:
     def __init__(self, code: bytes, sensors: int, actuators: int, needs: int) -> None:
         self.code = code
-        self.allowed_needs = needs
+        self.allowed = needs
         self.devices = {"sensor": sensors, "actuator": actuators}
         self.at = 0  # where the instruction that is looked at begins
         self.after = 0  # where the next one begins
@@ -203,10 +203,10 @@ class _Verifier:
 
     def opcode(self) -> Op:
         op = op_at(self.code, self.at)
-        if self.code[self.at] == ESCAPE and self.allowed_needs & NEEDS_GO:
+        if self.code[self.at] == ESCAPE and self.allowed & NEEDS_GO:
             if self.at + 1 == len(self.code):
                 self.refuse("CUT_OPERAND")
-        if op is None or op.needs & ~self.allowed_needs:
+        if op is None or op.needs & ~self.allowed:
             self.refuse("UNKNOWN_OPCODE")
         self.needs |= op.needs
         self.after = self.at + op.size

@@ -9,28 +9,28 @@ from tiniscript.vm.values import COMPARE, Compare
 
 
 @handles("IF", "IF_FAR")
-def _if(m: Execution, after: int, target: int) -> Step:
+def _if(m: Execution, after: int, to: int) -> Step:
     pop = m.task.stack.pop
-    return lambda: after if pop() else target
+    return lambda: after if pop() else to
 
 
 @handles("IF_NOT", "IF_NOT_FAR")
-def _if_not(m: Execution, after: int, target: int) -> Step:
-    return _if(m, target, after)
+def _if_not(m: Execution, after: int, to: int) -> Step:
+    return _if(m, to, after)
 
 
 def _if_comparison_handler(compare: Compare) -> Handler:
-    def handler(m: Execution, after: int, n: int, target: int) -> Step:
+    def handler(m: Execution, after: int, n: int, to: int) -> Step:
         pop, constant = m.task.stack.pop, n * ONE
-        return lambda: after if compare(pop(), constant) else target
+        return lambda: after if compare(pop(), constant) else to
 
     return handler
 
 
 def _if_var_comparison_handler(compare: Compare) -> Handler:
-    def handler(m: Execution, after: int, v: int, n: int, target: int) -> Step:
+    def handler(m: Execution, after: int, v: int, n: int, to: int) -> Step:
         variables, constant = m.task.variables, n * ONE
-        return lambda: after if compare(variables[v], constant) else target
+        return lambda: after if compare(variables[v], constant) else to
 
     return handler
 
@@ -43,17 +43,17 @@ for _name, _compare in COMPARE.items():
 
 
 @handles("ELSE", "ELSE_FAR", "BREAK", "BREAK_FAR", "DEF", "DEF_FAR")
-def go(m: Execution, after: int, target: int) -> Step:
-    return lambda: target
+def go(m: Execution, after: int, to: int) -> Step:
+    return lambda: to
 
 
 @handles("AGAIN", "AGAIN_FAR")
-def _again(m: Execution, after: int, target: int) -> Step:
-    return m.back_to(target)
+def _again(m: Execution, after: int, to: int) -> Step:
+    return m.back_to(to)
 
 
 @handles("FOREVER", "WHILE", "WHILE_FAR")
-def _mark(m: Execution, after: int, target: int = 0) -> Step:
+def _mark(m: Execution, after: int, to: int = 0) -> Step:
     return lambda: after
 
 
@@ -67,11 +67,11 @@ def _loop8(m: Execution, after: int, n: int) -> Step:
 
 
 @handles("LOOP", "LOOP_FAR")
-def _loop(m: Execution, after: int, target: int) -> Step:
+def _loop(m: Execution, after: int, to: int) -> Step:
     def step() -> int:
         n = whole(m.task.stack.pop())
         if n < 1:
-            return target
+            return to
         m.task.counters.append(n)
         return after
 
@@ -79,8 +79,8 @@ def _loop(m: Execution, after: int, target: int) -> Step:
 
 
 @handles("NEXT", "NEXT_FAR")
-def _next(m: Execution, after: int, target: int) -> Step:
-    counters, back = m.task.counters, m.back_to(target)
+def _next(m: Execution, after: int, to: int) -> Step:
+    counters, back = m.task.counters, m.back_to(to)
 
     def step() -> int:
         left = counters[-1] - 1
@@ -94,21 +94,21 @@ def _next(m: Execution, after: int, target: int) -> Step:
 
 
 @handles("BREAK_LOOP", "BREAK_LOOP_FAR")
-def _break_loop(m: Execution, after: int, target: int) -> Step:
+def _break_loop(m: Execution, after: int, to: int) -> Step:
     def step() -> int:
         m.task.counters.pop()
-        return target
+        return to
 
     return step
 
 
 @handles("CALL", "CALL_FAR")
-def _call(m: Execution, after: int, target: int) -> Step:
+def _call(m: Execution, after: int, to: int) -> Step:
     calls = m.task.calls
 
     def step() -> int:
         calls.append(after)
-        return target
+        return to
 
     return step
 

@@ -25,8 +25,8 @@ class Instance:
             proxy = create_proxy(imports[each.name])
             self._proxies.append(proxy)
             table.setdefault(each.module, {})[each.name] = proxy
-        js_imports = to_js(table, dict_converter=js.Object.fromEntries)
-        exports = js.WebAssembly.Instance.new(module, js_imports).exports
+        given = to_js(table, dict_converter=js.Object.fromEntries)
+        exports = js.WebAssembly.Instance.new(module, given).exports
         names = [export.name for export in js.WebAssembly.Module.exports(module)]
         self.functions = {name: getattr(exports, name) for name in names}
         buffer = self.functions.pop("memory").buffer

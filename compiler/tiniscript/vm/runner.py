@@ -62,21 +62,21 @@ def run(
         yield from robot.events
         robot.events.clear()
         if status in (DONE, FAULT):
-            ending = status.upper()
+            what = status.upper()
         elif status == WAITING and machine.wake_ms <= max_ms:
             if machine.wake_ms > robot.now_ms:
                 before = machine.steps
             robot.now_ms = machine.wake_ms
             if machine.steps - before < max_steps:
                 continue
-            ending = "LIMIT"
+            what = "LIMIT"
         elif status == WAITING:
-            robot.now_ms, ending = max_ms, "LIMIT"
+            robot.now_ms, what = max_ms, "LIMIT"
         elif machine.steps - before >= max_steps:
-            ending = "LIMIT"
+            what = "LIMIT"
         else:
             continue
-        text = f"FAULT {machine.fault}" if ending == "FAULT" else ending
-        yield Event(robot.now_ms, ending, (), text)
-        yield Ending(ending, machine.fault, machine.at, machine.steps)
+        text = f"FAULT {machine.fault}" if what == "FAULT" else what
+        yield Event(robot.now_ms, what, (), text)
+        yield Ending(what, machine.fault, machine.at, machine.steps)
         return

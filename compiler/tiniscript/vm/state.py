@@ -126,9 +126,9 @@ class Execution:
         self.task.stack.pop()
         return after
 
-    def back_to(self, target: int) -> Step:
+    def back_to(self, to: int) -> Step:
         """Return the step that goes back to the start of a loop."""
-        return lambda: target
+        return lambda: to
 
     def end(self) -> int:
         """Finish the program."""
@@ -136,7 +136,7 @@ class Execution:
         self.status = DONE
         return STAY
 
-    def wait(self, duration_ms: int, wait_kind: str, after: int) -> int:
+    def wait(self, duration_ms: int, what: str, after: int) -> int:
         """Begin a wait at the end of the previous one, or now if that is too long ago.
 
         Like a step, this and `until` return where the program goes on.
@@ -145,7 +145,7 @@ class Execution:
         self.begin()
         task.clock_ms += duration_ms
         task.wake_ms = task.clock_ms
-        task.wait = wait_kind
+        task.wait = what
         self.status = WAITING
         return mark_stop(after)
 

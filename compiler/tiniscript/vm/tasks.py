@@ -222,7 +222,7 @@ class TaskMachine(Machine):
         if self.now_ms - self.me.clock_ms > LATE_MS:
             self.me.clock_ms = self.now_ms
 
-    def wait(self, duration_ms: int, wait_kind: str, after: int) -> int:
+    def wait(self, duration_ms: int, what: str, after: int) -> int:
         self.begin()
         self.me.clock_ms += duration_ms
         if not duration_ms:
@@ -230,15 +230,15 @@ class TaskMachine(Machine):
         self.me.has_waited = True
         return mark_stop(after)
 
-    def back_to(self, target: int) -> Step:
+    def back_to(self, to: int) -> Step:
         def step() -> int:
-            task = self.me
-            if not task.has_waited:
+            me = self.me
+            if not me.has_waited:
                 self.begin()
-                task.clock_ms += 1
-                return mark_stop(target)
-            task.has_waited = False
-            return target
+                me.clock_ms += 1
+                return mark_stop(to)
+            me.has_waited = False
+            return to
 
         return step
 
@@ -276,28 +276,28 @@ class TaskMachine(Machine):
         return self._block() if self._must_wait_for_motors() else after
 
     def _keep_move(self, move_ms: int, powers: Powers | None, check: int) -> None:
-        task = self.me
-        task.move_ms, task.powers, task.check, task.has_begun = move_ms, powers, check, False
+        me = self.me
+        me.move_ms, me.powers, me.check, me.has_begun = move_ms, powers, check, False
 
     def until(self, stop: bool, after: int) -> int:
-        task = self.me
-        task.after = after
+        me = self.me
+        me.after = after
         if stop:
-            if task.has_begun:
-                task.clock_ms = self.now_ms
-            if task.drives:
+            if me.has_begun:
+                me.clock_ms = self.now_ms
+            if me.drives:
                 self._end_move()
-            elif task.is_moving:  # it waited for the motors, or stood still
-                task.leave_move()
-            task.has_begun = True
+            elif me.is_moving:  # it waited for the motors, or stood still
+                me.leave_move()
+            me.has_begun = True
             return after
-        if not task.has_begun:
+        if not me.has_begun:
             self._begin_watched()
-        late_ms = (self.now_ms - task.clock_ms) % CLOCK_MS
+        late_ms = (self.now_ms - me.clock_ms) % CLOCK_MS
         next_ms = (late_ms // CHECK_MS + 1) * CHECK_MS
-        if task.move_ms == FOREVER or next_ms < task.move_ms:
-            return self._drive_on(task.check, next_ms, False)
-        return self._drive_on(after, task.move_ms, True)
+        if me.move_ms == FOREVER or next_ms < me.move_ms:
+            return self._drive_on(me.check, next_ms, False)
+        return self._drive_on(after, me.move_ms, True)
 
     def _begin_move(self) -> int:
         """Begin a move that no UNTIL watches."""
@@ -305,27 +305,27 @@ class TaskMachine(Machine):
         return self._drive_on(self.me.after, self.me.move_ms, True)
 
     def _begin_watched(self) -> None:
-        task = self.me
-        if task.powers is not None:
+        me = self.me
+        if me.powers is not None:
             self._take_motors()
-            task.forget_set()
-            task.is_moving = task.drives = True
-            self._set_motors(task.powers)
-        task.has_begun = True
+            me.forget_set()
+            me.is_moving = me.drives = True
+            self._set_motors(me.powers)
+        me.has_begun = True
         self.begin()
 
     def _drive_on(self, pc: int, due_ms: int, is_last: bool) -> int:
         """Wait so long, and go on at `pc`; `is_last`: that is the end of the move."""
-        task = self.me
-        task.to_its_end = is_last and task.drives
+        me = self.me
+        me.to_its_end = is_last and me.drives
         if due_ms == 0:
-            if task.drives:
+            if me.drives:
                 self._end_move()
             return pc
-        if task.move_ms != FOREVER:
-            task.move_ms -= due_ms
-        task.clock_ms += due_ms
-        task.has_waited = True
+        if me.move_ms != FOREVER:
+            me.move_ms -= due_ms
+        me.clock_ms += due_ms
+        me.has_waited = True
         return mark_stop(pc)
 
     def _end_move(self) -> None:
@@ -334,26 +334,26 @@ class TaskMachine(Machine):
 
     def _block(self) -> int:
         """Wait for the motors."""
-        task = self.me
-        task.forget_set()
-        task.is_moving = task.is_blocked = task.has_waited = True
-        task.drives = False
-        task.keeps = task.is_when
-        return mark_stop(task.check)
+        me = self.me
+        me.forget_set()
+        me.is_moving = me.is_blocked = me.has_waited = True
+        me.drives = False
+        me.keeps = me.is_when
+        return mark_stop(me.check)
 
     # -- the motors ---------------------------------------------------------------------------
 
     def motors(self, left: int, right: int) -> None:
-        task = self.me
-        task.set_to, task.has_set, task.keeps = (left, right), True, task.is_when
+        me = self.me
+        me.set_to, me.has_set, me.keeps = (left, right), True, me.is_when
         if not self._is_below():
             self._take_motors()
-            self._set_motors(task.set_to)
+            self._set_motors(me.set_to)
 
     def stop_motors(self) -> None:
-        task, holder = self.me, self.holder
-        task.forget_set()
-        task.keeps = task.is_when
+        me, holder = self.me, self.holder
+        me.forget_set()
+        me.keeps = me.is_when
         if self._is_below():
             return
         self._set_motors(MOTORS_OFF)

@@ -173,12 +173,12 @@ HANDLERS["NOT"] = _unary(lambda a: 0 if a else 1)
 
 
 @handles("AND_THEN", "AND_THEN_FAR")
-def _and_then(m: Execution, after: int, target: int) -> Step:
+def _and_then(m: Execution, after: int, to: int) -> Step:
     stack = m.task.stack
 
     def step() -> int:
         if not stack[-1]:
-            return target
+            return to
         stack.pop()
         return after
 
@@ -186,12 +186,12 @@ def _and_then(m: Execution, after: int, target: int) -> Step:
 
 
 @handles("OR_ELSE", "OR_ELSE_FAR")
-def _or_else(m: Execution, after: int, target: int) -> Step:
+def _or_else(m: Execution, after: int, to: int) -> Step:
     stack = m.task.stack
 
     def step() -> int:
         if stack[-1]:
-            return target
+            return to
         stack.pop()
         return after
 

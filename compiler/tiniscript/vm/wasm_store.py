@@ -40,16 +40,13 @@ class Instance:
         self._store = Store(_engine())
         self._store.set_limits(memory_size=MOST_BYTES, instances=1, memories=1, tables=1)
         module = _module(path)
-        functions = [Func(self._store, FuncType([], []), imports[import_type.name or ""])
-                     for import_type in module.imports]  # fmt: skip
-        exports = wasmtime.Instance(self._store, module, functions).exports(self._store)
-        module_exports = {export.name: exports[export.name] for export in module.exports}
-        self.functions = {
-            name: _bound_function(self._store, func)
-            for name, func in module_exports.items()
-            if isinstance(func, Func)
-        }
-        memory = module_exports["memory"]
+        given = [Func(self._store, FuncType([], []), imports[import_type.name or ""])
+                 for import_type in module.imports]  # fmt: skip
+        exports = wasmtime.Instance(self._store, module, given).exports(self._store)
+        found = {export.name: exports[export.name] for export in module.exports}
+        self.functions = {name: _bound_function(self._store, func)
+                          for name, func in found.items() if isinstance(func, Func)}  # fmt: skip
+        memory = found["memory"]
         assert isinstance(memory, Memory)
         self._memory = memory
         base = addressof(memory.data_ptr(self._store).contents)
@@ -88,19 +85,19 @@ def _bound_function(store: Store, function: Func) -> Callable[..., Any]:
         from wasmtime._func import enter_wasm
 
         kind = function.type(store)
-        argument_count, gives = len(kind.params), kind.results
-        raw = (c.wasmtime_val_raw_t * max(argument_count, 1))()
+        takes, gives = len(kind.params), kind.results
+        raw = (c.wasmtime_val_raw_t * max(takes, 1))()
         quick, inside, trap_type = c.wasmtime_func_call_unchecked, function._func, c.wasm_trap_t
     except (ImportError, AttributeError):
         return partial(function, store)
     numbers = memoryview(raw).cast("B").cast("q")
-    result_step = len(numbers) // len(raw)
+    apart = len(numbers) // len(raw)
     result = numbers if gives == [ValType.i64()] else numbers.cast("B").cast("i")
 
     def call(*values: int) -> int | None:
-        assert len(values) == argument_count, values
+        assert len(values) == takes, values
         for k, value in enumerate(values):
-            numbers[k * result_step] = value
+            numbers[k * apart] = value
         trap = POINTER(trap_type)()
         error = quick(store._context(), byref(inside), raw, len(raw), byref(trap))
         if error or trap:
